@@ -29,7 +29,7 @@ const DEAD: f64 = 0.12;
 /// Without a word from the reading thread for this long the sticks count as let go, s.
 const SILENCE_S: f64 = 0.1;
 
-/// What the sticks do.
+/// Assignment of the sticks to motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GamepadMode {
     /// The left stick moves the hand, the triggers close (right) and open (left) the fingers.
@@ -64,7 +64,7 @@ impl GamepadHandle {
         self.pad.write(pad);
     }
 
-    /// How strongly the pad should rumble.
+    /// Rumble that the pad should make now.
     pub fn rumble(&mut self) -> Rumble {
         *self.rumble.read()
     }

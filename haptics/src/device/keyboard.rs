@@ -16,7 +16,7 @@ const HAND_M_S: f64 = 0.06;
 const APERTURE_M_S: f64 = 0.03;
 /// Speeds in fine mode.
 const FINE: f64 = 0.2;
-/// The keys that are held down now. Which keys they are is the window's business.
+/// The keys that are held down now. Their assignment to physical keys is the window's business.
 #[allow(clippy::struct_excessive_bools)] // seven keys
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeysHeld {

@@ -6,7 +6,7 @@ use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};
 
-/// Where the pointer wants the fingers to be.
+/// Goal of the fingers that the pointer sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MouseTarget {
     /// Middle between the tips, m in the world.

@@ -30,9 +30,9 @@ use plan::{Goal, Plan};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
-/// Where a performance comes from.
+/// Source of a performance.
 enum Way {
-    /// Made for what stands in the world, and made anew when something is lost.
+    /// Made for the objects in the world, and made again after something is lost.
     Planned(Box<Plan>),
     /// Told from outside.
     Told(Route),
@@ -61,7 +61,7 @@ pub struct ScriptedOperator {
     position: [Vec2; 2],
     velocity: [Vec2; 2],
     now_s: f64,
-    /// How far the plan is, s: behind the clock by what was waited.
+    /// Time reached in the plan, s: behind the clock by the waiting time.
     plan_s: f64,
 }
 
@@ -91,7 +91,7 @@ impl ScriptedOperator {
         Self { acts_begin_s: begin_s, ..Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng) }
     }
 
-    /// When each act begins, s, as planned at first; empty for an operator that was not told any.
+    /// Start times of the acts, s, as planned at first; empty for an operator without acts.
     pub fn acts_begin_s(&self) -> &[f64] {
         &self.acts_begin_s
     }

@@ -1,4 +1,4 @@
-//! What the rumble tells: how hard the fingers press, and how fast something has struck something.
+//! Rumble as a cue of the finger force and of the speed of impacts.
 
 /// Force that gives the strongest rumble, N.
 const FULL_FORCE_N: f64 = 4.0;
@@ -14,7 +14,7 @@ const FADE_S: f64 = 0.05;
 /// and ends below this strength: a motor that hardly turns only hums.
 const SILENT: f64 = 0.05;
 
-/// How strongly the motors of a pad should turn, each 0 to 1.
+/// Strength of the two motors of a pad, each 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rumble {
     /// By the force on the fingers: the small motor.
@@ -60,7 +60,7 @@ impl Knock {
         self.age_s += dt_s;
     }
 
-    /// How strong it is now, 0 to 1.
+    /// Present strength of the cue, 0 to 1.
     pub fn strength(&self) -> f64 {
         impact_strength(self.speed_m_s, self.age_s)
     }

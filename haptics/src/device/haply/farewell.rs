@@ -13,8 +13,8 @@ use std::time::Duration;
 /// The argument that makes `touchstone` such a child; the board's id follows.
 pub const ARGUMENT: &str = "torque-guard";
 
-/// What ends every torque: a zero command, then zeros that complete a frame which was cut in two and otherwise read as resets,
-/// and a zero command again.
+/// Bytes that end every torque: a zero command, then zeros that complete a frame which was cut in two and otherwise
+/// read as resets, and a zero command again.
 pub fn farewell(id: u8) -> Vec<u8> {
     let zero = torque_frame(id, [0.0; 2]);
     [zero.as_slice(), [0; 10].as_slice(), zero.as_slice()].concat()

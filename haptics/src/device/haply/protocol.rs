@@ -14,7 +14,7 @@ const WRITE: u8 = 2;
 /// Motors and encoders sit on ports 1 and 2: mask bit = port − 1.
 const PORTS_1_AND_2: u8 = 0b11;
 
-/// Which direction counts positive.
+/// Direction of rotation that counts positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// 0 on the wire.

@@ -14,7 +14,7 @@ const CLEARANCE_M: f64 = 0.006;
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Share of the reaction time that passes between a miss and its correction: the eye leads the hand.
 const CORRECTION_LAG: f64 = 0.6;
-/// Pinch on something heavy, relative to the least that holds it: nobody's pinch is steady.
+/// Pinch on something heavy, relative to the least that holds it: no pinch is steady.
 pub(super) const SPARE_PINCH: f64 = 2.2;
 /// A crushing pinch, relative to the usual one.
 const CRUSH: f64 = 3.5;
@@ -30,7 +30,7 @@ pub(super) struct Builder<'a> {
     habits: &'a mut StdRng,
     holds: Option<usize>,
     placed: Option<usize>,
-    /// Whether the list may grow: only before the servo runs.
+    /// True while the list may grow: only before the servo runs.
     pub growing: bool,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Builder<'a> {
         Self { phases, now_s, at, skill, rng, habits, holds: None, placed: None, growing: false }
     }
 
-    /// Where the hand will be when the movements so far are done.
+    /// Goal of the hand at the end of the movements so far.
     pub(super) fn at(&self) -> Goal {
         self.at
     }
@@ -57,7 +57,7 @@ impl<'a> Builder<'a> {
         self.skill
     }
 
-    /// A number that every operator draws anew.
+    /// Random number, different for every operator.
     pub(super) fn between(&mut self, least: f64, most: f64) -> f64 {
         self.rng.random_range(least..most)
     }
@@ -89,7 +89,7 @@ impl<'a> Builder<'a> {
         self.reach(usual_s, self.at);
     }
 
-    /// When the movements so far are done, s.
+    /// End time of the movements so far, s.
     pub(super) fn now_s(&self) -> f64 {
         self.now_s
     }
@@ -100,7 +100,7 @@ impl<'a> Builder<'a> {
         self.push_for(seconds + extra_s, Move::Reach { from: self.at, to: self.at });
     }
 
-    /// How far beside its goal this operator ends, m, as skill has it: nothing for a steady hand.
+    /// Random miss of this operator beside its goal, m, as its skill has it; zero for a steady hand.
     pub(super) fn scatter_m(&mut self) -> f64 {
         if self.skill.aim_error_m == 0.0 {
             return 0.0;
@@ -245,7 +245,7 @@ impl<'a> Builder<'a> {
         self.placed = None;
     }
 
-    /// How far beside its place a block is put, m: enough to be seen, not enough to fall.
+    /// Distance of a block beside its place, m: enough to be seen, not enough to fall.
     fn beside_m(&mut self, job: &Job) -> f64 {
         if job.mistake != Some(Mistake::MisalignedStack) {
             return 0.0;

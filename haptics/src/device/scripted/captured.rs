@@ -1,4 +1,4 @@
-//! What the scripted operator does with a needle, a barrel and a switch: the movements that show what they are like.
+//! Movements of the scripted operator with a needle, a barrel and a switch that reveal their properties.
 
 use super::Mistake;
 use super::builder::Builder;
@@ -56,8 +56,8 @@ impl Builder<'_> {
         Some((held, [point_below_m, grip]))
     }
 
-    /// How deep the hand goes until the sheet gives way, m: deeper than the needle, because the arms give; what they give comes back
-    /// when the sheet does.
+    /// Depth of the hand at which the membrane is pierced, m. It is deeper than the needle because the arms yield;
+    /// their deflection is released at the puncture.
     pub(super) fn piercing_depth_m(membrane: &Membrane) -> f64 {
         membrane.law.puncture_depth_m() + 0.5 * membrane.law.puncture_n / HandImpedance::default().stiffness_n_m
     }
@@ -72,7 +72,8 @@ impl Builder<'_> {
         let over_m = (0.5 * (barrel.height_m + world.pad.face_m) + RIM_M).max(0.020);
         self.aim(0.9, up(over_m, &open));
         self.reach(0.7, open);
-        // Heavier than it looks: more than twice the least that lifts it, because nobody's pinch is steady; more where it varies.
+        // Heavier than it looks: more than twice the least pinch that lifts it, because no pinch is steady; more if it
+        // varies.
         let spare = 2.2 + 10.0 * (self.skill().pinch_spread - EXPERT_SPREAD).max(0.0);
         let least_n = 0.5 * barrel.mass_kg * world.gravity_m_s2 / barrel.finger_friction.max(0.05);
         let usual_n = self.choose_pinch((spare * least_n).max(self.skill().pinch_n), 0.1);
@@ -106,7 +107,7 @@ impl Builder<'_> {
         self.reach(0.8, up(over_m, &open));
     }
 
-    /// Pushes the switch over, so many times, to and fro, with the knob between the open fingers.
+    /// Pushes the switch over and back, `times` throws in all, with the knob between the open fingers.
     pub fn throw_switch(&mut self, world: &World, state: &State, times: usize) {
         let Some(switch) = &world.switch else { return };
         let ends = [switch.curve.points.first(), switch.curve.points.last()].map(|p| p.map_or(0.0, |p| p.at_m));

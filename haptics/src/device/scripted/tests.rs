@@ -5,7 +5,7 @@ use crate::world::{Input, Surface, presets, step, true_label};
 
 const DT: f64 = 1e-3;
 
-/// What a performance showed.
+/// Observed results of a performance.
 struct Shown {
     /// True labels that lasted 100 ms (contact chatters at touch-down), without repeats.
     labels: Vec<&'static str>,
@@ -241,7 +241,7 @@ fn pierces_the_sheet_twice_and_leaves_the_needle_in_it() {
         let held: Vec<_> = shown.labels.iter().filter(|l| **l != "insertion" || shown.labels[0] != **l).collect();
         let through = shown.labels.iter().filter(|l| **l == "insertion").count();
         assert!(through >= 2 && shown.labels.contains(&"extraction"), "seed {seed}: {held:?}");
-        // Left in the sheet, and the hand gone: nobody moves the needle any more.
+        // Left in the sheet, and the hand gone: the needle is driven no longer.
         assert!(shown.labels.ends_with(&[inside, free]), "seed {seed}: {held:?}");
         // In the sheet still; let go it springs back by some tenths of a millimetre.
         assert_ne!(shown.state.membrane.phase, crate::law::object::MembranePhase::Free, "seed {seed}");
