@@ -31,8 +31,8 @@ pub fn resistance_with(effects: &[Effect], motion: &Motion, memories: &Memories)
     sum(effects, motion, Some(memories), true)
 }
 
-/// Steepest slope over the position of what the integrator does not take implicitly, N/m or N m/rad, over positions from −`reach`
-/// to `reach`: the step must be able to follow it.
+/// Steepest slope over the position of the explicitly integrated laws, N/m or N m/rad, over positions from −`reach` to
+/// `reach`: the step must be able to follow it.
 pub fn explicit_stiffness(effects: &[Effect], reach: f64) -> f64 {
     const PLACES: i32 = 8;
     let step = 1e-4 * reach;

@@ -10,7 +10,7 @@ pub struct Effect {
     law: &'static dyn Law,
     /// The law's role, kept here because the servo asks for it several times a tick.
     role: Role,
-    /// Whether the law has a memory.
+    /// True if the law has a memory.
     remembers: bool,
     /// Values, in the order of [`Law::parameters`]; unused places are zero.
     pub values: [f64; MAX_PARAMETERS],
@@ -38,7 +38,7 @@ impl Effect {
         self.role
     }
 
-    /// Whether the law has a memory that must be moved along.
+    /// True if the law has a memory that must be moved along.
     pub fn remembers(&self) -> bool {
         self.remembers
     }

@@ -1,6 +1,6 @@
-//! Presliding friction under a load: F = mu |Fn| z, way dz/ds = 1 − z sgn(v) (Dahl 1968), with the shapes of [`Hysteresis`]: friction in
-//! proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is what it bends over. The memory is z. The `hysteresis` of worlds
-//! whose friction goes with the load.
+//! Presliding friction under a load: F = mu |Fn| z, way dz/ds = 1 − z sgn(v) (Dahl 1968), with the shapes of
+//! [`Hysteresis`]. It is friction in proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is the
+//! presliding distance. The memory is z. The `hysteresis` of worlds with load friction.
 
 use super::entry::POSITIVE;
 use super::{Entry, Hysteresis, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};

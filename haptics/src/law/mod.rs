@@ -238,8 +238,8 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
     CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
 }
 
-/// The pages of everything that a diagnosis can name; what only models are made of (the weight, the push that goes by the name of
-/// `local-resistance`, the cable by that of `added-constraint`, and what goes with a load by that of what does not) is left out.
+/// The pages of everything that a diagnosis can name. Laws that only models are made of are left out: the weight, the
+/// push under the name of `local-resistance`, the cable under that of `added-constraint`, and the variants under load.
 pub fn causes() -> impl Iterator<Item = &'static Entry> {
     let models: [&dyn Law; 5] = [&Weight, &LocalPush, &Cable, &LoadHysteresis, &LoadFrictionChange];
     entries().filter(move |entry| models.iter().all(|law| law.id() != entry.id))

@@ -4,7 +4,7 @@
 use super::{Enters, Entry, Kind, ParameterSpec};
 use std::fmt::Write as _;
 
-/// First line of every page, so that nobody mends the copy.
+/// First line of every page, so that the copy is not edited by hand.
 const MADE: &str =
     "<!-- Made by `cargo run -p haptics --example causes` from the laws in haptics/src/law. Change it there. -->";
 

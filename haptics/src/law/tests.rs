@@ -1,4 +1,4 @@
-//! What must hold for every law.
+//! Properties that must hold for every law.
 
 use super::*;
 use proptest::prelude::*;

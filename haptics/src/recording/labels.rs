@@ -13,9 +13,9 @@ const MANY: usize = 1 << 15;
 pub struct Labels {
     /// Number of the text of every row.
     codes: Vec<u32>,
-    /// All texts, one after the other …
+    /// All texts, one after the other.
     texts: String,
-    /// … and where each ends.
+    /// End of each text in `texts`, bytes.
     ends: Vec<u32>,
     /// Places by hash: the number of a text plus one, or 0. A power of two of them, or none.
     places: Vec<u32>,

@@ -1,4 +1,4 @@
-//! Virtual coupling: what stands between the device and a world that is stiffer than the device can render.
+//! Virtual coupling between the device and a world that is stiffer than the device can render.
 //!
 //! The operator's device hangs on a spring and damper whose other end is the fingertip in the world, the *proxy* (Colgate et
 //! al. 1995; Adams & Hannaford 1999; the god object of Zilles & Salisbury 1995 is its limit for a rigid world). Spring and
@@ -106,13 +106,14 @@ impl Proxy {
         self.tips
     }
 
-    /// The balance of coupling and contact, both linear in the displacement Δp of this tick:
-    /// K (x − p − Δp) + B (v − Δp/T) + F − `K_c` (Δp − `v_o` T) − `B_c` (Δp/T − `v_p`) = 0, where F, `K_c`, `B_c` are the
-    /// contacts' force, stiffness and damping after the tick before, and `v_o` is the speed of what is touched.
+    /// The balance of coupling and contact, both linear in the displacement Δp of this tick: K (x − p − Δp) + B (v −
+    /// Δp/T) + F − `K_c` (Δp − `v_o` T) − `B_c` (Δp/T − `v_p`) = 0. F, `K_c`, `B_c` are the contacts' force, stiffness
+    /// and damping after the tick before, and `v_o` is the speed of the touched object.
     fn advance(&self, finger: usize, device: &Sample, world: &World, state: &State, dt_s: f64) -> Vec2 {
         let sliding_on = self.balance(finger, device, world, state, dt_s, false);
-        // A contact that slides has no stiffness along the surface as long as it slides on. Where the tip would turn round it
-        // sticks, with the pad's shear stiffness: without that the friction would throw a softly coupled tip to and fro.
+        // A contact that slides has no stiffness along the surface as long as it slides on. At a reversal of the tip it
+        // sticks, with the pad's shear stiffness: otherwise the friction would throw a softly coupled tip back and
+        // forth.
         let turns = state.contacts.iter().any(|c| {
             c.on == Surface::Finger(finger as u8)
                 && c.sliding
@@ -154,7 +155,7 @@ impl Proxy {
     }
 }
 
-/// How a contact's force changes with the tip's place and speed, N/m and N s/m.
+/// Stiffness and damping of a contact, N/m and N s/m: change of its force with the tip's position and velocity.
 fn stiffness_of(contact: &Contact, world: &World, sticks: bool) -> (Matrix2<f64>, Matrix2<f64>) {
     let along = contact.normal * contact.normal.transpose();
     let (mut spring, mut damper) = (Matrix2::zeros(), Matrix2::zeros());

@@ -11,26 +11,26 @@ use crate::Vec2;
 use crate::device::{Command, Device};
 use crate::world::{Input, State, Stored, World, step};
 
-/// What the recorder keeps of every tick.
+/// Record of one tick for the recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickRecord {
     /// Simulated time, s.
     pub time_s: f64,
-    /// Where the fingertips are in the world. On a virtual coupling they are the proxies.
+    /// Positions of the fingertips in the world. On a virtual coupling they are the proxies.
     pub input: Input,
-    /// Where the device has the fingers, m in the world; the same as the tips without a virtual coupling.
+    /// Positions of the fingers at the device, m in the world; the same as the tips without a virtual coupling.
     pub device_in_world: [Vec2; 2],
     /// Force of the tips on the environment, N.
     pub tip_force_n: [Vec2; 2],
     /// Force sent to the device, N on the operator's fingers.
     pub sent_force_n: [Vec2; 2],
-    /// What the safety stage did.
+    /// Actions of the safety stage.
     pub flags: SafetyFlags,
     /// Energy that the virtual environment has taken from the hand since the start, J; below zero it has given some out.
     pub energy_j: f64,
     /// Largest speed at which something struck something during this tick, m/s; zero without an impact.
     pub impact_m_s: f64,
-    /// Where that was, m in the world.
+    /// Position of that impact, m in the world.
     pub impact_in_world: Vec2,
     /// The true contact state (generators write it as the label).
     pub label: &'static str,
@@ -41,7 +41,7 @@ pub struct TickRecord {
 pub struct Snapshot {
     /// The world's state.
     pub state: State,
-    /// Which world it belongs to: counts the swaps.
+    /// Generation of the world it belongs to: counts the swaps.
     pub generation: u64,
     /// The last tick.
     pub tick: TickRecord,
@@ -232,8 +232,9 @@ impl Loop {
         });
     }
 
-    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and so does
-    /// everything else in a world that goes on ([`Swap::going_on`]); the old force fades and a new one that presses much harder comes up with the start ramp.
+    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and
+    /// so does everything else in a world that continues the old one ([`Swap::going_on`]). The old force fades, and a
+    /// new one that presses much harder rises with the start ramp.
     pub fn swap(&mut self, mut next: Box<Swap>) -> Box<Swap> {
         next.follow(&self.current);
         self.generation += 1;
@@ -266,7 +267,7 @@ impl Loop {
         self.held = held;
     }
 
-    /// Whether the world is held still.
+    /// True while the world is held still.
     pub fn is_held(&self) -> bool {
         self.held
     }
@@ -323,7 +324,7 @@ impl Loop {
         self.safety.sample_age_s()
     }
 
-    /// Whether both fingers were ever seen.
+    /// True after both fingers have been seen.
     pub fn has_met_both(&self) -> bool {
         self.safety.has_met_both()
     }

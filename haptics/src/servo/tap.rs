@@ -8,14 +8,14 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What both ends have in common.
+/// State shared by both ends.
 #[derive(Debug)]
 struct Shared {
     /// True while somebody records.
     open: AtomicBool,
     /// Ticks that found the ring full since it was opened.
     dropped: AtomicU64,
-    /// The way out while nobody has it. The servo's side never touches it.
+    /// The consumer while no recorder has it. The servo's side never touches it.
     home: Mutex<Option<Consumer<TickRecord>>>,
 }
 
@@ -49,7 +49,7 @@ impl TapFiller {
     }
 }
 
-/// Where a tap is opened.
+/// Handle by which a tap is opened.
 #[derive(Clone, Debug)]
 pub struct TapSource {
     shared: Arc<Shared>,
@@ -59,7 +59,7 @@ impl TapSource {
     /// Every tick from now on; `None` while another one has it.
     pub fn open(&self) -> Option<Tap> {
         let mut ticks = self.shared.home.lock().unwrap_or_else(PoisonError::into_inner).take()?;
-        // What came in while the last one closed it.
+        // Drops the ticks that came in while the last recorder closed it.
         while ticks.pop().is_ok() {}
         self.shared.dropped.store(0, Ordering::Relaxed);
         self.shared.open.store(true, Ordering::Relaxed);
@@ -90,8 +90,8 @@ impl Tap {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// True when no further tick will come: it was closed or the servo is gone. What is in the ring can still be read. What was done
-    /// before [`TapSource::close`] is seen from then on.
+    /// True when no further tick will come: the tap was closed or the servo is gone. Ticks in the ring can still be
+    /// read. All that was done before [`TapSource::close`] is seen from then on.
     pub fn is_over(&self) -> bool {
         !self.shared.open.load(Ordering::Acquire) || self.ticks.as_ref().is_none_or(Consumer::is_abandoned)
     }

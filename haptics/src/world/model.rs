@@ -24,7 +24,7 @@ pub struct World {
     /// File format version, [`SCHEMA`].
     #[serde(default = "schema")]
     pub schema: u32,
-    /// What it is, for people.
+    /// Name for people.
     pub name: String,
     /// Downward acceleration, m/s².
     #[serde(default = "gravity")]
@@ -59,7 +59,7 @@ pub struct World {
     /// A mechanism with one degree of freedom that is driven directly, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mechanism: Option<Mechanism>,
-    /// Where the numbers come from: nothing here is guessed without saying so.
+    /// Sources of the numbers: nothing here is guessed without saying so.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub provenance: Vec<Provenance>,
 }
@@ -137,7 +137,7 @@ pub struct Floor {
     pub stiffness_n_m: f64,
     /// Contact damping per contact point, N s/m.
     pub damping_n_s_m: f64,
-    /// What an impact takes, when it was measured: it stands in for damping and friction under blocks.
+    /// Measured velocity loss at an impact: it stands in for damping and friction under blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loss: Option<VelocityLoss>,
 }
@@ -169,7 +169,7 @@ pub struct Crank {
 pub struct Mechanism {
     /// Length or angle.
     pub coordinate: Coordinate,
-    /// How the coordinate lies in space, when a tool path was recorded.
+    /// Path of the coordinate in space, if a tool path was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<MechanismPath>,
     /// Laws along the coordinate.
@@ -179,7 +179,7 @@ pub struct Mechanism {
     pub direction_blur: f64,
 }
 
-/// Where one number of the world comes from.
+/// Source of one number of the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
@@ -198,7 +198,7 @@ pub struct Provenance {
     pub from: String,
 }
 
-/// How a number came to be known.
+/// Kind of the source of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {

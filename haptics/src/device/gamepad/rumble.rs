@@ -9,9 +9,9 @@ const FULL_M_S: f64 = 0.5;
 /// A knock stays at its full strength for this long, s: a pad takes some thirty commands a second, and its motors need as long to
 /// come up.
 const HOLD_S: f64 = 0.04;
-/// Then it fades with this time constant, s,
+/// Time constant with which it then fades, s.
 const FADE_S: f64 = 0.05;
-/// and ends below this strength: a motor that hardly turns only hums.
+/// Strength below which it ends: a motor that hardly turns only hums.
 const SILENT: f64 = 0.05;
 
 /// Strength of the two motors of a pad, each 0 to 1.

@@ -15,7 +15,7 @@ pub const SMALLEST_JUMP_M: f64 = 0.005;
 const LONGEST_EXCUSE: Duration = Duration::from_millis(5);
 /// Number of agreeing answers needed before a jump is believed; each that disagrees cancels as many that agree.
 const AGREEING: u32 = 5;
-/// and for so long: longer than the servo's watchdog waits (20 ms).
+/// Least time over which they must agree: longer than the servo's watchdog waits (20 ms).
 const AGREEING_FOR: Duration = Duration::from_millis(25);
 
 /// Verdict of the gate on an answer.

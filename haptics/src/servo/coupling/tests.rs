@@ -19,7 +19,7 @@ fn spec(damping_n_s_m: f64) -> DeviceSpec {
     }
 }
 
-/// Where hands want the fingers at a time, s.
+/// Wanted positions of the fingers at a time, s.
 type Wish = fn(f64) -> [Vec2; 2];
 
 /// Two masses with a damper each, and hands that push with a constant force or pull towards a wanted place.
@@ -29,7 +29,7 @@ struct Simulated {
     at: [Vec2; 2],
     velocity: [Vec2; 2],
     push_n: [Vec2; 2],
-    /// Where hands pull the fingers to at a time, and how.
+    /// Impedance of the hands and the positions they pull to; `None`: no hands.
     wanted: Option<(HandImpedance, Wish)>,
     time_s: f64,
 }
@@ -84,13 +84,13 @@ fn limits() -> Limits {
     Limits { max_force_n: 50.0, max_slew_n_s: 1e6, ramp_s: 1e-3, ..Limits::default() }
 }
 
-/// What a finger that is pushed against the table with 1 N from 1 mm above it does in 16 s.
+/// Motion within 16 s of a finger that is pushed against the table with 1 N from 1 mm above it.
 struct Pressed {
     /// Energy that the table gave out beyond what the device's own damper took, J: the worst of the whole time.
     given_j: f64,
     /// Fastest motion of the last second, m/s.
     restless_m_s: f64,
-    /// Where device and tip came to rest, m below the table.
+    /// Rest positions of device and tip, m below the table.
     device_depth_m: f64,
     tip_depth_m: f64,
 }
@@ -256,7 +256,7 @@ impl Device for Carried {
 
     fn exchange(&mut self, _: &Command, dt_s: f64) -> Sample {
         self.1 += dt_s;
-        // 2 mm in the table, still for a second, then drawn to and fro along it.
+        // Held still for a second, 2 mm in the table, then drawn back and forth along it.
         let (sin, cos) = (2.0 * (self.1 - 1.0).max(0.0)).sin_cos();
         let tip_in_world = [Vec2::new(-0.02 + 0.01 * sin, -0.127), Vec2::new(0.03, -0.127)];
         let moving = if self.1 > 1.0 { 0.02 * cos } else { 0.0 };

@@ -48,7 +48,7 @@ fn taken(wall: &Wall, device: &DeviceSpec, period: i32, path: impl Fn(i32) -> f6
     observer.energy_j() + lost_j
 }
 
-/// The same for a sinusoid of 1 mm that goes on by an angle, rad, from sample to sample (a whole part of a turn).
+/// The same for a sinusoid of 1 mm that advances by an angle, rad, from sample to sample (a whole part of a turn).
 pub(super) fn shaken(wall: &Wall, device: &DeviceSpec, angle: f64) -> f64 {
     let period = (TAU / angle).round() as i32;
     // A quarter turn ahead: at π the samples are the peaks.

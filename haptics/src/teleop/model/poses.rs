@@ -1,8 +1,9 @@
-//! Where things are: the difference between a late picture and the model of its time, less what has been corrected since, is bled into the
-//! model at a bounded rate.
+//! Correction of poses: the difference between a late picture and the model of its time, less the correction since, is
+//! bled into the model at a bounded rate.
 //!
-//! A correction moves a thing without a velocity, so that a contact feels it only through its depth: a held thing that is moved by
-//! [`TOUCHED_M_S`] changes a pad's force by some tens of N/s, far below the safety stage's slew limit. What nobody touches may go faster.
+//! A correction moves a thing without a velocity, so that a contact feels it only through its depth. A held thing that
+//! is moved by [`TOUCHED_M_S`] changes a pad's force by some tens of N/s, far below the safety stage's slew limit.
+//! Untouched things may move faster.
 
 use super::super::picture::{Grasp, Picture};
 use crate::Vec2;
@@ -22,7 +23,7 @@ const ENOUGH_M: f64 = 4e-4;
 /// Correction of one thing: place, m, and angle, rad.
 type Shift = (Vec2, f64);
 
-/// How far everything has been corrected since the start.
+/// Correction of everything since the start.
 #[derive(Clone)]
 pub(super) struct Corrected {
     bodies: Vec<Shift>,
@@ -47,19 +48,19 @@ impl Corrected {
 /// Corrections under way.
 pub(super) struct Poses {
     corrected: Corrected,
-    /// How far everything is to be corrected in the end.
+    /// Final correction of everything.
     wanted: Corrected,
-    /// Which bodies a finger touches.
+    /// True for each body that a finger touches.
     touched: Vec<bool>,
-    /// What the model's hand holds.
+    /// Objects in the model's hand.
     now: Grasp,
-    /// What is taken over as a whole at the next tick.
+    /// State that is taken over as a whole at the next tick.
     discrete: Option<Discrete>,
     /// With it: which walls are broken there, and what ran out of each, kg.
     spilled: Vec<(bool, f64)>,
 }
 
-/// What has no place between two values.
+/// State without values in between.
 struct Discrete {
     membrane: crate::world::MembraneState,
     branch: f64,
@@ -78,7 +79,7 @@ impl Poses {
         }
     }
 
-    /// How far everything has been corrected since the start.
+    /// Correction of everything since the start.
     pub fn corrected(&self) -> &Corrected {
         &self.corrected
     }
@@ -164,7 +165,7 @@ fn limited(value: f64, most: f64) -> f64 {
     value.clamp(-most, most)
 }
 
-/// What a difference has beyond one that is small enough.
+/// Part of a difference beyond a tolerance.
 fn beyond(difference: Vec2, enough: f64) -> Vec2 {
     let size = difference.norm();
     if size > enough { difference * (1.0 - enough / size) } else { Vec2::zeros() }

@@ -1,4 +1,4 @@
-//! Membrane, barrel and switch against their laws and numbers worked out on paper.
+//! Membrane, barrel and switch against their laws and numbers computed by hand.
 
 use super::super::*;
 use super::{DT, run};
@@ -144,7 +144,7 @@ fn a_switch_snaps_over_at_the_captured_force_and_back() {
         input.tip_in_world[0] = start + Vec2::new(0.012, 0.0) * f64::from(tick) / 8_000.0;
         input.tip_velocity[0] = Vec2::new(0.0015, 0.0);
         step(&world, &mut state, &input, DT);
-        // What drives the lever is the part along its arc.
+        // Only the part of the force along its arc drives the lever.
         let (sin, cos) = (state.switch.at_m / switch.lever_m).sin_cos();
         highest = highest.max(state.tip_force_n[0].dot(&Vec2::new(cos, -sin)));
     }

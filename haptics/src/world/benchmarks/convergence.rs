@@ -22,7 +22,7 @@ fn smooth(time_s: f64, start_s: f64, end_s: f64) -> f64 {
     u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
 }
 
-/// Where a block is after it was let go on or over a table: its centre, and the way of a point 10 mm from it, m.
+/// Place of a block after it was released on or over a table: its centre, and the way of a point 10 mm from it, m.
 fn tossed(floor: Floor, start: Pose, velocity_m_s: Vec2, dt_s: f64, seconds: f64) -> Vec<f64> {
     let mut world = World::empty("convergence");
     world.floor = Some(Floor { height_m: 0.0, ..floor });

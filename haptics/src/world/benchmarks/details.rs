@@ -1,4 +1,4 @@
-//! Details of the world that nothing else would miss, each against a number worked out on paper.
+//! Details of the world that nothing else would miss, each against a number computed by hand.
 
 use super::super::*;
 use super::{AWAY, DT, run, single};
@@ -117,7 +117,7 @@ fn a_heavy_knob_leans_on_its_stop_with_its_weight() {
         let mut state = State::new(&world, AWAY);
         run(&world, &mut state, 3.0);
         assert!(state.switch.rate_m_s.abs() < 1e-6, "it rests");
-        // What holds it along its arc is W sin of the lever's lean, the more of it the more the set-up is tilted.
+        // The hold along its arc is W sin of the lever's lean, the more of it the more the set-up is tilted.
         let lean_rad = state.switch.at_m / lever_m + tilt_rad;
         let expected_n = 0.3 * 9.81 * lean_rad.sin();
         assert!(expected_n < -0.7, "it leans to the left: {expected_n} N");
