@@ -1,8 +1,9 @@
 //! Weighted linear least squares with an honest covariance.
 //!
 //! Solved through QR and the singular values of R with columns scaled to unit norm (Golub & Van Loan, §5.3, §5.5). The
-//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its influence: the
-//! series of what every sample adds to its value (see [`super::influence`] and [`super::long_run`]).
+//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its
+//! influence: the series of every sample's contribution to its value (see [`super::influence`] and
+//! [`super::long_run`]).
 
 use super::influence::Solved;
 use super::long_run::inflation;
@@ -33,7 +34,7 @@ pub struct LinearFit {
     pub rms: f64,
     /// False for a parameter that the data do not excite, or only together with another one.
     pub identified: Vec<bool>,
-    /// How many independent samples the residuals amount to.
+    /// Number of independent samples in the residuals.
     pub effective_samples: f64,
     /// Inverse (pseudo-inverse) of the normal matrix `Σ wᵢ xᵢ xᵢᵀ`, in the columns' own units.
     pub normal_inverse: DMatrix<f64>,
@@ -41,15 +42,16 @@ pub struct LinearFit {
 
 /// Minimises Σ wᵢ (rhsᵢ − Σⱼ columns[j][i] valuesⱼ)².
 ///
-/// `columns`: p columns of n samples; `weights`: n numbers ≥ 0, inverse variances up to a factor (absent: all 1). A sample
-/// of zero weight takes no part. Degenerate: fewer weighted samples than columns is an error; a zero or dependent column is
-/// not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends ([`wanted`]).
+/// `columns`: p regressors of n samples; `weights`: n numbers ≥ 0, inverse variances up to a factor (absent: all 1). A
+/// sample of zero weight does not count. Degenerate: fewer weighted samples than regressors is an error; a zero or
+/// dependent regressor is not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends
+/// ([`wanted`]).
 pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<LinearFit, EstimateError> {
     Ok(least_squares_values(columns, rhs, weights)?.with_errors(columns, weights))
 }
 
-/// What [`least_squares`] finds, without the errors: telling those takes most of its time, and a search for a shape asks for them only
-/// at its end.
+/// Result of [`least_squares`] without the errors: their computation takes most of its time, and a search for a shape
+/// needs them only at its end.
 #[derive(Clone, Debug)]
 pub struct Values {
     /// As in [`LinearFit`].
@@ -161,9 +163,10 @@ impl LinearFit {
         }
     }
 
-    /// Takes out the attenuation by noise in the columns (errors in variables, Fuller 1987, §2.2): the normal matrix is
-    /// larger than that of the true columns by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share `known_to`. That share of the
-    /// correction joins the errors; where the noise is too large to be taken out, the values stay and all of it does.
+    /// Takes out the attenuation by noise in the regressors (errors in variables, Fuller 1987, §2.2). The normal matrix
+    /// is larger than that of the true regressors by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share
+    /// `known_to`. That share of the correction joins the errors. With noise too large to be taken out, the values stay
+    /// and all of it joins the errors.
     #[must_use]
     pub fn without_attenuation(mut self, noise: &DMatrix<f64>, known_to: f64) -> Self {
         let p = self.values.len();

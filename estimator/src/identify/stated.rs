@@ -1,8 +1,9 @@
-//! What the user states beforehand: priors and bounds, from the sidecar or the command line.
+//! Prior knowledge that the user states: priors and bounds, from the sidecar or the command line.
 //!
-//! A known value holds exactly: a fit that has the parameter in its regression leaves it out there; every other takes it in here. A prior is a measurement that was made elsewhere: it joins the estimates by their covariance (Kalman's update), so that it also
-//! sharpens what could not be told from its parameter. A bound cuts the distribution off; mean and spread of what is left stand in
-//! the result (moment matching), and what goes together with the parameter follows.
+//! A known value holds exactly: a fit with the parameter in its regression leaves it out there; every other fit takes
+//! it in here. A prior is a measurement that was made elsewhere. It joins the estimates by their covariance (Kalman's
+//! update), so that it also sharpens parameters that were inseparable from its own. A bound cuts the distribution off;
+//! the result holds mean and spread of the remaining part (moment matching), and correlated parameters follow.
 
 use crate::estimate::{Correlated, Fit, Parameter};
 use haptics::recording::{Meta, Prior};
@@ -69,7 +70,7 @@ fn by_itself(parameter: &Parameter) -> Correlated {
     }
 }
 
-/// What was done with one parameter.
+/// Action taken on one parameter.
 struct Said {
     parameter: usize,
     how: String,
@@ -84,7 +85,7 @@ fn update(group: &mut Correlated, meta: &Meta) -> Vec<Said> {
     let mut covariance = DMatrix::from_fn(p, p, |i, j| group.covariance[i][j]);
     let mut said = Vec::new();
     for j in 0..p {
-        // What the fit itself took as known has no variance any more.
+        // Parameters that the fit itself took as known have no variance any more.
         if let Some(value) = stated(&meta.known, &group.parameters[j]).filter(|_| covariance[(j, j)] > 0.0) {
             said.push(take_known(&mut values, &mut covariance, j, &group.parameters[j], *value));
         }
@@ -199,7 +200,7 @@ fn condition(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize,
     }
     let mut gain = covariance.column(j) / own;
     for (i, g) in gain.iter_mut().enumerate() {
-        // Where nothing is known of the other, nothing is known of how it goes with this one.
+        // An unknown parameter has no known correlation with this one.
         if !covariance[(i, i)].is_finite() {
             *g = 0.0;
         }

@@ -1,4 +1,5 @@
-//! Width of the barrel and how its sides give under the fingers: pad and wall in series, from the distance of the tips over the grip.
+//! Width of the barrel and give of its sides under the fingers: pad and wall in series, from the distance of the tips
+//! over the grip.
 
 use super::signals::Signals;
 use crate::estimate::EstimateError;
@@ -22,7 +23,7 @@ const SIDEWAYS: f64 = 0.05;
 /// Fewer samples show no give.
 const LEAST_ROWS: usize = 8;
 
-/// What the grip shows.
+/// Estimates from the grip.
 pub struct Grip {
     /// Width, m, and give of one side, m/N.
     pub sides: Option<PadFit>,

@@ -1,4 +1,4 @@
-//! Where a crank's circle is, and how a held handle moves and is pushed along it: the same for recordings and beside the servo.
+//! Circle of a crank, and motion and force of a held handle along it: the same for recordings and beside the servo.
 
 use haptics::Vec2;
 use haptics::law::Motion;
@@ -28,7 +28,7 @@ pub struct Handled {
     pub force_bend: Vec2,
 }
 
-/// Where the crank's circle is, and how much the pads give between tips and handle.
+/// Circle of the crank, and give of the pads between tips and handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Centre, m.

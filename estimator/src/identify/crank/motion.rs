@@ -69,11 +69,11 @@ pub(super) fn motions_at(
         .unzip()
 }
 
-/// The regression's rows: every law's column and the tangential force, all through one more low-pass.
+/// The regression's rows: every law's regressor and the tangential force, all through one more low-pass.
 ///
-/// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out what the
-/// equation does not hold for: the noise of accelerations, which would flatten the inertia, and the tremor of the hand, which
-/// the handle does not quite follow because of the pads.
+/// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out
+/// signals for which the equation does not hold: the noise of accelerations, which would flatten the inertia, and the
+/// tremor of the hand, which the handle does not quite follow because of the pads.
 pub(super) struct Rows {
     pub(super) columns: [Vec<f64>; LAWS.len()],
     pub(super) tangential: Vec<f64>,

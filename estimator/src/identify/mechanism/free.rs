@@ -1,5 +1,5 @@
-//! Motion without a force column: nothing drives the mechanism, so its terms cancel and only their ratios can be seen. One
-//! known parameter gives all of them their size.
+//! Motion without a force column: nothing drives the mechanism, so only the ratios of its parameters are identifiable.
+//! One known parameter sets the scale of all.
 
 use super::regress::{System, shown};
 use super::report::{OBJECT, PHASE, push_known};
@@ -57,7 +57,7 @@ pub enum Stated {
     Coulomb(f64),
 }
 
-/// What a sidecar states of a free motion's scale, what tells most first.
+/// Parameters stated in a sidecar that set the scale of a free motion, the most informative first.
 pub fn stated(meta: &Meta, coordinate: Coordinate) -> Vec<Stated> {
     let known = Known::from_meta(meta, coordinate);
     let moment = known.value(Term::GravitySine).map(|a| a.hypot(known.value(Term::GravityCosine).unwrap_or(0.0)));
@@ -123,7 +123,8 @@ fn report(ratios: &Ratios, known: &Known, coordinate: Coordinate, samples: usize
     result
 }
 
-/// What coasts one way shows friction and a constant force as one: their sum is still worth knowing.
+/// Sum of friction and constant force of a one-way coasting motion, which does not separate them: it is still worth
+/// knowing.
 fn resistance(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, inertia: (f64, f64), samples: usize) {
     let offset = ratios.terms.iter().position(|t| *t == Term::Offset);
     let Some(i) = offset.filter(|_| !ratios.terms.contains(&Term::Coulomb)) else { return };
@@ -137,7 +138,7 @@ fn resistance(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, inertia
     result.parameters.push(Parameter::identified(OBJECT, name, ratio * inertia.0, error, samples, how));
 }
 
-/// The regression −a = Σ ratio × regressor over all pieces.
+/// The regression −a = Σ ratio × regressor over all segments.
 fn ratios(pieces: &[Piece], known: &Known, coordinate: Coordinate) -> Result<Ratios, EstimateError> {
     let mut candidates = vec![Term::Viscous, Term::Coulomb];
     let swings = known.value(Term::GravitySine).is_some() || coordinate == Coordinate::Angular && restoring(pieces);

@@ -1,9 +1,9 @@
 //! Mechanisms with one degree of freedom: a slide, a door, a motor axis, a pendulum.
 //!
-//! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and says what the recording
-//! cannot show. Four forms of recording are understood: a coordinate with its force; a tool path with forces, whose
-//! constraint is found first; a coordinate without a force, which moves freely; and a path without a clock, which shows its
-//! constraint only. Two angles with two torques are a chain of two links (`chain/`).
+//! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and reports parameters
+//! that are not identifiable. Four forms of recording are understood: a coordinate with its force; a tool path with
+//! forces, whose constraint is found first; a coordinate without a force, which moves freely; and a path without a
+//! clock, which shows its constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
 mod chain;
 mod constant;
@@ -234,8 +234,8 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     Ok(result)
 }
 
-/// What the clock's tolerance does to parameters of a motion under a measured force: inertia goes as time squared, viscous
-/// friction as time.
+/// Errors by the clock's tolerance of parameters of a motion under a measured force: inertia goes as time squared,
+/// viscous friction as time.
 fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
     let powers = |term: &Term| Term::GravitySine.powers_of_time() - term.powers_of_time();
     terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
@@ -245,7 +245,7 @@ fn force_of(piece: &Piece) -> Vec<f64> {
     piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
 }
 
-/// Refit on the first 70 % of every piece, error on the last 30 %.
+/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %.
 fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
     let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
     let late = system.part(|place| place >= 1.0 - HELD_OUT);

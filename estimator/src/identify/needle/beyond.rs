@@ -1,4 +1,5 @@
-//! What a needle shows beyond the loading curve: the force at which it goes through, the drag of the hole, its own weight.
+//! Estimates of a needle beyond the loading curve: the force at which it goes through, the drag of the hole, its own
+//! weight.
 
 use super::signals::Along;
 use super::strokes::Push;
@@ -48,8 +49,9 @@ impl Sheet {
             .with_bootstrap(drawn.map(|sum| (sum / n).sqrt().hypot(own)))
     }
 
-    /// A sheet gives way between the last sample on the loading curve and the next one. That is where the needle was with the speed that it had: once it
-    /// is through, what pushed it lets it run ahead, and the force of that falls by and by.
+    /// A sheet yields between the last sample on the loading curve and the next one, at the place that the needle
+    /// reached with its speed. Once it is through, its driving spring lets it run ahead, and the force of that falls by
+    /// and by.
     fn through(&self, along: &Along, push: &Push) -> Option<Through> {
         let give = along.give_m_n.0;
         let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
@@ -73,7 +75,7 @@ impl Sheet {
         Some(Through { force, curve, resampled: self.loading.force_resampled_n(depth(at)), single })
     }
 
-    /// What a single tool is held with outside the sheet: where it goes up and down, its weight.
+    /// Holding force of a single tool outside the sheet: its weight, if it goes up and down.
     pub(super) fn held(&self, along: &Along) -> Option<Parameter> {
         if along.two_fingered || along.direction.y.abs() < 0.9 {
             return None;
@@ -145,8 +147,8 @@ mod tests {
     use super::super::strokes::pushes;
     use super::*;
 
-    /// Pushed in by `step_m` a sample into a spring of 450 N/m that is pierced at 1.6 N, `later_m` beyond a sample; then what pushed it lets it run ahead, and
-    /// the force of that falls by and by.
+    /// Pushed in by `step_m` a sample into a spring of 450 N/m that is pierced at 1.6 N, `later_m` beyond a sample.
+    /// Then the driving spring lets it run ahead, and the force of that falls by and by.
     fn pierced(step_m: f64, later_m: f64) -> Along {
         let (mut depth_m, mut force_n) = (Vec::new(), Vec::new());
         let (mut at, mut left) = (later_m - step_m * (1.6 / 450.0 / step_m + 40.0).round(), None);

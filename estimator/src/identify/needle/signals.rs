@@ -1,4 +1,4 @@
-//! What a needle recording says along the needle's way: depth, force, and where it is held.
+//! Signals of a needle recording along the needle's way: depth, force, and the segments in which it is held.
 
 use crate::estimate::EstimateError;
 use crate::identify::pads::SHEAR_GIVE;
@@ -8,9 +8,9 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// A grip counts from this share of the strongest one …
+/// Least grip, as a share of the strongest one.
 const GRIP_SHARE: f64 = 0.15;
-/// … and from this many times its noise.
+/// Least grip, in multiples of its noise.
 const GRIP_NOISES: f64 = 8.0;
 /// Share of the largest forces whose mean direction is that of the needle, and so many samples at least.
 const STRONGEST: f64 = 0.02;
@@ -35,11 +35,12 @@ pub struct Along {
     pub side_m: Vec<f64>,
     /// Unit vector of insertion in the world.
     pub direction: Vec2,
-    /// Stretches of samples in which the needle is held.
+    /// Segments of samples in which the needle is held.
     pub holds: Vec<Range<usize>>,
     /// Give of the pads between the measured tips and the needle, m/N, and its error.
     pub give_m_n: (f64, f64),
-    /// So many samples are averaged to one point of the loading curve: noise in the depth would flatten the bend of the curve.
+    /// Number of samples averaged to one point of the loading curve: noise in the depth would flatten the bend of the
+    /// curve.
     pub calm: usize,
     /// Usual time between two samples, s; 0 where there is no clock.
     pub period_s: f64,

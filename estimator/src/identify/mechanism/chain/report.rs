@@ -1,4 +1,4 @@
-//! What the recordings of a chain show, in the words of a fit.
+//! Report of a chain's parameters from its recordings, as a fit.
 
 use super::OBJECT;
 use super::solve::{FIRM, MODEL, Row, Solution};
@@ -110,7 +110,7 @@ impl Seen<'_> {
     }
 }
 
-/// How well the ends of the recordings are met by a fit that has not seen them.
+/// Quality of the model on the held-out ends of the recordings.
 pub fn quality(early: &Solution, rows: &[Row], best: &Solution, held_out: f64) -> Quality {
     let root = |values: &mut dyn Iterator<Item = f64>| {
         let (sum, n) = values.fold((0.0, 0), |(s, n), v| (s + v * v, n + 1));
