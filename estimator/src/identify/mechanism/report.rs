@@ -29,7 +29,7 @@ pub struct Material<'a> {
     pub terms: &'a [Term],
     /// The solution.
     pub fit: &'a LinearFit,
-    /// Root mean square of each regressor, in the unit of the target.
+    /// Root mean square of each regressor: force per unit of its parameter.
     pub effect: &'a [f64],
     /// Root mean square of the force.
     pub force_rms: f64,
