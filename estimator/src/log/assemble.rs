@@ -101,7 +101,7 @@ fn channels(group: &mut Group, plan: &Plan, left_out: &[usize]) -> Vec<Channel> 
     made
 }
 
-/// What the reader should know about the table itself.
+/// Notes for the reader about the table itself.
 fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) -> Vec<Warning> {
     let note = |kind: &str, column: Option<&str>, text: String| Warning {
         kind: kind.to_owned(),

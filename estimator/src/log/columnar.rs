@@ -1,4 +1,4 @@
-//! From the columns of a container to the table that every format ends in: selection, trials, labels, units.
+//! Conversion of a container's columns to the common table of all formats: selection, trials, labels, units.
 
 use super::errors::LogError;
 use super::plan::{Plan, Use};

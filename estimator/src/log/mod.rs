@@ -52,7 +52,7 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
     load_watched(path, meta, &Watch::none())
 }
 
-/// What looks wrong in the samples of a recording, and where: what [`load`] puts among its warnings.
+/// Faults in the samples of a recording, with their places: [`load`] adds them to its warnings.
 pub fn check(recording: &Recording) -> Vec<Warning> {
     checks::warnings(recording)
 }
@@ -92,7 +92,7 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     }
 }
 
-/// Where the facts about a log come from.
+/// Source of the facts about a log.
 enum Facts<'a> {
     /// The caller.
     Given(&'a Meta),

@@ -1,4 +1,4 @@
-//! What each column of a file is: decided from its header and the sidecar before a single number is read.
+//! Use of each column of a file: decided from its header and the sidecar before a single number is read.
 
 use super::errors::LogError;
 use super::units::{self, Unit};
@@ -23,7 +23,7 @@ pub const PAIRS: [(&str, &str); 12] = [
     ("qb1_rad", "qb2_rad"),
 ];
 
-/// What is done with one column of the file.
+/// Use of one column of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Use {
     /// Parsed as numbers and multiplied by `factor`.

@@ -1,12 +1,13 @@
-//! What has been read so far of a long log, to be drawn while the rest is still coming.
+//! Preview of a long log, to be drawn while the rest is still being read.
 //!
-//! Readers hand in every column as it grows; it is kept as a pyramid of bands only. Names and order are those of the file, values in
-//! the units that the reader has (SI where the format or the header says so): a picture to look at, not a recording to fit.
+//! Readers hand in every column as it grows; it is kept as a pyramid of bands only. Names and order are those of the
+//! file. Values are in the units that the reader has (SI if the format or the header says so): a picture to look at,
+//! not a recording to fit.
 
 use super::pyramid::{Band, Pyramid};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// More columns than this are not previewed: nobody looks at so many curves.
+/// Largest number of columns that are previewed: more curves are unreadable.
 const MOST_TRACKS: usize = 64;
 
 /// Grows in the reader's thread, is looked at from another one.
@@ -33,7 +34,7 @@ pub struct Curve {
     pub samples: usize,
     /// True when `at` counts rows, because no column holds the time.
     pub by_row: bool,
-    /// Middle of each piece (s, or rows) and the band of its values.
+    /// Middle of each block of samples (s, or rows) and the band of its values.
     pub points: Vec<(f64, Band)>,
 }
 
@@ -68,7 +69,7 @@ impl Preview {
         }
     }
 
-    /// The picture of what is there, in at most `pieces` pieces a curve.
+    /// The picture of the rows so far, in at most `pieces` points a curve.
     pub fn curves(&self, pieces: usize) -> Vec<Curve> {
         let groups = self.lock();
         let several = groups.len() > 1;

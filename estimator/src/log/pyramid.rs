@@ -1,11 +1,11 @@
-//! Smallest and largest values of a long channel at every zoom: what a plot reads instead of the samples.
+//! Smallest and largest values of a long channel at every zoom: a plot reads them instead of the samples.
 
 use std::ops::Range;
 
 /// Samples in a block of the lowest level, and blocks in a block of the next.
 const FAN: usize = 16;
 
-/// Smallest and largest value of a stretch.
+/// Smallest and largest value of a range of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     /// Smallest.
@@ -49,7 +49,7 @@ impl Band {
     }
 }
 
-/// One column of pixels of a plot: where it starts and what the channel does in it.
+/// One column of pixels of a plot: its time, and the band of the channel in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Time in the middle of the pixel, s.
@@ -161,7 +161,7 @@ impl Pyramid {
         grain
     }
 
-    /// The smallest piece of at least `samples` samples that [`Pyramid::whole`] can answer for without the samples.
+    /// The smallest number of samples, at least `samples`, that [`Pyramid::whole`] can answer for without the samples.
     pub fn granule(&self, samples: usize) -> usize {
         samples.max(1).div_ceil(FAN) * FAN
     }
@@ -173,7 +173,7 @@ impl Pyramid {
         self.band(range, &|_| open)
     }
 
-    /// What a plot `pixels` wide shows of the samples between `from_s` and `to_s`, s: one band a pixel that has a sample in
+    /// Bands of the samples between `from_s` and `to_s`, s, for a plot `pixels` wide: one a pixel that has a sample in
     /// it. `time_s` and `values` are those the pyramid was made of. Work: O(pixels · log samples).
     pub fn query(&self, time_s: &[f64], values: &[f64], from_s: f64, to_s: f64, pixels: usize) -> Vec<Pixel> {
         let read = |range: Range<usize>| Band::of(&values[range]);

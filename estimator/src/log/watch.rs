@@ -3,7 +3,7 @@
 use super::preview::Preview;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a caller gives along to see how far a read has come and to end it.
+/// Watch of a caller over a long read: it learns the progress and can end it.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// Told the share that is done, 0 … 1, never less than before; from any thread, about once a megabyte.
@@ -18,7 +18,7 @@ pub struct Watch<'a> {
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Watch<'_> {
-    /// Nobody looks and nobody ends it.
+    /// No watcher: the read is neither shown nor ended.
     pub fn none() -> Watch<'static> {
         Watch { progress: &|_| {}, cancelled: &NEVER, preview: None }
     }

@@ -36,11 +36,11 @@ pub fn gaps(time_s: &[f64]) -> Vec<usize> {
     steps.filter(|(_, pair)| pair[1] - pair[0] > above_s).map(|(i, _)| i).collect()
 }
 
-/// What the time column shows.
+/// Warnings about the time column.
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
     let Some(time) = &recording.time_s else { return Vec::new() };
     let Some((median, high)) = usual_steps(time) else { return Vec::new() };
-    // On an uneven clock only what is far outside its own spread counts.
+    // On an uneven clock only a step far outside its own spread counts.
     let even = high <= 1.3 * median;
     let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
     let gap_above = (GAP_PERIODS * median).max(5.0 * high);

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Largest attachment that is read, bytes: a world takes thousands.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// What is attached under a name; `None` where nothing is, the file is no MCAP file, or it breaks off before.
+/// Attachment with a name; `None` if there is none, the file is no MCAP file, or it breaks off before.
 ///
 /// # Errors
 /// The file cannot be read.

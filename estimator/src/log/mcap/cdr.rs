@@ -1,7 +1,8 @@
 //! ROS 2 messages in CDR, as their `ros2msg` schema lays them out.
 //!
 //! Plain CDR version 1 (OMG DDSI-RTPS 10.2): four bytes of header, the second of which tells the byte order, then every
-//! primitive aligned to its own size from the end of the header; a string has its length with the closing zero before it.
+//! primitive aligned to its own size from the end of the header. A string has its length with the closing zero before
+//! it.
 
 use super::rosmsg::{Count, Definitions, Field, Kind, Primitive};
 use super::topic::{MAX_DEPTH, MAX_ITEMS, Topic};

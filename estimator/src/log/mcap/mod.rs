@@ -35,16 +35,17 @@ pub(in crate::log) const STREAMED: &str = "streamed";
 pub(in crate::log) const COLUMNS: &str = "touchstone.columns";
 pub(in crate::log) const CLOCKLESS: &str = "touchstone.clockless";
 
-/// The table may take this much memory in any case …
+/// Memory that the table may take in any case, bytes.
 const TABLE_BYTES: u64 = 256 << 20;
-/// … and so many times the size of the file: real logs stay far below, packed nonsense does not.
+/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
+/// not.
 const TABLE_TIMES_FILE: u64 = 32;
-/// The memory is asked for after so many messages.
+/// Number of messages after which the memory is checked.
 const CHECK_EVERY: u64 = 1024;
-/// … and what has been decoded is shown after so many.
+/// Number of messages after which the decoded values are shown.
 const SHOW_EVERY: u64 = 8192;
 
-/// How the messages of a channel are read.
+/// Decoder of the messages of a channel.
 enum Decoder {
     Json,
     Protobuf(Box<protobuf::Shape>),

@@ -6,17 +6,17 @@ use std::collections::HashMap;
 
 /// A column's name in the program, and its full name `topic.field`.
 pub struct Name {
-    /// What it is called.
+    /// Name in the table.
     pub short: String,
-    /// What it may be called as well.
+    /// Full name, which is accepted as well.
     pub full: String,
 }
 
 /// Names of every field of every source.
 ///
-/// The full name is `topic.field.part`, as in Foxglove's message paths. It is shortened to the field where that is plain: in
-/// files of our own, in a file with a single flat topic, and where a field has a name of the program (`fx1_N`) that no other
-/// topic has.
+/// The full name is `topic.field.part`, as in Foxglove's message paths. It is shortened to the field in files of our
+/// own, in a file with a single flat topic, and for a field with a name of the program (`fx1_N`) that no other topic
+/// has.
 pub fn of(sources: &[Source]) -> Vec<Vec<Name>> {
     let mut count: HashMap<&str, usize> = HashMap::new();
     for field in sources.iter().flat_map(|s| &s.topic.fields) {

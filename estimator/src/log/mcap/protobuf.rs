@@ -7,7 +7,7 @@ use super::topic::{MAX_DEPTH, MAX_FIELDS, MAX_ITEMS, Topic};
 use prost_reflect::{Cardinality, DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
 use std::collections::HashSet;
 
-/// What a field's value becomes.
+/// Destination of a field's value.
 enum Node {
     /// A number in this column.
     Number(Kind, usize),
@@ -93,7 +93,7 @@ impl Shape {
         Ok(())
     }
 
-    /// What the message left out because it is zero.
+    /// Adds the values that the message left out because they are zero.
     fn fill(&self, topic: &mut Topic) {
         for &column in &self.zeros {
             topic.number(column, 0.0);

@@ -17,9 +17,10 @@ use std::path::Path;
 /// The table, the sidecar that the file carries, and what is to be said about the file.
 pub type Columns = (Raw, Option<String>, Vec<Warning>);
 
-/// The table may take this much memory in any case …
+/// Memory that the table may take in any case, bytes.
 const TABLE_BYTES: u64 = 256 << 20;
-/// … and so many times the size of the file: real logs stay far below, packed nonsense does not.
+/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
+/// not.
 const TABLE_TIMES_FILE: u64 = 32;
 
 /// Reads the columns of a Parquet file.
