@@ -1,4 +1,4 @@
-//! Everything that is collected of one object that is carried.
+//! Data collected about one carried object.
 
 use super::block::pull::{Hold, Left};
 use super::change::ChangeDetector;
@@ -45,7 +45,7 @@ pub(super) struct Grasp {
     pub(super) width: Recursive<3>,
     pub(super) reading: Store<READING>,
     pub(super) bound: Option<(f64, f64)>,
-    /// What else holds it.
+    /// Anything else that holds it.
     pub(super) hold: Hold,
     /// Mean and mean square of the grip, N and N².
     pub(super) grip: [f64; 2],

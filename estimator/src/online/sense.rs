@@ -1,4 +1,4 @@
-//! What the hand is doing now: the rules of the task on delayed signals, with biases and thresholds learned on the way.
+//! Present state of the hand: the rules of the task on delayed signals, with biases and thresholds learned on the way.
 
 use super::filter::{Filters, Sample};
 use super::recursive::Recursive;
@@ -47,7 +47,7 @@ pub(super) struct Sense {
     least: [f64; 4],
     most: [f64; 4],
     quiet_since_s: f64,
-    /// When the bias was seen last, s.
+    /// Time of the last update of the bias, s.
     learned_s: f64,
 }
 
@@ -130,8 +130,9 @@ impl Sense {
         now
     }
 
-    /// A bias that drifted while something was held would hide that the hand is free again. What is free is quiet: over a while no
-    /// force moves beyond the noise, and there is hardly any grip. Its mean is the bias then, wherever it is.
+    /// Finds free motion by its quiet, because a bias that drifted during a hold would hide that the hand is free
+    /// again. In free motion no force moves beyond the noise for a while, and there is hardly any grip. The mean is the
+    /// bias then, whatever its value.
     fn find_rest(&mut self, time_s: f64, raw: [f64; 4]) {
         const QUIET_S: f64 = 0.4;
         const NOISES: f64 = 8.0;

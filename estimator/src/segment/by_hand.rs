@@ -21,7 +21,7 @@ pub fn put(mut found: Segmentation, recording: &Recording, time_s: &[f64]) -> Se
     found
 }
 
-/// What a sidecar says about a segmentation as it is.
+/// Segments of a segmentation as a sidecar states them.
 pub fn stated(found: &Segmentation) -> Vec<Segment> {
     let of =
         |i: &Interval| Segment { t0: i.t0, t1: i.t1, state: i.state.name().to_owned(), subtask: i.subtask.clone() };

@@ -1,8 +1,8 @@
 //! Stage 2 by a hidden Markov model that starts from the rules' result (thesis, chapter 3.2, names it as the alternative).
 //!
-//! States are those that the rules saw for a while; their Gaussians start at what the rules called so and are refined by a few
-//! steps of Baum–Welch under a prior that keeps them near. The rules stay the meaning: a state whose mean no longer satisfies its
-//! own rule goes back to where it started, and a warning says so.
+//! States are those that the rules saw for a while. Their Gaussians start at the samples of the rules and are refined
+//! by a few steps of Baum–Welch under a prior that keeps them near. The rules stay the meaning: a state whose mean no
+//! longer satisfies its own rule goes back to its start, and a warning says so.
 
 use super::evidence::Evidence;
 use super::subtasks::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
@@ -20,7 +20,7 @@ const CORRELATION_S: f64 = 0.03;
 const DWELL_S: f64 = 0.5;
 /// In how many such stays the transitions of the prior were seen.
 const PRIOR_STAYS: f64 = 10.0;
-/// What the rules' samples weigh in the prior, against the same samples in training.
+/// Weight of the rules' samples in the prior, against the same samples in training.
 const PRIOR_SHARE: f64 = 0.5;
 /// Least effective samples of the prior of a state.
 const PRIOR_LEAST: f64 = 5.0;
@@ -143,7 +143,7 @@ fn shown(time_s: &[f64], smooth: &[SystemState], channels: usize) -> Vec<SystemS
     states
 }
 
-/// Where a state starts, and in how many samples the rules saw it.
+/// Start of a state, and the number of samples in which the rules saw it.
 struct Start {
     emission: Gaussian,
     samples: usize,
@@ -240,14 +240,15 @@ impl Trainer<'_> {
         Ok((model, warnings.collect()))
     }
 
-    /// Whether a state's mean satisfied its rule at the start and no longer does.
+    /// True if a state's mean satisfied its rule at the start and no longer does.
     fn strayed(&self, state: usize, model: &Model) -> bool {
         let fits = |g: &Gaussian| LEVELS.iter().any(|level| (self.judge)(g.mean(), *level) == self.states[state]);
         fits(&self.starts[state].emission) && !fits(&model.emissions[state])
     }
 }
 
-/// How readily one state follows another: what contact does by itself is likely, the rest must be shown by the data.
+/// Affinity of one state to another: transitions by the nature of contact are likely, the rest must be shown by the
+/// data.
 fn affinity(states: &[SystemState]) -> Vec<f64> {
     use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, Penetration, SlidingOnGround};
     let likely = |a: SystemState, b: SystemState| match (a, b) {
@@ -327,8 +328,8 @@ mod tests {
 
     #[test]
     fn a_state_that_training_moves_against_its_rule_is_put_back_and_said() {
-        // What the rules called turning was seen for a moment; a level that is nearer to it than to rest, but still below its
-        // threshold, is there for long and draws its Gaussian down.
+        // The rules' turning was seen for a moment. A level that is nearer to it than to rest, but still below its
+        // threshold, lasts for long and draws its Gaussian down.
         let at = |level: f64, samples| {
             let emission =
                 Gaussian::new(vec![level], Covariance::Full(nalgebra::DMatrix::identity(1, 1) * 0.04), &[0.04]);

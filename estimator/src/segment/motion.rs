@@ -89,8 +89,8 @@ impl Motion {
     }
 }
 
-/// Takes out runs of a sign that are shorter than `least_s` and have others on both sides: those without load first, because a load
-/// passes through zero while a crank is turned.
+/// Takes out runs of a sign that are shorter than `least_s` and have others on both sides. Runs without load come
+/// first, because a load passes through zero while a crank is turned.
 fn without_short(time_s: &[f64], signs: &mut [Sign], least_s: f64) {
     for (short, other) in [(Sign::Zero, Sign::Plus), (Sign::Plus, Sign::Zero)] {
         let mut first = 0;

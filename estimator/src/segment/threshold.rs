@@ -89,7 +89,7 @@ impl Levels {
         }
     }
 
-    /// What the reader should know about the forces at rest.
+    /// Warnings about the forces at rest.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.free.is_empty() {
@@ -113,8 +113,8 @@ impl Levels {
     }
 }
 
-/// Whether the least loaded samples are a phase without contact: they stay together for a while, and their mean is small
-/// against what the hand does otherwise.
+/// True if the least loaded samples are a phase without contact: they stay together for a while, and their mean is
+/// small against the other forces of the hand.
 fn is_free_phase(free: &[usize], signals: &TaskSignals, bias_n: [Vec2; 2], usual_load_n: f64) -> bool {
     const LEAST_S: f64 = 0.25;
     const LARGEST_BIAS: f64 = 0.35;
@@ -156,7 +156,7 @@ pub fn choose(signals: &TaskSignals, levels: &Levels) -> Thresholds {
     .thresholds()
 }
 
-/// What signals usually reach while something happens, and their noise.
+/// Usual size of signals while something happens, and their noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Usual {
     /// Standard deviation of a force channel in free motion, N.

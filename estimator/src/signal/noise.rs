@@ -1,4 +1,4 @@
-//! How noisy a channel is, from its own high-frequency part.
+//! Noise of a channel, from its own high-frequency part.
 
 use std::f64::consts::PI;
 
@@ -89,12 +89,13 @@ pub fn quantum(values: &[f64]) -> f64 {
     if 10 * on_grid >= values.len() { smallest } else { 0.0 }
 }
 
-/// What resolution alone leaves unknown of the mean of a channel at rest, as a standard deviation, in the channel's unit.
+/// Standard deviation of the mean of a channel at rest by resolution alone, in the channel's unit.
 ///
-/// The mean of a signal that is rounded to steps of `step` is off by at most half a step, unless noise carries it over several
-/// steps: dither of standard deviation σ leaves the variance Σₖ `step²`/(2π²k²) exp(−4π²k²σ²/`step²`), averaged over where in the
-/// step the signal lies (Widrow & Kollár 2008, ch. 4: the characteristic function at multiples of 2π/`step`). Without noise this
-/// is `step²`/12. `noise`: standard deviation of the channel as [`white_noise`] gives it, rounding included.
+/// The mean of a signal that is rounded to steps of `step` is off by at most half a step, unless noise carries it over
+/// several steps. Dither of standard deviation σ leaves the variance Σₖ `step²`/(2π²k²) exp(−4π²k²σ²/`step²`), averaged
+/// over the place of the signal in the step (Widrow & Kollár 2008, ch. 4: the characteristic function at multiples of
+/// 2π/`step`). Without noise this is `step²`/12. `noise`: standard deviation of the channel from [`white_noise`],
+/// rounding included.
 pub fn resolution_error(step: f64, noise: f64) -> f64 {
     const HARMONICS: u32 = 40;
     if step <= 0.0 {

@@ -1,4 +1,4 @@
-//! What is known of a carried object, as parameters of a fit.
+//! Estimates of a carried object, as parameters of a fit.
 
 use super::super::grasp::Grasp;
 use super::super::leak::{LeakAnswer, Verdict};

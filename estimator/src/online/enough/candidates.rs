@@ -1,4 +1,4 @@
-//! What other motions would add to the information: their rows, made by the same laws.
+//! Information that other motions would add: their rows, made by the same laws.
 
 use super::super::crank::{Found, Rubbing};
 use super::super::grasp::Grasp;
@@ -153,11 +153,11 @@ pub(in super::super) fn crank_problems(
     vec![rubbing(&turned), round(&Round { information, variance, seconds, normal_n, force_n })]
 }
 
-/// What was seen of a crank's laws.
+/// Information about a crank's laws.
 pub(super) struct Turned {
     /// Information of the laws' columns.
     pub(super) information: DMatrix<f64>,
-    /// What rows are divided by to become information.
+    /// Variance by which rows are divided to become information.
     pub(super) variance: f64,
     /// For so long, s.
     pub(super) seconds: f64,
@@ -174,11 +174,11 @@ pub(super) struct Turned {
     pub(super) free_row_s: f64,
 }
 
-/// What was seen of its circle.
+/// Information about its circle.
 pub(super) struct Round {
     /// Information of radius, centre and give.
     pub(super) information: DMatrix<f64>,
-    /// What rows are divided by to become information.
+    /// Variance by which rows are divided to become information.
     pub(super) variance: f64,
     /// For so long, s.
     pub(super) seconds: f64,

@@ -1,10 +1,10 @@
-//! How much is known of every parameter, how much longer the same motion would take, and which motion is missing.
+//! Accuracy of every parameter, the time that the same motion would still need, and the motion that is missing.
 //!
-//! What was collected is an information matrix (the inverse of the covariance, errors as reported). A candidate motion adds rows of its
-//! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
-//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing there. Where several are needed, the one that
-//! all of them together could least do without is named first. What has no such matrix gets the motion that its fit takes it from
-//! ([`usual`]), without seconds.
+//! The collected data are an information matrix (the inverse of the covariance, errors as reported). A candidate motion
+//! adds rows of its own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy
+//! follow. The missing motion is the one that gets there clearly sooner than continuing as before. Names of parameters
+//! decide nothing there. If several motions are needed, the one that all of them together could least do without is
+//! named first. A parameter without such a matrix gets the motion that its fit uses ([`usual`]), without seconds.
 
 mod candidates;
 mod recorded;
@@ -22,11 +22,11 @@ use serde::{Deserialize, Serialize};
 
 /// Nobody waits longer than this for a number, s.
 const LONGEST_S: f64 = 1800.0;
-/// Going on as before is fine when it takes no longer than this, s …
+/// Time within which continuing as before is fine, s.
 const SOON_S: f64 = 8.0;
-/// … or than so many times the best other motion.
+/// Least ratio of the time of continuing as before to that of the best other motion for that motion to be named.
 const CLEARLY: f64 = 2.0;
-/// Where nothing gets there alone, a motion counts by what it does in so many seconds.
+/// Time over which motions are compared if none gets there alone, s.
 const TRIAL_S: f64 = 5.0;
 /// It must shrink the error by this share to be named.
 const HELPS: f64 = 0.1;
@@ -92,7 +92,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// What to do, as an order.
+    /// The motion as an order.
     pub fn words(self) -> &'static str {
         match self {
             Self::GoOn => "go on as before",
@@ -246,9 +246,9 @@ fn one(parameter: &Parameter, all: &[Parameter], place: Option<(&Problem, usize)
 fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>) -> (Option<f64>, Option<Missing>) {
     let still = DMatrix::zeros(problem.before.len(), problem.before.len());
     let now = problem.variance(column, &still, 0.0);
-    // What the recursion counts and what is reported may differ by errors that no row shows: predictions keep that ratio.
+    // The recursion and the report may differ by errors that no row shows: predictions keep that ratio.
     let ratio = error.map_or(1.0, |e| e * e / now);
-    // Before there is a value nobody can say how well it must be known: ten times better than now.
+    // Ten times better than now, before there is a value to set the wanted accuracy by.
     let wanted = goal.map_or(0.01 * now, |g| g * g / ratio);
     let times: Vec<Option<f64>> = problem.motions.iter().map(|(_, m)| problem.seconds(column, m, wanted)).collect();
     let same = times.first().copied().flatten();
@@ -274,7 +274,7 @@ fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>
     }
 }
 
-/// Where no motion helps alone: the one that all of them together could least do without.
+/// Motion that all of them together could least do without, if no motion helps alone.
 fn needed_among_all(problem: &Problem, column: usize, now: f64) -> Option<Motion> {
     let others = &problem.motions[1.min(problem.motions.len())..];
     let n = problem.before.len();

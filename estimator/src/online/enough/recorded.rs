@@ -1,6 +1,6 @@
-//! What recordings of a crank hold, for those that the estimator beside the servo cannot follow: one tool on the handle has no grip that
-//! tells when it is held. The circle is that of the fit; rows are made by the same laws; how much a row counts follows from the errors
-//! that the fit states.
+//! Information in recordings of a crank that the estimator beside the servo cannot follow: one tool on the handle has
+//! no grip to tell when it is held. The circle is that of the fit; rows are made by the same laws; the weight of a row
+//! follows from the errors that the fit states.
 
 use super::super::crank::{Found, Rubbing};
 use super::Problem;
@@ -71,7 +71,7 @@ pub(in super::super) fn crank_problems_of(recordings: &[Recording], fit: &Fit, f
             pull_n: laws.mean_size(),
             speed_m_s,
             radius_m,
-            // What the fit says of the weight holds the bias already.
+            // The fit's error of the weight contains the bias already.
             bias_error: of_law(WEIGHT).map(|e| 0.3 * e),
             bias_noise_n: 0.0,
             free_row_s,
