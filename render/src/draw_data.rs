@@ -10,7 +10,7 @@ use crate::{Camera, vec2};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec4};
 
-/// What is drawn over what.
+/// Order of drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Solids of the world.
@@ -99,7 +99,7 @@ impl DrawData {
         (self.globals.map_from_world, self.globals.map) = (light.map_from_world, light.measures);
     }
 
-    /// How many shapes there are: solids, strokes.
+    /// Number of shapes: solids, strokes.
     pub fn counts(&self) -> [usize; 2] {
         [self.solids.len(), self.strokes.len() + self.overlay_strokes.len()]
     }

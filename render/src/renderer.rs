@@ -1,4 +1,4 @@
-//! What lives as long as the device: pipelines and unit meshes. One renderer draws any number of [`Frame`]s.
+//! Resources that live as long as the device: pipelines and unit meshes. One renderer draws any number of [`Frame`]s.
 
 use crate::draw_data::{DrawData, Layer};
 use crate::frame::Frame;
@@ -14,7 +14,7 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Samples a pixel: every driver can do four.
 pub const SAMPLES: u32 = 4;
 
-/// What lies in front of everything has the nearest part of the depth range to itself.
+/// Nearest part of the depth range, reserved for shapes in front of everything.
 const OVERLAY_DEPTH: f32 = 0.05;
 
 /// Cells of the background; see `background.wgsl`.

@@ -1,6 +1,6 @@
-//! What the maps of the light are made of: numbers, or bytes where a driver cannot draw numbers (OpenGL without targets of floats).
+//! Format of the light maps: numbers, or bytes if a driver cannot draw numbers (OpenGL without targets of floats).
 
-/// How a map holds what is nearest at each place.
+/// Format of the nearest surface at each place of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapFormat {
     /// One number a place.
