@@ -1,4 +1,4 @@
-//! What became of the objects: the recorded fingers are moved through the world that was touched.
+//! Results for the objects: the recorded fingers are moved through the world that was touched.
 
 mod blocks;
 mod crank;
