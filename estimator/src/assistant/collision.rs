@@ -1,4 +1,4 @@
-//! Will what moves run into something, and how soon? Outlines are moved on at their present velocities until they meet.
+//! Time until moving things run into something. Outlines are moved on at their present velocities until they meet.
 
 use haptics::Vec2;
 use haptics::world::{Rect, State, Surface, World};
@@ -6,13 +6,13 @@ use serde::Serialize;
 
 /// Softer than this is a touch, m/s.
 pub const GENTLE_M_S: f64 = 0.06;
-/// A person who sees something coming needs so long, s.
+/// Reaction time of a person who sees something coming, s.
 const REACTION_S: f64 = 0.2;
-/// … and brakes like this, m/s².
+/// Deceleration with which a person then brakes, m/s².
 const BRAKE_M_S2: f64 = 1.0;
 /// As good as touching, m.
 const TOUCH_M: f64 = 3e-4;
-/// What is nearer than this touches already, m.
+/// Distance below which things touch already, m.
 const CONTACT_M: f64 = 5e-4;
 /// Steps of a search.
 const STEPS: usize = 24;
@@ -20,13 +20,13 @@ const STEPS: usize = 24;
 /// Something is about to hit something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Collision {
-    /// Where on what moves, m in the world.
+    /// Point of the moving thing, m in the world.
     pub from_m: Vec2,
-    /// Where it will hit, m in the world.
+    /// Point of the obstacle, m in the world.
     pub to_m: Vec2,
-    /// When, s from now, and its standard error by the sensors and the lateness of the picture.
+    /// Time until the impact, s, and its standard error by the sensors and the lateness of the picture.
     pub in_s: (f64, f64),
-    /// How fast, m/s.
+    /// Speed of the impact, m/s.
     pub speed_m_s: f64,
 }
 
@@ -169,7 +169,7 @@ fn things(world: &World, state: &State, held: Option<usize>) -> (Vec<Thing>, Vec
     (movers, others)
 }
 
-/// What stands fast, and what turns about an axis.
+/// Things that are fixed, or turn about an axis.
 fn fixed(world: &World, state: &State) -> Vec<Thing> {
     let still = |outline: Outline, surface: Surface| Thing { outline, velocity_m_s: Vec2::zeros(), surface };
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! What forces and screws add to a path: whether anything guides it, and the motion it allows.
+//! Evidence of forces and screws about a path: a guide, if there is one, and the motion it allows.
 
 use super::decide::Context;
 use super::existence::{Rows, existence};

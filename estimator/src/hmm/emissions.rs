@@ -13,7 +13,8 @@ pub(super) type Lanes = [f64; LANES];
 /// Samples that one task works on: their channels stay in the processor's near memory.
 const TASK: usize = 1024;
 
-/// What to compute, and how rows of states are laid out: `stride` numbers a sample, of which the first ones are filled.
+/// Task of a computation, and the layout of rows of states: `stride` numbers a sample, of which the first ones are
+/// filled.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     /// The model.

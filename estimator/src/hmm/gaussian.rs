@@ -32,8 +32,8 @@ pub struct Gaussian {
 }
 
 impl Gaussian {
-    /// A distribution whose variance in no direction is below that of independent channels with variances `floor` (positive): a
-    /// channel that never changes does not make its density infinite.
+    /// A distribution whose variance in any direction is at least that of independent channels with variances `floor`
+    /// (positive): a channel that never changes does not make its density infinite.
     ///
     /// Raising the small eigenvalues (in units of the floor) is the maximum of the likelihood under that bound, so that training
     /// with a floor still never loses likelihood. Numbers that are not finite count as the floor.

@@ -80,7 +80,7 @@ struct Walk {
     /// log probability of the best path to each state; before the first sample log π.
     best: Row,
     begun: bool,
-    /// Where the best path to each state came from, for every sample.
+    /// Predecessor on the best path to each state, for every sample.
     came_from: Vec<[u8; LANES]>,
 }
 

@@ -1,4 +1,4 @@
-//! Room for long columns in pages of two megabytes, if the system has them. A million rows of twelve channels are 24
+//! Room for long columns in pages of two megabytes, if the system has them. Twelve channels of a million rows take 24
 //! 000 ordinary pages, and getting each of them from the system costs as long as parsing a thousand numbers.
 
 /// Columns with room for less are left to ordinary pages: a large page that is half empty is wasted memory.

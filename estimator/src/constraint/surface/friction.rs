@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 const SLIDING_SHARE: f64 = 0.4;
 /// Fewer rows tell nothing.
 const LEAST_ROWS: usize = 20;
-/// What Coulomb's law gets wrong about a compliant contact, as a share of the coefficient.
+/// Model error of Coulomb's law for a compliant contact, as a share of the coefficient.
 const MODEL_SHARE: f64 = 0.02;
 /// Half of the chord that gives direction and speed, as a share of the samples, and at least so many samples.
 const CHORD_SHARE: f64 = 0.005;

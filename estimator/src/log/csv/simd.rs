@@ -18,7 +18,7 @@ use std::arch::x86_64::{
 
 /// Characters that are looked at: a longer cell is no plain number.
 const WINDOW: usize = 32;
-/// That number with the character before them, and the mark behind.
+/// `WINDOW` with the character before it, and the mark behind.
 pub const REACH: usize = WINDOW + 2;
 
 /// 10⁰ … 10²², all exact, and their inverses, rounded.

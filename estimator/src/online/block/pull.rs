@@ -238,7 +238,7 @@ fn meet(lines: &[Line], noise_n: f64) -> Option<(Vec2, Matrix2<f64>)> {
     /// A first guess of the distance; two more rounds take what came out. Nothing is tied nearer than the least.
     const FAR_M: f64 = 0.05;
     const LEAST_FAR_M: f64 = 0.01;
-    /// Least size of the rest, in multiples of the effect of noise alone.
+    /// Least information in the weakest direction, in multiples of the part by noise alone.
     const BEYOND_NOISE: f64 = 1.0;
     if lines.len() < LEAST {
         return None;
