@@ -43,7 +43,7 @@ const GUIDE_ALONG: f64 = 0.3;
 const GUIDE_ALONG_CROSSING: f64 = 0.6;
 /// Passes along one guide lie this close to each other, as a share of the extent.
 const SAME_SHARE: f64 = 0.012;
-/// A compact path may miss the recorded one by so many times its noise, or by this share of its extent.
+/// Largest distance of a compact path from the recorded one, in multiples of its noise, or as a share of its extent.
 const COMPACT_NOISES: f64 = 1.2;
 const COMPACT_SHARE: f64 = 2e-3;
 /// A path in space that leaves its plane by more than this share of its extent is not called flat.
@@ -52,7 +52,7 @@ const PLANE_SHARE: f64 = 0.01;
 const SCREW_ERRORS: f64 = 5.0;
 /// A constrained grip may leave its path by this much, m: less is no sign of freedom.
 const GRIP_SLIP_M: f64 = 2.5e-3;
-/// Stiffness of a hand of which nothing is known, N/m: what is as stiff counts as rigid.
+/// Stiffness of an unknown hand, N/m: a path as stiff as this counts as rigid.
 const RIGID_N_M: f64 = 2000.0;
 
 /// Knowledge about a path beside its points.

@@ -28,7 +28,7 @@ const SIDE_SHARE: f64 = 0.05;
 /// Quantile of the normal distribution for nineteen of twenty, and for half the rate of false alarms on two means.
 const SEEN_95: f64 = 1.645;
 
-/// Motion and force of what is held, at rows that do not share samples of a filter.
+/// Motion and force of the held object, at rows that do not share samples of a filter.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
     /// Velocity, m/s, or any vector along the path where there is no clock.
@@ -138,7 +138,7 @@ pub fn sentence(found: &Existence) -> String {
     }
 }
 
-/// Weight and inertia from the force along the motion, and what they leave in both directions.
+/// Weight and inertia from the force along the motion, and the residuals in both directions.
 fn unexplained(rows: &Rows) -> Option<Unexplained> {
     let tangent: Vec<Vec2> = rows.velocity.iter().map(Vec2::normalize).collect();
     let normal: Vec<Vec2> = tangent.iter().map(|t| Vec2::new(-t.y, t.x)).collect();
@@ -173,7 +173,7 @@ fn unexplained(rows: &Rows) -> Option<Unexplained> {
     })
 }
 
-/// Root mean square over the rows of what the errors of weight and inertia do across the motion, N.
+/// Root mean square over the rows of the error across the motion by the errors of weight and inertia, N.
 fn model_error(fit: &LinearFit, side: &[Vec<f64>], model: usize) -> f64 {
     let size = |column: &[f64]| (column.iter().map(|c| c * c).sum::<f64>() / column.len() as f64).sqrt();
     let parts = (0..model).map(|j| {

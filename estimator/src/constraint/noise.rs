@@ -127,7 +127,7 @@ fn cosine(n: usize, k: usize) -> Vec<f64> {
     (0..n).map(|i| size * (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos()).collect()
 }
 
-/// Orthonormal basis of what the fit can absorb, the direction asked about last and orthogonal to the others.
+/// Orthonormal basis of the space that the fit can absorb, the direction in question last and orthogonal to the others.
 fn basis(points: &[Vec2], arc: &Arc, extent_m: f64, direction: Direction) -> DMatrix<f64> {
     let rows: Vec<_> = points.iter().map(|p| gradient(arc, *p, extent_m)).collect();
     let order: &[usize] = match direction {

@@ -28,7 +28,7 @@ pub struct Retrace {
     pub apart_m: f64,
     /// Places where the path crosses itself.
     pub crossings: usize,
-    /// Root mean square over the meetings of the mean of both passes' distance from the arc, m: what they have in common.
+    /// Root mean square over the meetings of the mean of both passes' distance from the arc, m: their common part.
     pub common_m: f64,
     /// Root mean square of half the difference of both passes' distance from the arc, m.
     pub differing_m: f64,

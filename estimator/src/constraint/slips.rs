@@ -107,7 +107,7 @@ fn best(columns: &[Vec<f64>], stepping: &[usize], deviation: &[f64], least: f64)
     })
 }
 
-/// Correlation of neighbouring residuals, corrected for what fitting and few samples take from it.
+/// Correlation of neighbouring residuals, corrected for the bias by fitting and by few samples.
 fn memory(residuals: &[f64], parameters: usize) -> f64 {
     let power: f64 = residuals.iter().map(|r| r * r).sum();
     let product: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();

@@ -19,7 +19,7 @@ const WORTH: f64 = 0.9;
 /// The fitted curve.
 #[derive(Clone, Debug)]
 pub struct Spline {
-    /// The curve; what it does to a body is not meant here.
+    /// The curve; its forces on a body are not meant here.
     pub curve: Guide,
     /// Root mean square and largest distance of the points, m.
     pub rms_m: f64,

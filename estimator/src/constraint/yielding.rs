@@ -36,7 +36,7 @@ pub fn judge(give_m_n: f64, error: f64, hand: &Manipulator) -> (Option<bool>, Op
     let (low, high) = (give - SIDES * error, give + SIDES * error);
     let limit = 1.0 / hand.stiffness_n_m;
     let seen = give > SEEN * error;
-    // A give that is only known worse than the hand's own says nothing, however it comes out.
+    // A give that is known worse than the hand's own says nothing, whatever its value.
     let rigid = if high < limit && SIDES * error < limit {
         Some(true)
     } else if seen && low > limit {

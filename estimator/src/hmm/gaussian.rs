@@ -20,7 +20,7 @@ pub(super) enum Whitening<'a> {
     Rows(&'a [f64]),
 }
 
-/// A normal distribution with what its density needs.
+/// A normal distribution with the precomputed terms of its density.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaussian {
     mean: Vec<f64>,

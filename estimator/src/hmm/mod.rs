@@ -29,7 +29,7 @@ pub use viterbi::{path_log_probability, viterbi};
 /// Most states of a model: paths are kept in one byte a sample.
 pub const MOST_STATES: usize = 255;
 
-/// λ: how states follow each other and what is measured in each.
+/// λ: the chain of the states, and the emission of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// A and π.

@@ -45,7 +45,7 @@ impl Resampled {
         &self.covariance
     }
 
-    /// With what is not known of each value beside the draws, independent of them.
+    /// Adds an error of each value that is not in the draws, independent of them.
     #[must_use]
     pub fn widened(mut self, errors: &[f64]) -> Self {
         for (j, error) in errors.iter().enumerate().take(self.errors.len()) {
@@ -54,7 +54,7 @@ impl Resampled {
         Self::new(self.covariance)
     }
 
-    /// With every value (and its error) so many times as large.
+    /// Multiplies every value (and its error) by a factor.
     #[must_use]
     pub fn scaled(self, by: &[f64]) -> Self {
         let p = self.errors.len();
@@ -187,7 +187,7 @@ fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
 }
 
-/// Rows of a block among `n` rows that say as much as so many independent ones.
+/// Length of a block among `n` rows with this number of effective samples.
 fn block_length(n: usize, effective_samples: f64) -> usize {
     let apart = (n as f64 / effective_samples.max(1.0)).max(1.0);
     ((TIMES * apart).ceil() as usize).min(n / LEAST_BLOCKS).max(1)

@@ -57,7 +57,7 @@ pub fn fit_by(
     Ok((fit, seen.segmentation))
 }
 
-/// A segmentation, what was asked for, and what is held by it.
+/// A segmentation, the options it was made with, and the held samples.
 struct Segmented {
     asked: (Method, Option<Thresholds>, Vec<Segment>),
     found: Segmentation,

@@ -108,7 +108,7 @@ pub(super) struct PadFit {
     pub(super) line: (f64, f64),
 }
 
-/// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
+/// Half of the 95 % range of an even distribution, over 1.96: its weight beside errors that are normal.
 pub(super) const EVEN: f64 = 0.95 / 1.96;
 /// Give of a pad in shear over that under pressure, if nothing shows it, with its error. The shear stiffness is taken
 /// as evenly distributed between 0.3 and 1.1 of the normal one, for soft pads of foam and rubber. These are the mean of
@@ -135,7 +135,7 @@ enum Bend {
 }
 
 impl Bend {
-    /// Depth over force of a pad of 1 N/m, which any other one gives in proportion to.
+    /// Depth over force of a pad of 1 N/m; any other one yields in proportion.
     fn cushion(self, number: f64) -> Cushion {
         let linear = Cushion::linear(1.0);
         match self {
@@ -154,7 +154,7 @@ impl Bend {
     }
 }
 
-/// One way in which pads may give, with what speaks for it.
+/// One way in which pads may yield, with its likelihood.
 struct Model {
     fit: Values,
     columns: Vec<Vec<f64>>,
@@ -214,7 +214,8 @@ pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, Estima
     Ok(Some(average(models, grips, &line, resampled.as_ref().map(Resampled::errors))))
 }
 
-/// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.
+/// Segments of about the usual grip and of squeezes beside it: if few squeezes show all of the give, every draw must
+/// have them.
 fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
     let mut sorted = force.to_vec();
     let usual = percentile(&mut sorted, 0.5);
@@ -230,8 +231,8 @@ fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
     if stretches.len() > MOST_SQUEEZES { std::iter::once(0..force.len()).collect() } else { stretches }
 }
 
-/// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the probability
-/// is the part of the range that it stands for, so that what remains open about the bend is averaged over.
+/// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the
+/// probability is the part of the range that it stands for, so that the open part of the bend is averaged over.
 fn bent_models(
     grips: &Grips,
     bend: Bend,
@@ -316,7 +317,7 @@ mod tests {
     use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
     use rand_distr::StandardNormal;
 
-    /// A grip that varies between 1.5 and 3.5 N on pads that give as `cushion` says, and what is made of it.
+    /// Fit of a grip that varies between 1.5 and 3.5 N on pads with the give of `cushion`.
     fn fitted(cushion: &Cushion, seed: u64, noise_m: f64) -> PadFit {
         let mut rng = StdRng::seed_from_u64(seed);
         let force: Vec<f64> = (0..150).map(|i| 2.5 + (0.13 * f64::from(i)).sin()).collect();

@@ -10,16 +10,16 @@ use haptics::recording::{Meta, Prior};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// A statement that lies so many standard errors off what the recording shows is pointed out.
+/// Distance of a statement from the recording's estimate, in standard errors, from which it is pointed out.
 const CONTRADICTION: f64 = 3.0;
-/// Beyond so many standard errors outside its bounds a value simply stands at the bound.
+/// Distance of a value outside its bounds, in standard errors, beyond which it simply stands at the bound.
 const FAR_OUTSIDE: f64 = 6.0;
 /// Bounds closer than this share of the standard error leave a uniform distribution.
 const NARROW: f64 = 0.02;
 /// A prior that loses less than this share of its spread has learnt nothing from the recording.
 const LEARNT: f64 = 0.9;
 
-/// Takes what `meta` states into a fit. Warnings say where it contradicts the recording, or names nothing.
+/// Takes the statements of `meta` into a fit. Warnings say where they contradict the recording, or name nothing.
 pub fn apply(fit: &mut Fit, meta: &Meta) {
     if meta.known.is_empty() && meta.prior.is_empty() && meta.bounds.is_empty() {
         return;
@@ -288,7 +288,7 @@ mod tests {
         let other = fit.parameter("crank", "friction_mu").expect("there");
         assert!(other.std_error.is_some_and(|e| e < 0.02), "{other:?}");
         assert!(fit.warnings.is_empty(), "{:?}", fit.warnings);
-        // Far off what was measured: said.
+        // Far off the measured value: a warning.
         let mut fit = Fit {
             parameters: vec![Parameter::identified("block-1", "weight_N", 0.35, 0.01, 10, "")],
             ..Fit::default()

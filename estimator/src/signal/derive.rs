@@ -88,7 +88,7 @@ fn put(out: &mut Derivatives, i: usize, rows: &[Vec<f64>; 3], values: &[f64], pe
 /// Weights of value, slope and curvature, one a sample of the window.
 type Weights = Rc<[Vec<f64>; 3]>;
 
-/// [`local_weights`] at the sample of index `place` of `window` even ones, a period of 1 apart. Those of short windows
+/// [`local_weights`] at the sample of index `place` of `window` even ones, a period of 1 apart. Weights of short windows
 /// are kept: a recording of many short segments needs the same ones at both ends of each, and making them takes longer
 /// than all the rest.
 fn even_weights(window: usize, place: usize, order: usize) -> Weights {

@@ -85,7 +85,7 @@ pub struct CurvePoint {
 ///
 /// Method: for every exponent of a grid, level and gain are a linear regression; the best exponent is that of least
 /// squares. The interval of the exponent holds all whose squares an F test with one degree of freedom does not refuse
-/// at 5 % (profile likelihood). That of the curve holds everything within the regression's t interval for any of them.
+/// at 5 % (profile likelihood). The interval of the curve holds everything within the regression's t interval for any of them.
 /// Attempts count alike and are taken for independent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearningCurve {

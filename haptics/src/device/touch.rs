@@ -2,8 +2,8 @@
 //!
 //! The left-most of two touches is finger 1. One touch alone moves the tip that it came nearest to; the other tip
 //! stays. A finger that is lifted while the other stays down opens gently, after a moment. Fingers never leave the
-//! glass at the same instant, and lifting both must not release the object. When both are up, both tips keep their
-//! goals and forces.
+//! glass at the same instant, and lifting both must not release the object. With both up, both tips keep their goals
+//! and forces.
 
 use super::pointer::{Pointer, towards};
 use super::{Command, Device, DeviceSpec, Sample};

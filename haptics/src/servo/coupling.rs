@@ -6,8 +6,8 @@
 //! extra delay, so that the sampled coupling alone is passive on this device, whatever the world does at the other end:
 //! K (T/2 + `t_d`) + B ≤ b and K/2 + B/T ≤ `f_c`/Δ. The operator then feels the pad and the coupling in series.
 //!
-//! The proxy has no mass: every tick it goes to where coupling and contact balance, with the stiffness and damping of its
-//! present contacts taken implicitly. So it neither rings nor drags, and it is stable for any pad.
+//! The proxy has no mass: every tick it goes to the balance of coupling and contact, with the stiffness and damping of
+//! its present contacts taken implicitly. It therefore neither rings nor drags, and it is stable for any pad.
 
 use super::passivity::{friction_per_step_n_m, passive_damping, passive_stiffness};
 use crate::Vec2;
@@ -15,14 +15,14 @@ use crate::device::{DeviceSpec, Sample};
 use crate::world::{Contact, Input, State, Surface, World};
 use nalgebra::Matrix2;
 
-/// Share of what is passive that the coupling uses.
+/// Share of the passive range that the coupling uses.
 pub const MARGIN: f64 = 0.9;
-/// Share of what is passive as a damper that the coupling's own damper uses up.
+/// Share of the passive damping that the coupling's own damper uses up.
 pub const DAMPER_SHARE: f64 = 0.1;
 /// A device that states neither damping nor friction renders nothing that is provably passive. It gets this spring, N/m, or a
 /// softer one where there is delay: one that [`HAND_DAMPING_N_S_M`] makes passive.
 pub const SOFTEST_N_M: f64 = 40.0;
-/// Damping that any hand gives which holds a device, N s/m (a tenth of what a relaxed finger has).
+/// Damping of any hand that holds a device, N s/m (a tenth of that of a relaxed finger).
 pub const HAND_DAMPING_N_S_M: f64 = 0.5;
 
 /// The spring and damper between device and proxy.
@@ -61,7 +61,7 @@ impl Coupling {
         (!direct).then(|| Self::passive(spec, period_s, delay_s))
     }
 
-    /// Stiffness of the coupling and a stiffness in series, N/m: what the operator feels of an object.
+    /// Stiffness of the coupling and a stiffness in series, N/m: the operator's feel of an object.
     pub fn felt_n_m(&self, stiffness_n_m: f64) -> f64 {
         self.stiffness_n_m * stiffness_n_m / (self.stiffness_n_m + stiffness_n_m)
     }
@@ -172,7 +172,7 @@ fn stiffness_of(contact: &Contact, world: &World, sticks: bool) -> (Matrix2<f64>
     (spring, damper)
 }
 
-/// Velocity of what a finger touches, at the contact, m/s.
+/// Velocity of the surface that a finger touches, at the contact, m/s.
 fn surface_velocity(state: &State, contact: &Contact) -> Vec2 {
     match contact.by {
         Surface::Block(index) => state.bodies.get(usize::from(index)).map_or_else(Vec2::zeros, |body| {

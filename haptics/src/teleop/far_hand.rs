@@ -58,7 +58,7 @@ impl FarHand {
         self.goal.said_s
     }
 
-    /// Moves by `dt_s` under the far world's forces. When the line is silent it stays and keeps holding.
+    /// Moves by `dt_s` under the far world's forces. On a silent line it stays and keeps holding.
     ///
     /// The force of the model is exerted as it was told, and the spring makes up for the errors of the model. It
     /// presses as hard as the model, but never harder than the hand's own stiffness makes of a wrong position.

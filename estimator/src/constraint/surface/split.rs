@@ -11,7 +11,7 @@ const NOISES: f64 = 6.0;
 const CONTACT_SHARE: f64 = 0.2;
 /// Below this share the tool is free.
 const FREE_SHARE: f64 = 0.08;
-/// Free samples scatter by less than this share of what still counts as free.
+/// Largest scatter of free samples, as a share of the largest force that still counts as free.
 const QUIET_SHARE: f64 = 0.35;
 /// The strongest push is this quantile of the force's size, so that a knock does not set it.
 const STRONG: f64 = 0.9;
@@ -22,12 +22,12 @@ const WITHIN_COSINE: f64 = 0.5;
 /// Share of the contact that may be outside that angle.
 const STRAY_SHARE: f64 = 0.02;
 
-/// Positions and forces of what presses.
+/// Positions and forces of the pressing tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<'a> {
     /// Positions, m.
     pub points: &'a [Vector3<f64>],
-    /// Force of the tool on what it touches, N.
+    /// Force of the tool on the surface, N.
     pub forces: &'a [Vector3<f64>],
     /// Times, s, where there is a clock.
     pub time_s: Option<&'a [f64]>,

@@ -22,7 +22,7 @@ const LEAST_ROWS: usize = 3;
 const ROWS: usize = 600;
 /// Model error of a grip, as a share of the force.
 const MODEL_SHARE: f64 = 0.02;
-/// Within so many times the plane's own residual a sample counts as on it.
+/// Largest distance of a sample on the plane, in multiples of the plane's own residual.
 const ON_NOISES: f64 = 3.0;
 /// Half of the window over which motion is smoothed for its acceleration, s.
 const HALF_S: f64 = 0.05;

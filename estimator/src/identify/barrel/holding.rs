@@ -22,7 +22,7 @@ const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
 const HAND_N_M: f64 = 1000.0;
 
 impl Seen<'_> {
-    /// A value of the cable with its own error and what softer pads would change.
+    /// A value of the cable with its own error and the changes by softer pads.
     fn of_cable(&self, own: f64, of: impl Fn(&Pull, &Cable) -> Option<f64>) -> Option<Value> {
         let value = |pull: &Pull| of(pull, pull.cable.as_ref()?);
         let best = value(&self.taken.pull)?;
@@ -72,7 +72,7 @@ impl Seen<'_> {
         found
     }
 
-    /// A parameter of the cable out of what a covariance of the pull's columns says of it.
+    /// A parameter of the cable from a covariance of the pull's regressors.
     fn of_covariance(&self, name: &str, of: impl Fn(&DMatrix<f64>) -> Option<Value>, how: &str) -> Option<Parameter> {
         of(&self.taken.pull.around.covariance)?;
         Some(self.given_by(CABLE, name, |c| of(c).unwrap_or_default(), how))

@@ -112,7 +112,7 @@ fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
     samples.iter().map(|i| signals.time_s[*i]).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
+/// The samples while it hangs, behind pads of this `give` along x and y, m/N for both fingers together.
 fn rows(signals: &Signals, hanging: &[usize], give: Vec2, swing: &Swing, zero: &Zero, gravity: f64) -> Rows {
     let force = |i: &usize| signals.net_n[*i] - zero.net_n;
     Rows {

@@ -228,7 +228,7 @@ fn search(rows: &Rows) -> Option<Cable> {
         }
     }
     let (_, mut cable) = best?;
-    // About the middle of what is taut: there direction and bend are told apart best.
+    // About the middle of the taut samples: there direction and bend are told apart best.
     let taut: Vec<Vec2> = rows.place_m.iter().copied().filter(|p| cable.stretch(*p).0 > 0.0).collect();
     let about_m = taut.iter().sum::<Vec2>() / taut.len().max(1) as f64;
     cable.taut_m -= (about_m - cable.about_m).dot(&cable.away());

@@ -140,7 +140,7 @@ impl Signals {
         (1..=self.lifts()).flat_map(of).flat_map(|name| self.segmentation.samples_of(&name)).collect()
     }
 
-    /// Samples of every lift in which the barrel hangs from the fingers (and what else holds it), clear of the floor.
+    /// Samples of every lift in which the barrel hangs from the fingers (and the cable), clear of the floor.
     pub fn hanging(&self) -> Vec<Vec<usize>> {
         let lift = |n: usize| {
             let samples = self.segmentation.samples_of(&format!("carry-barrel-{n}"));

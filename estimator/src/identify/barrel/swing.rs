@@ -14,7 +14,7 @@ use haptics::Vec2;
 const CLOSED: f64 = 0.5;
 /// Fewer samples show no balance.
 const LEAST_ROWS: usize = 12;
-/// Nobody holds it farther from its middle, m: what says so is no balance of a stiff barrel.
+/// Largest distance of the grip from its middle, m: a larger estimate is no balance of a stiff barrel.
 const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.

@@ -56,7 +56,7 @@ impl Grip {
         let sides = if spread > LEAST_GRIP_VARIATION * mean_n { width_over_force(&grip)? } else { None };
         let sides = sides.filter(|s| s.give_m_per_n > 0.0);
         let normal = sides.map_or(USUAL_GIVE_M_N.0, |s| s.give_m_per_n);
-        // A wall gives under the grip, but not along itself.
+        // A wall yields under the grip, but not along itself.
         let one = 0.5 * pad_n_m.map_or(normal, f64::recip);
         let shear_m_n = shear(signals)?.unwrap_or((one * SHEAR_GIVE.0, one * SHEAR_GIVE.1));
         Ok(Self { sides, mean_width_m, mean_n, shear_m_n, samples: held.len() })
@@ -69,7 +69,7 @@ impl Grip {
     }
 }
 
-/// About what the barrel weighs while nothing else pulls, N; `None` where it never hung.
+/// Approximate weight of the barrel while nothing else pulls, N; `None` if it never hung.
 pub fn weight_n(signals: &Signals) -> Option<f64> {
     let mut weights: Vec<f64> = signals.hanging().iter().flatten().map(|i| signals.net_n[*i].y).collect();
     (!weights.is_empty()).then(|| percentile(&mut weights, LEAST_CARRIED))

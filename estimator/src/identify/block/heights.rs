@@ -27,7 +27,7 @@ const LEAST_STEP_M: f64 = 3e-3;
 /// Relative difference of the give of the floor's contact from that between blocks, one standard deviation. They cannot
 /// be told apart, because the floor's give looks like the pads' shear.
 const CONTACTS_DIFFER: f64 = 0.33;
-/// Before anything is measured, a contact gives this much or less (one standard deviation), m/N: 5 kN/m is a soft block.
+/// Prior standard deviation of the give of a contact, m/N: 5 kN/m is a soft block.
 const GIVE_BEFORE: f64 = 2e-4;
 /// A shear stiffness is reported when its give is this many standard errors above zero.
 const SIGNIFICANT: f64 = 3.0;
@@ -287,7 +287,8 @@ fn tilt(seen: &[Stacked<'_>], block: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// A block picked up from a tower of one and put down on the floor; the pads' shear gives 0.3 mm/N, and contacts give `contact_m_n`.
+    /// A block picked up from a tower of one and put down on the floor; the pads yield 0.3 mm/N in shear, and contacts
+    /// `contact_m_n`.
     fn rows_of(contact_m_n: f64) -> (Rows, usize) {
         let (mut columns, mut height) = (vec![Vec::new(); 4], Vec::new());
         for (below, from_n, to_n) in [(1.0, -0.3, 0.0), (0.0, 0.0, -0.7)] {

@@ -35,8 +35,9 @@ pub(crate) fn usual_lift(time_s: &[f64], rows: &[usize], lift_n: &dyn Fn(usize) 
     move |time_s| whole + slope * (time_s - start_s)
 }
 
-/// The first sample of `within` from which on, up to its end, the lift is less than what the block asks for: it stands from there on. The end of
-/// `within` where that is not so at its last sample. `carried`: rows in which the block is carried; `lift_n`: of every sample.
+/// The first sample of `within` from which, up to its end, the lift is less than the block needs: it stands from there
+/// on. The end of `within` if that is not true at its last sample. `carried`: rows in which the block is carried;
+/// `lift_n`: of every sample.
 pub(crate) fn stands_from(
     blocks: &Blocks<'_>,
     carried: &[usize],
@@ -56,7 +57,7 @@ pub(crate) fn stands_from(
     let missing = |i: usize| usual(i) - lift_n(i);
     let limit = |off: &dyn Fn(usize) -> f64| {
         let mut all: Vec<f64> = carried.iter().map(|i| off(*i)).collect();
-        // Half of what two thirds lie within: a few rows at the ends may stand already.
+        // Half of the range of two thirds: a few rows at the ends may stand already.
         0.5 * CLEARLY * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
     };
     let plain_n = limit(&missing);
@@ -113,7 +114,7 @@ fn zero(points: &[(f64, f64)], noise_n: f64) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Load over time every 4 ms, from 20 ms before it begins; what it is after so many seconds.
+    /// Load over time every 4 ms, from 20 ms before it begins; `after`: its value at a time.
     fn load(after: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let all = (0..60).map(|k| 0.004 * f64::from(k) - 0.02).map(|t| (t, after(t.max(0.0))));
         // From where it is clear of the noise on.

@@ -48,7 +48,8 @@ pub(crate) struct Blocks<'a> {
     pub(crate) segmentation: Segmentation,
     task: Definition,
     pub(crate) recording: &'a Recording,
-    /// Error of a single position and of a single force by the resolution of the log, m and N: what no averaging removes.
+    /// Error of a single position and of a single force by the resolution of the log, m and N: averaging does not
+    /// remove it.
     resolution_m: f64,
     resolution_n: f64,
     /// Vertical acceleration of the grip, m/s².
@@ -79,7 +80,7 @@ pub fn fit_by(
     Ok((fit, blocks.segmentation))
 }
 
-/// Why there is nothing to fit, and what to do.
+/// Reason why there is nothing to fit, and the remedy.
 fn nothing(blocks: &Blocks<'_>) -> EstimateError {
     let name = &blocks.recording.name;
     let slides = blocks.segmentation.states.iter().any(|s| s.state == SystemState::SlidingOnGround);
@@ -160,7 +161,7 @@ fn unresolved_by_joints_m(recording: &Recording) -> f64 {
     ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(error).fold(0.0, f64::max) * finger.link_m
 }
 
-/// They are one thing: what is stated of either holds for both.
+/// They are one thing: a statement about either holds for both.
 fn weight_and_mass(weight: &Parameter, mass: &Parameter) -> Option<Correlated> {
     let (a, b) = (weight.std_error?, mass.std_error?);
     Some(Correlated {
@@ -257,8 +258,8 @@ impl<'a> Blocks<'a> {
         (!self.task.is_shown(parameter)).then(why)
     }
 
-    /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours that
-    /// share their noise come out too small.
+    /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours
+    /// that share their noise are too small.
     pub(crate) fn rows(&self, samples: &[usize]) -> Vec<usize> {
         const LEAST_ROWS: usize = 12;
         let window = 2 * half_width(&self.signals.time_s);

@@ -15,8 +15,8 @@ const MOSTLY_NOISE: f64 = 0.5;
 const WINDOW_NOISE: f64 = 1.2;
 
 impl Blocks<'_> {
-    /// Width: distance of the tips while held, extrapolated to no grip force. `pad`: stiffness of a pad out of all holds, for a grip that is too
-    /// even to show by itself what the pads give.
+    /// Width: distance of the tips while held, extrapolated to no grip force. `pad`: stiffness of a pad out of all
+    /// holds, for a grip that is too even to show the give of the pads by itself.
     pub(super) fn width(&self, number: usize, pad: &Parameter) -> Result<Parameter, EstimateError> {
         let samples = self.gripped(number);
         if let Some(why) = self.unshown("width_m").or_else(|| unseen(&samples)) {

@@ -16,9 +16,10 @@ use crate::identify::linear::least_squares;
 /// Length of the windows that are looked at, and their distance, s.
 const WINDOW_S: f64 = 0.05;
 const STEP_S: f64 = 0.01;
-/// The lift must miss what the block asks for by this share.
+/// Least deficit of the lift, as a share of the force that the block needs.
 const MISSING: f64 = 0.06;
-/// The pinch changes by this share within a window, or the tips move by this much beyond what pads of [`SOFTEST_N_M`] give, m.
+/// Least change of the pinch within a window, as a share, or least motion of the tips beyond the give of pads of
+/// [`SOFTEST_N_M`], m.
 const PINCH_CHANGES: f64 = 0.08;
 const SLIDES_M: f64 = 0.3e-3;
 const SOFTEST_N_M: f64 = 500.0;
@@ -31,7 +32,7 @@ const KEEPS: f64 = 0.2;
 /// Largest change of the ratio as a share of that of the pinch, if the pinch changes: a constant shear would change it
 /// by the whole.
 const OF_THE_PINCH: f64 = 0.5;
-/// Beyond doubt: so many standard errors.
+/// Number of standard errors beyond doubt.
 const DOUBT: f64 = 2.0;
 /// Onset: the first part of a slip, s; later the friction is that of motion.
 const ONSET_S: f64 = 0.1;
@@ -118,7 +119,7 @@ fn slides(blocks: &Blocks<'_>, (from, to): (usize, usize), held: Held) -> bool {
     let mean =
         |value: &dyn Fn(usize) -> f64, from: usize, to: usize| (from..to).map(value).sum::<f64>() / (to - from) as f64;
     let noise = blocks.levels.force_noise_n;
-    // Tips that are thrown up at lift-off ask for more than the block, behind its pads, takes: only what falls asks for less.
+    // Tips that are thrown up at lift-off need more force than the block behind its pads: only a fall needs less.
     let gravity = blocks.recording.meta.gravity();
     let asked = mean(&|i| weight_n * (1.0 + blocks.acceleration_y[i].min(0.0) / gravity), from, to);
     let lift = mean(&|i| blocks.lift(i), from, to);

@@ -104,7 +104,7 @@ fn half_window_s(blocks: &Blocks<'_>) -> f64 {
     half_width(time_s) as f64 * step_s
 }
 
-/// Each rest's own height, the give of pads and contacts, and what pads damp.
+/// Regressors: each rest's own height, the give of pads and contacts, and the damping of the pads.
 fn model(rows: &Rows) -> Vec<Vec<f64>> {
     let n = rows.time_s.len();
     let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
@@ -144,7 +144,8 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
     rows
 }
 
-/// From when a block stands at one end of its carry, s, and the samples in which its height is that of the grip over what it stands on.
+/// Time from which a block stands at one end of its carry, s, and the samples in which its height is that of the grip
+/// over its support.
 fn standing(blocks: &Blocks<'_>, rest: &Rest, placed: bool) -> (f64, Vec<usize>) {
     let time_s = &blocks.signals.time_s;
     let Some(first) = rest.samples.first().copied() else { return (0.0, Vec::new()) };

@@ -8,7 +8,7 @@ use std::ops::Range;
 const SEARCHED_S: [f64; 9] = [0.0, 0.02, 0.05, 0.08, 0.1, 0.13, 0.17, 0.23, 0.3];
 /// Most starts of that search in one rest.
 const MOST_STARTS: usize = 60;
-/// The best place is approached in so many rounds, each with steps of this share of those before.
+/// Number of rounds in which the best place is approached; each has steps of `SHRINKS` times those before.
 const ROUNDS: usize = 8;
 const SHRINKS: f64 = 0.6;
 /// Least share of a slip between the first and the last row of its rest: with less, any slip would fit.
@@ -82,7 +82,7 @@ impl Slip {
         if self.length_s > 0.0 { (since / self.length_s).clamp(0.0, 1.0) } else { f64::from(u8::from(since >= 0.0)) }
     }
 
-    /// The same in the mean over a filter's window: what a row shows of it.
+    /// The same in the mean over a filter's window: the part that a row shows.
     pub(crate) fn shown(self, time_s: f64, half_s: f64) -> f64 {
         /// Places in the window, as shares of its half, and how much they count.
         const WINDOW: [(f64, f64); 5] = [(-0.8, 0.36), (-0.4, 0.84), (0.0, 1.0), (0.4, 0.84), (0.8, 0.36)];
@@ -143,7 +143,7 @@ impl Heights<'_> {
         slips.filter_map(|slip| self.tried(left, slip)).max_by(|a, b| a.taken_m2.total_cmp(&b.taken_m2))
     }
 
-    /// The slip that takes most off the squares of what the model leaves; in the rests that are `asked` for.
+    /// The slip that decreases the residual sum of squares most; in the rests that are `asked` for.
     pub(crate) fn best(&self, left: &Left, asked: &dyn Fn(usize) -> bool) -> Option<Tried> {
         let everywhere = (0..self.rests.len()).filter(|rest| asked(*rest)).flat_map(|rest| {
             let starts = self.starts(rest, MOST_STARTS);
@@ -185,7 +185,7 @@ impl Heights<'_> {
         let (first_s, last_s) = self.bounds(best.rest);
         let latest_s = (best.start_s + 0.5 * self.half_s).min(last_s).max(first_s);
         let start = |k: usize| first_s + (latest_s - first_s) * k as f64 / STEPS as f64;
-        // A rest is long, and so may be what lies before a slip within it.
+        // A rest is long, and so may be the part before a slip within it.
         let earliest_s = best.start_s - 2.0 * self.half_s - best.length_s;
         let starts = (0..=STEPS).map(start).filter(|s| *s >= earliest_s);
         let near = (-4..=2).map(|k| (best.start_s + 0.25 * f64::from(k) * self.half_s).clamp(first_s, latest_s));
@@ -212,7 +212,8 @@ fn dot(a: &[f64], b: &[f64], range: Range<usize>) -> f64 {
     range.map(|i| a[i] * b[i]).sum()
 }
 
-/// An orthonormal basis of what the columns span (Gram and Schmidt, twice); what is nearly in the others is left out.
+/// An orthonormal basis of the space of the columns (Gram and Schmidt, twice); a column nearly in that of the others is
+/// left out.
 fn orthonormal(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut found: Vec<Vec<f64>> = Vec::new();
     for column in columns {

@@ -38,7 +38,7 @@ pub(super) struct Smooth {
     pub(super) resolution_n: f64,
 }
 
-/// The handle's motion and force while it is held, with what the states say of them. Fits by the same states share it.
+/// The handle's motion and force while it is held, by the states. Fits by the same states share it.
 pub(super) struct Grasped {
     smooth: Arc<Smooth>,
     /// Net force on the handle, N, bias taken out.

@@ -11,7 +11,7 @@ pub const WEIGHT: usize = 0;
 pub const INERTIA: usize = 4;
 /// Place of the constant friction.
 pub const COULOMB: usize = 3;
-/// Places of what resists the motion.
+/// Indices of the laws that resist the motion.
 pub const FRICTION: [usize; 3] = [1, 2, COULOMB];
 
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.

@@ -110,7 +110,8 @@ impl Rows {
         Self::thinned(along, 1)
     }
 
-    /// The same from about `taps` samples in each window of the low-pass: enough to see what a small change of the geometry does.
+    /// The same from about `taps` samples in each window of the low-pass: enough for the effect of a small change of
+    /// the geometry.
     pub(super) fn coarse(along: &Along<'_>, taps: usize) -> Self {
         Self::thinned(along, (2 * half(&along.held.time_s) / taps).max(1))
     }

@@ -72,7 +72,7 @@ impl GripSignals {
     }
 }
 
-/// Width of the handle and stiffness of one pad: what a virtual grip needs to feel like the real one.
+/// Width of the handle and stiffness of one pad: a virtual grip needs them to feel like the real one.
 ///
 /// The tips' distance is the handle's width less the give of both pads, 2 F / k. Along y two pads side by side carry
 /// the handle in shear, as the radius residual shows.

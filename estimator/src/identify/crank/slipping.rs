@@ -12,7 +12,7 @@ use haptics::Vec2;
 const LEAST_SHARE: f64 = 0.01;
 /// Least size of a slip, m.
 const LEAST_M: f64 = 1e-4;
-/// Slips change what the first fit looked like: search, take out, search again.
+/// Rounds of search and correction: slips change the look of the first fit.
 const ROUNDS: usize = 2;
 
 /// Centre and radius with all slips taken out: those of the first grasp. The positions in `held` are moved back to it.

@@ -13,7 +13,7 @@ use haptics::recording::Meta;
 
 /// Relative error of the integration that the refinement rests on.
 const INTEGRATION_ERROR: f64 = 2e-5;
-/// Ratios that are reported when nothing gives the scale.
+/// Ratios that are reported without a known scale.
 const RATIO_NAMES: [(Term, &str, &str); 4] = [
     (Term::Viscous, "viscous_per_inertia_1_s", "viscous_per_mass_1_s"),
     (Term::Coulomb, "coulomb_per_inertia_rad_s2", "coulomb_per_mass_m_s2"),
@@ -44,7 +44,8 @@ impl Ratios {
     }
 }
 
-/// A known parameter that gives all of a free motion's values their size: its value in SI units, for a gravity moment the whole of it.
+/// A known parameter that sets the scale of all of a free motion's values: its value in SI units, for a gravity moment
+/// the whole of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stated {
     /// Mass or moment of inertia, kg or kg m².
@@ -217,7 +218,7 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
     }
 }
 
-/// Nothing is known: every parameter is unidentified, the ratios are what there is.
+/// Result without a known scale: every parameter is unidentified, only the ratios are reported.
 fn unscaled(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, samples: usize) {
     let why = "a free motion shows only ratios; state one parameter under \"known\" in the sidecar, or record a force";
     for term in [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset] {

@@ -108,7 +108,7 @@ fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Resu
     Ok(each.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// Motion that nothing drives: without what stands in it, where enough is left that moves.
+/// Motion that nothing drives: without its standstills, if enough motion remains.
 fn freely(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
     let (parts, stood) = moving::moving(raws);
     if stood {
@@ -128,7 +128,7 @@ fn has_coordinate(recording: &Recording) -> bool {
     recording.channel("q_m").is_some() || recording.channel("q_rad").is_some()
 }
 
-/// The constraint of every tool path, and the path it gives: see [`paths`].
+/// The constraint of every tool path, and its path: see [`paths`].
 fn constraints(recordings: &[Recording]) -> (Vec<Constraint>, Vec<Option<MechanismPath>>) {
     let mut found = Vec::new();
     let mut paths = Vec::new();
@@ -257,7 +257,7 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
         |i: usize| late.target[i] - late.columns.iter().zip(&early.values).map(|(c, v)| c[i] * v).sum::<f64>();
     let root = |sum: f64| (sum / n as f64).sqrt();
     let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
-    // Relative to the force as measured, what is known included.
+    // Relative to the force as measured, its known part included.
     let nothing_known = System::stack(pieces, &[], &Known::default(), force_of).part(|place| place >= 1.0 - HELD_OUT);
     debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
     let force = root(nothing_known.target.iter().map(|f| f * f).sum());

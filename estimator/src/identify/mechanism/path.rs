@@ -78,7 +78,8 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
     }
 }
 
-/// A tool keeps to its path so much worse when the object is held again, as a factor and as a share of the path's extent.
+/// Larger distance of a tool from its path when the object is held again, as a factor and as a share of the path's
+/// extent.
 const WORSE: f64 = 3.0;
 const SPARE: f64 = 0.005;
 

@@ -35,13 +35,13 @@ pub struct System {
     pub terms: Vec<Term>,
     /// One column a term.
     pub columns: Vec<Vec<f64>>,
-    /// Force less what is known, N or N m.
+    /// Force less its known part, N or N m.
     pub target: Vec<f64>,
     /// Share of 1 by which the direction of motion is uncertain, 0 … 1.
     pub uncertainty: Vec<f64>,
     /// Filtered position of each sample, m or rad, and the noise of the motion there: how much the columns are off.
     pub motion: Vec<(f64, StateNoise)>,
-    /// To what share that noise is known.
+    /// Relative uncertainty of that noise.
     pub noise_known_to: f64,
     /// Place of each sample in its recording, 0 … 1: for holding out the end.
     pub place: Vec<f64>,
@@ -80,8 +80,8 @@ impl System {
         system
     }
 
-    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and takes
-    /// out what noise in the columns attenuates.
+    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and
+    /// takes out the attenuation by noise in the regressors.
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
@@ -158,7 +158,7 @@ impl System {
             let size = norm[i] * norm[j];
             if size > 0.0 { dot(&self.columns[i], &self.columns[j]) / size } else { f64::from(u8::from(i == j)) }
         });
-        // A ridge far below what counts keeps the inverse finite.
+        // A ridge far below anything that counts keeps the inverse finite.
         let inverse = (gram + DMatrix::identity(p, p) * 1e-12).try_inverse();
         (0..p)
             .map(|j| match &inverse {

@@ -22,7 +22,7 @@ const CUTOFF_OVER_MOTION_MAX: f64 = 100.0;
 /// Least ratio of the cut-off to the fastest motion that matters.
 const CUTOFF_OVER_MOTION: f64 = 3.0;
 
-/// Coordinate and force as recorded: what every recording form is reduced to.
+/// Coordinate and force as recorded: every recording form is reduced to it.
 #[derive(Clone, Debug)]
 pub struct Raw {
     /// Length or angle.
@@ -175,7 +175,7 @@ pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
     if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, raw.time_s.len())) } else { Ok(found) }
 }
 
-/// Stretches without a gap that are long enough (first sample, end), and the usual step, s.
+/// Segments without a gap that are long enough (first sample, end), and the usual step, s.
 pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>, f64), EstimateError> {
     let n = time_s.len();
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();

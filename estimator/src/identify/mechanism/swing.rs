@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Largest number of segments that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
-/// Most samples that take part; longer records are thinned.
+/// Largest number of samples in the fit; longer records are thinned.
 const MAX_SAMPLES: usize = 4000;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
 const STEP_SHARE: f64 = 0.005;

@@ -68,7 +68,7 @@ impl Term {
         columns[index]
     }
 
-    /// The power of 1/time in the ratio of this term to the inertia: what a wrong clock does to it.
+    /// The power of 1/time in the ratio of this term to the inertia: the effect of a wrong clock on it.
     pub fn powers_of_time(self) -> f64 {
         match self {
             Self::Inertia => 0.0,

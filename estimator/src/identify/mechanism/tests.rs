@@ -142,7 +142,8 @@ fn what_the_motion_does_not_show_is_not_given_a_number() {
     demand(&one_way, "viscous_N_s_m", 12.0, 0.1);
     demand(&one_way, "mass_kg", 3.0, 0.1);
 
-    // With stops: what holds there is anything up to the friction, and a filter rings back by a hair when the motion sets in.
+    // With stops: the holding force there is anything up to the friction, and a filter rings back by a hair when the
+    // motion sets in.
     let halting: Motion = |t| {
         let (w, turns) = (1.5, (1.5 * t / std::f64::consts::TAU).floor());
         let phase = w * t - std::f64::consts::TAU * turns;

@@ -18,13 +18,13 @@ const TRIES: usize = 40;
 const CLOSER: usize = 24;
 /// The largest half gap, as a share of the input's way.
 const LARGEST: f64 = 0.25;
-/// Samples that take part, at most: slow motions are sampled far too often.
+/// Largest number of samples in the fit: slow motions are sampled far too often.
 const ROWS: usize = 3000;
 /// The share of the recording in which the gap's side is not known yet.
 const SETTLING: f64 = 0.02;
 /// The input must turn round this often to show a gap.
 const REVERSALS: usize = 2;
-/// A value counts as seen from so many standard errors on.
+/// Standard errors from zero from which a value counts as seen.
 const SEEN: f64 = 3.0;
 
 /// A value with its standard error by covariance and by resampling.

@@ -41,7 +41,7 @@ fn effects(fit: &Fit) -> Vec<Effect> {
         effects.push(Effect::new(&ViscousFriction, &[viscous.max(0.0)]));
     }
     let coulomb = either("coulomb_N", "coulomb_Nm");
-    // Constant resistance that one direction cannot split: friction is what a mechanism at hand most likely has.
+    // Constant resistance that one direction cannot split: a mechanism at hand most likely has friction.
     if let Some(dry) = coulomb.or_else(|| either("resistance_N", "resistance_Nm").map(f64::abs)) {
         effects.push(Effect::new(&CoulombFriction, &[dry.max(0.0)]));
     }

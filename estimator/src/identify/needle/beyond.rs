@@ -8,12 +8,13 @@ use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;
 
-/// A force is on the loading curve within so many times its noise, or this share of it: slow filters bend the curve a little.
+/// Largest distance of a force on the loading curve, in multiples of its noise, or as a share of it: slow filters bend
+/// the curve a little.
 const ON_CURVE_NOISES: f64 = 4.0;
 const ON_CURVE: f64 = 0.02;
-/// A filter that force and place went through makes a sheet give way so much earlier on the curve, s, if there is one.
+/// Lead of the puncture on the curve by a filter that force and place went through, s, if there is one.
 const FILTER_S: f64 = 2e-3;
-/// The speed of a push before it goes through is that of so long, s, and of one step between samples at least.
+/// Time over which the speed of a push before the puncture is taken, s; at least one step between samples.
 const BEFORE_S: f64 = 0.02;
 /// The place of a puncture on the curve is as uncertain as this share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
@@ -22,7 +23,7 @@ const HOLE_SHARE: f64 = 0.05;
 /// The level of the force on the way to the sheet is known to this share of its noise at best.
 const LEVEL_NOISE: f64 = 0.08;
 
-/// One going through, all in N: the force, the errors that the curve gives it by covariance and by resampling, and its own.
+/// One puncture, all in N: the force, its errors by the curve (by covariance and by resampling), and its own.
 struct Through {
     force: f64,
     curve: f64,
@@ -93,7 +94,7 @@ impl Sheet {
         let drawn = median_error(&inwards).zip(median_error(&outwards)).map(|(a, b)| 0.5 * a.hypot(b));
         let (inwards, outwards) = (median(inwards)?, median(outwards)?);
         let value = 0.5 * (inwards - outwards);
-        // In and out need not be alike: their mean beside zero is what is not understood.
+        // In and out need not be alike: their mean beside zero is unexplained.
         let unlike = (0.25 * (inwards + outwards).abs()).hypot(HOLE_SHARE * value);
         let error = unlike.hypot(along.noise_n / (samples as f64).sqrt());
         let how = "half the difference of the forces in the hole on the way in and on the way out";

@@ -91,7 +91,7 @@ pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
     if whole.around.identified[whole.stiffness_at() + 1] && whole.stiffness_n_m > 0.0 && whole.cubic_n_m3 >= 0.0 {
         return Ok(whole);
     }
-    // No sheet gets softer: what a curve that does would have said is noise, and goes into the errors.
+    // No sheet gets softer: the deviation of such a curve is noise, and goes into the errors.
     let mut straight = fit_with(points, holds, false)?;
     let mut errors = vec![0.0; straight.around.values.len()];
     errors[straight.stiffness_at()] = 0.5 * (whole.stiffness_n_m - straight.stiffness_n_m);

@@ -59,7 +59,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     Ok(result)
 }
 
-/// The loading curve with what the pads' unknown give does to it.
+/// The loading curve with its change by the pads' unknown give.
 pub(crate) struct Sheet {
     pub(crate) loading: Loading,
     /// The same with pads that give one standard error more.
@@ -84,7 +84,7 @@ impl Sheet {
         own.hypot(of(&self.softer) - of(&self.loading))
     }
 
-    /// The same with the fit's own error by resampling, and what else is unknown of the value.
+    /// The same with the fit's own error by resampling, and the other errors of the value.
     fn resampled(&self, column: usize, other: f64, of: impl Fn(&Loading) -> f64) -> Option<f64> {
         self.loading.resampled.as_ref().map(|r| self.error(r[column].hypot(other), of))
     }

@@ -53,7 +53,7 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         let deepest = push.end.max(push.samples.end);
         let hold_end = along.holds[push.hold].end;
         // A hand at rest trembles about the deepest point: the needle counts as drawn out after it has come back by
-        // more. That is the needle's own way: the pads yield when the friction of the hole reverses.
+        // more. This is the needle's own way: the pads yield when the friction of the hole reverses.
         let depth_m = |i: usize| calm_m[i] - along.give_m_n.0 * calm_n[i];
         let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK_M;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);

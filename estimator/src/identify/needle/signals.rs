@@ -12,7 +12,7 @@ use std::ops::Range;
 const GRIP_SHARE: f64 = 0.15;
 /// Least grip, in multiples of its noise.
 const GRIP_NOISES: f64 = 8.0;
-/// Share of the largest forces whose mean direction is that of the needle, and so many samples at least.
+/// Share of the largest forces whose mean direction is that of the needle, and least number of those samples.
 const STRONGEST: f64 = 0.02;
 const LEAST_STRONG: usize = 5;
 /// Forces below this many times their noise show nothing.
@@ -98,7 +98,7 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
 /// Mean of the force well before the first hold and after the last, and its error.
 fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f64)> {
     let (first, last) = (holds.first()?.start, holds.last()?.end);
-    // The fingers close and open slowly: half of what lies outside is near a touch.
+    // The fingers close and open slowly: half of the samples outside is near a touch.
     let before = &force_n[..first / 2];
     let after = &force_n[last + (force_n.len() - last) / 2..];
     let n = before.len() + after.len();
@@ -111,7 +111,7 @@ fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f
     Some((mean, (noise_n / (n as f64).sqrt()).hypot(rounding)))
 }
 
-/// Stretches of samples with a grip.
+/// Segments of samples with a grip.
 fn holds(grip: &[f64]) -> Vec<Range<usize>> {
     let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
     let least = (GRIP_SHARE * most).max(GRIP_NOISES * white_noise(grip));

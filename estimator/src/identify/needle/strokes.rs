@@ -19,7 +19,7 @@ const FALLEN: f64 = 0.6;
 const DRAWN_BACK: f64 = 0.1;
 /// A force above this many times the noise is the sheet's.
 const TOUCHES: f64 = 8.0;
-/// The last of so many parts of the way to the sheet shows what the needle is held with.
+/// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 const LAST_PART: usize = 4;
 /// Peaks below this share of the strongest force are no push.
 const PUSH_SHARE: f64 = 0.15;

@@ -29,7 +29,8 @@ pub const LEVER_TRAVELS: f64 = 1.9;
 const LEVER_SPREAD: f64 = 0.5 * EVEN;
 /// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
 const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
-/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of what holds 95 %, and its error.
+/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of the 95 % range, and its
+/// error.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
 /// Uncertainty of the place of a touch on the knob's round side, m.
 const TOUCHED_M: f64 = 3e-5;
@@ -82,7 +83,7 @@ struct Curves {
     resting_m: f64,
 }
 
-/// With what systematic errors do to it.
+/// Estimates with the effects of systematic errors.
 struct Captured {
     curves: Curves,
     others: [Curves; 2],
@@ -150,7 +151,7 @@ impl Curves {
         Some((right.0 - left.0, right.1.hypot(left.1).hypot(self.resting_m))).filter(|t| t.0 > 0.0)
     }
 
-    /// Half of what both directions ask for in the middle between the places where their forces vanish: friction, N.
+    /// Half of the force of both directions in the middle between the places where their forces vanish: friction, N.
     fn friction_n(&self) -> Option<(f64, f64)> {
         self.friction_by(|way| Some(&way.around.covariance))
     }
@@ -173,7 +174,7 @@ impl Curves {
 }
 
 impl Captured {
-    /// A value with `own` error, the fit's, and what softer pads and a straighter path would change.
+    /// A value with `own` error, the fit's, and the changes by softer pads and a straighter path.
     fn with_errors(&self, own: f64, of: impl Fn(&Curves) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
         let (value, fitted) = of(&self.curves)?;
         let change = |other: &Curves| of(other).map_or(0.0, |(v, _)| v - value);

@@ -24,7 +24,7 @@ const LEAST_COSINE: f64 = 0.31;
 const TOUCH_SHARE: f64 = 0.03;
 /// Least force of a touching finger, in multiples of the noise of the averaged force.
 const TOUCH_NOISES: f64 = 5.0;
-/// On a stop the force is at least this share of what it comes to: the knob lies there, and no friction carries it.
+/// Least force on a stop, as a share of its largest value there: the knob lies there, and no friction carries it.
 const STOP_SHARE: f64 = 0.3;
 /// A stop was pressed when the force there came to this many times the least one that counts as a touch.
 const STOP_TOUCHES: f64 = 2.0;
@@ -62,7 +62,7 @@ pub struct Signals {
     pub zero_error_n: f64,
     /// Mean height of the tips while they touch, m.
     pub height_m: f64,
-    /// Middle of what was seen, m.
+    /// Middle of the seen range, m.
     pub middle_m: f64,
     /// Travel of the hand in touch, m: about the knob's travel.
     pub range_m: f64,
@@ -75,7 +75,7 @@ pub struct Signals {
 /// One sample of a direction of travel, turned so that the knob moves towards larger places.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Place of the knob along its arc, m from the middle of what was seen.
+    /// Place of the knob along its arc, m from the middle of the seen range.
     pub at_m: f64,
     /// Force that moves the knob on, N.
     pub force_n: f64,
@@ -277,7 +277,7 @@ impl Finger {
     }
 }
 
-/// Samples at which a finger touches nothing: the closest lying quarter of all forces, and what is within its noise.
+/// Samples at which a finger touches nothing: the closest lying quarter of all forces, and all within its noise.
 fn quiet(calm: &[f64], noise_n: f64) -> Vec<usize> {
     let mut sorted = calm.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -301,7 +301,7 @@ fn mean(values: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Stretches between turns of more than `turn_m`, with their direction.
+/// Segments between turns of more than `turn_m`, with their direction.
 fn strokes(x: &[f64], turn_m: f64) -> Vec<(f64, Range<usize>)> {
     let mut found: Vec<(f64, Range<usize>)> = Vec::new();
     let (mut start, mut far, mut direction) = (0, 0, 0.0_f64);

@@ -80,12 +80,12 @@ pub fn way(seen: &Seen) -> Result<Option<Way>, EstimateError> {
     let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_ROWS)).collect();
     let still = way_with(&rows, None)?;
     let Some(moving) = way_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Way::assumed_slow)) };
-    // At one speed all the time, or in few samples, what the motion asks for cannot be told from the curve.
+    // At one speed all the time, or in few samples, the force of the motion cannot be told from the curve.
     let told = still.as_ref().is_none_or(|s| moving.around.std_errors[0] < s.around.std_errors[0].hypot(MOVING_N));
     Ok(if told { Some(moving) } else { still.map(Way::assumed_slow) })
 }
 
-/// `noise`: of rate and acceleration, where the knob's own motion takes part.
+/// `noise`: of rate and acceleration, if the knob's own motion is fitted.
 fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, EstimateError> {
     let moving = noise.is_some();
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s.at_m), h.max(s.at_m)));

@@ -5,9 +5,9 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Time at the beginning that shows undisturbed flight, s.
 const FIRST_S: f64 = 0.068;
-/// Second differences are taken over so much on either side, s: a blow shows more, noise does not.
+/// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
 const REACH_S: f64 = 0.020;
-/// A flight that strays from its parabola by so many times what flights usually do is left out.
+/// Deviation of a flight from its parabola, in multiples of the usual one, above which it is left out.
 const BENT: f64 = 3.0;
 /// Least change of the second difference by a blow, in multiples of its usual scatter.
 const BLOW_NOISES: f64 = 5.0;
@@ -88,7 +88,7 @@ fn flights(tracks: &[Track]) -> Option<Vec<(&Track, usize)>> {
 /// Columns and right sides of one coordinate of one flight.
 type Block = (DMatrix<f64>, DVector<f64>);
 
-/// Covariance of the values by how unlike flights are: what happens within one hangs together.
+/// Covariance of the values by the differences between flights: samples of one flight are correlated.
 fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> DMatrix<f64> {
     let size = values.len();
     let mut scatter = DMatrix::zeros(size, size);
@@ -101,7 +101,7 @@ fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) ->
     inverse * scatter * inverse * (count / (count - 1.0).max(1.0))
 }
 
-/// The same where there is one flight, by what its samples leave, and how many of them are free; `None` where none is.
+/// The same for one flight, by the residuals of its samples, and the number of free ones; `None` if none is.
 fn by_sample(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     /// Neighbours are no more alike than this.
     const MOST_ALIKE: f64 = 0.9;

@@ -22,7 +22,7 @@ const BODY: &str = "body";
 const LIKE_GRAVITY: f64 = 0.2;
 /// Share of the recordings that must begin with a fall.
 const FALLING_SHARE: f64 = 0.5;
-/// A scale is said to be off from so many standard errors on.
+/// Standard errors of a scale from 1 from which it is said to be off.
 const OFF: f64 = 3.0;
 
 /// Estimates from recordings of one thrown body.

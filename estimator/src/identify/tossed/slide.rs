@@ -4,7 +4,7 @@ use super::pose::Track;
 use crate::signal::derive::polynomial;
 use nalgebra::Vector3;
 
-/// Velocities are told over so much on either side, s.
+/// Time on either side over which velocities are taken, s.
 const REACH_S: f64 = 0.0135;
 /// Slower than this it may stick or creep, m/s.
 const SLOW_M_S: f64 = 0.05;
@@ -14,7 +14,7 @@ const TURNING_RAD_S: f64 = 0.6;
 const RISING_M_S: f64 = 0.03;
 /// Largest range of heights in a slide, m.
 const LEVEL_M: f64 = 2e-3;
-/// Both may be so many times what noise makes of them, and so many times as large for that at most.
+/// Limits by noise: in multiples of its effect, but at most `LOOSER` times the plain limits.
 const NOISES: f64 = 3.5;
 const LOOSER: f64 = 2.0;
 /// Its edge turns no faster than this share of the speed: friction then still goes against the speed, all but 4 % of it.
@@ -111,7 +111,7 @@ fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
         match (start, goes_on) {
             (None, true) => start = Some(i),
             (Some(first), false) => {
-                // Both ends still see what came before and after.
+                // Both ends still see samples before and after.
                 found.extend(slide(track, first + reach, i.saturating_sub(reach), &spins));
                 start = None;
             }
@@ -121,7 +121,8 @@ fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
     found
 }
 
-/// The share of friction that goes against the motion of the middle: what slides about a ring of the foot's size, to second order.
+/// The share of friction that goes against the motion of the middle, for contact on a ring of the foot's size, to
+/// second order.
 fn direct(spinning: f64) -> f64 {
     1.0 - 0.25 * spinning * spinning
 }

@@ -20,7 +20,7 @@ const LABEL: &str = "label";
 /// Writes rows to an MCAP file as they come.
 ///
 /// Rows handed to the system survive the end of the process, however it ends; [`super::super::load`] reads such a file
-/// up to its last whole block, with a warning. When the disk refuses (it is full, for instance) the file is cut back to
+/// up to its last whole block, with a warning. If the disk refuses (it is full, for instance) the file is cut back to
 /// its last whole block and takes no more. Memory: one block, and about a hundred bytes for every block written (15 MB
 /// in 24 hours). Not for the servo: it allocates and writes.
 pub struct McapStream {

@@ -1,8 +1,8 @@
 //! One board on its own thread: serial ports wait, the servo must not.
 //!
-//! The thread writes the newest torques and reads the angles, as fast as the board answers. When the servo has sent nothing new
-//! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever. A board whose cable was
-//! pulled is found again after it is plugged in ([`super::open`]).
+//! The thread writes the newest torques and reads the angles, as fast as the board answers. Without new data from the
+//! servo for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever. A board whose cable
+//! was pulled is found again after it is plugged in ([`super::open`]).
 
 use super::fivebar::FiveBar;
 use super::gate::{Gate, Verdict};

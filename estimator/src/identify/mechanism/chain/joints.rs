@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub const ANGLES: [&str; 2] = ["q1_rad", "q2_rad"];
 /// Torques.
 pub const TORQUES: [&str; 2] = ["tau1_Nm", "tau2_Nm"];
-/// Noise that is let through on a rate, as a share of it: far below what the second filter leaves of it.
+/// Noise that is let through on a rate, as a share of it: far below the noise after the second filter.
 const RATE_NOISE: f64 = 0.03;
 /// Slower than this share of its usual rate a joint may stick.
 const SLOW_SHARE: f64 = 0.015;

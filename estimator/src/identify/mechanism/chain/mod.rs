@@ -21,7 +21,7 @@ use solve::{Solution, solve, tried};
 
 /// The object's name in the results.
 pub const OBJECT: &str = "chain";
-/// A joint that moves less than this share of what it moves elsewhere is held: what holds it is not its sliding friction.
+/// Share of its motion elsewhere below which a joint is held: its holding force is not its sliding friction.
 const HELD_SHARE: f64 = 0.05;
 
 /// True when a recording is one of a chain.
