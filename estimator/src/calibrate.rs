@@ -131,7 +131,7 @@ impl Builder<'_> {
         } else if let Some((stiffness, std_error)) =
             self.fit.parameter("crank", "constraint_stiffness_N_m").and_then(|p| Some((p.value?, p.std_error)))
         {
-            // Two pads side by side carry the handle: each has half of what was seen.
+            // Two pads side by side carry the handle: each has half of the observed stiffness.
             let from = format!("half of the crank's radial stiffness, {}", self.from);
             self.world.pad.stiffness_n_m = 0.5 * stiffness;
             self.world.pad.shear_stiffness_n_m = 0.5 * stiffness;

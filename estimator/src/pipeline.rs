@@ -46,7 +46,7 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
     analyse_prepared(recordings, &Prepared::default(), options)
 }
 
-/// [`analyse`] for the second time and on: `prepared` keeps what the first one made of the same recordings.
+/// [`analyse`] for the second time and on: `prepared` keeps the first one's results for the same recordings.
 pub fn analyse_prepared(
     recordings: &[Recording],
     prepared: &Prepared,

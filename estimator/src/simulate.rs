@@ -18,7 +18,7 @@ use serde::Serialize;
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
-/// Longest way between two looks at what a sheet remembers, m.
+/// Longest way between two updates of a sheet's memory, m.
 const STEP_M: f64 = 5e-5;
 /// The wish to end is looked at so often, samples.
 const LOOKS: usize = 500;
@@ -172,7 +172,8 @@ fn stepped(world: &World, recording: &Recording) -> Result<Simulation, EstimateE
     Ok(found)
 }
 
-/// A single tool is the needle: what the sheet pushes back along it. One place of the sheet, as in the fit of such a recording.
+/// Force of the sheet along a single tool, which is the needle. One place of the sheet, as in the fit of such a
+/// recording.
 fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
     let TipSeries { position, velocity, .. } = tip_series(recording, "")?;
     let (Some(sheet), Some(velocity)) = (&world.membrane, velocity) else {

@@ -15,7 +15,7 @@ thread_local! {
     static WISH: RefCell<Option<Wish>> = const { RefCell::new(None) };
 }
 
-/// Puts back what was wanted before, also when the work panics.
+/// Restores the earlier wish, also when the work panics.
 struct Before(Option<Wish>);
 
 impl Drop for Before {

@@ -157,7 +157,7 @@ impl Meta {
         self.gravity_m_s2.unwrap_or(9.81)
     }
 
-    /// The hand that made the recording: the default one, with what the sidecar states put in.
+    /// The hand that made the recording: the default one, with the sidecar's statements put in.
     pub fn hand(&self) -> Hand {
         let default = Hand::default();
         let Some(meta) = &self.hand else { return default };

@@ -49,7 +49,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     })
 }
 
-/// Text out of a file, for a sentence of ours: on one line, and without what would be an order to a terminal.
+/// Text out of a file, for a sentence of ours: on one line, and without control sequences for a terminal.
 pub fn one_line(text: &str) -> String {
     // Besides control characters those that turn the direction of the text after them.
     let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

@@ -77,7 +77,7 @@ impl Renderer {
         Frame::new(device, &self.groups)
     }
 
-    /// Fills `frame` with what `view` shows in a picture of `size` pixels.
+    /// Fills `frame` with the shapes of `view` in a picture of `size` pixels.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
@@ -98,7 +98,7 @@ impl Renderer {
         self.draw(&mut pass, frame);
     }
 
-    /// Records what the key light reaches.
+    /// Records the passes that find the surfaces lit by the key light.
     fn light(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
         let mut pass = frame.maps.begin_cast(encoder);
         pass.set_bind_group(0, &frame.bind_group, &[]);
@@ -115,7 +115,7 @@ impl Renderer {
         }
     }
 
-    /// Records what of the sky reaches the table.
+    /// Records the passes that find the share of the sky that reaches the table.
     fn sky(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
         let mut pass = frame.maps.begin_undersides(encoder);
         pass.set_bind_group(0, &frame.bind_group, &[]);

@@ -164,7 +164,7 @@ pub enum ConstraintMarker {
     },
     /// A surface that pushes one way.
     Surface {
-        /// Both ends of what was touched, world, m.
+        /// Both ends of the touched line, world, m.
         ends_m: [Vec2; 2],
         /// Out of the surface, need not be unit.
         normal: Vec2,

@@ -108,8 +108,8 @@ struct Thing {
     surface: Surface,
 }
 
-/// The next thing that the hand, or what it holds, will hit too fast; `late_s`: how old the picture is; `position_m`: how well places are
-/// known.
+/// The next thing that the hand, or an object in it, will hit too fast; `late_s`: age of the picture; `position_m`:
+/// error of places.
 pub fn next(world: &World, state: &State, late_s: f64, position_m: f64) -> Option<Collision> {
     let held = held(state);
     let (movers, others) = things(world, state, held);
@@ -163,7 +163,7 @@ fn things(world: &World, state: &State, held: Option<usize>) -> (Vec<Thing>, Vec
         if held == Some(k) { movers.push(thing) } else { others.push(thing) }
     }
     if held.is_some() {
-        // Fingers that hold something go where it goes: what is beside them matters, what is between them does not.
+        // Held objects go with the fingers: things beside them matter, things between them do not.
         movers.retain(|m| !matches!(m.surface, Surface::Finger(_)) || m.velocity_m_s.norm() > GENTLE_M_S);
     }
     (movers, others)

@@ -58,7 +58,7 @@ pub fn guess(density: Known) -> Guess {
     Guess { density, kinds }
 }
 
-/// Probability density of what was measured if the truth lies evenly (in its logarithm) within a range.
+/// Probability density of the measurement if the truth lies evenly (in its logarithm) within a range.
 fn likelihood(density: Known, [low, high]: [f64; 2]) -> f64 {
     let least = 1e-3 * density.value.abs().max(1.0);
     let Ok(error) = Normal::new(density.value, density.std_error.max(least)) else { return 0.0 };

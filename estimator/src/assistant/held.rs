@@ -28,7 +28,8 @@ pub struct Look {
     pub empty_kg: Option<f64>,
     /// Name of the thing, if the report cannot know it: there any carried object is a block.
     pub called: Option<&'static str>,
-    /// It meets what holds or bears it (a needle and its sheet), which would pass for its weight: that is not told.
+    /// True if it meets a thing that holds or bears it (a needle and its sheet): the force of that would pass for its
+    /// weight, so no weight is told.
     pub borne: bool,
 }
 
@@ -96,7 +97,7 @@ fn known(parameter: &Parameter) -> Option<Known> {
     Some(Known { value, std_error: parameter.std_error.filter(|e| e.is_finite())? })
 }
 
-/// Density of what is in a round vessel, and what that may be.
+/// Density of the content of a round vessel, and its possible kinds.
 fn contents(mass_kg: Known, width_m: Known, look: &Look) -> Option<Guess> {
     let (height_m, empty_kg) = (look.height_m.filter(|_| look.round)?, look.empty_kg?);
     let volume_m3 = INSIDE * 0.25 * PI * width_m.value.powi(2) * height_m;

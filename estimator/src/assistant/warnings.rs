@@ -28,7 +28,7 @@ pub struct Load {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
-    /// A finger presses nearly, or more than, what is allowed.
+    /// A finger presses nearly as much as allowed, or more.
     Force {
         /// 0 left, 1 right.
         finger: usize,

@@ -7,7 +7,7 @@ use super::{checks, facts, sidecar, units};
 use haptics::recording::{Channel, Meta, Recording, Warning};
 use std::path::Path;
 
-/// One recording for every group of the table. `said` is what the format's reader has to say.
+/// One recording for every group of the table. `said`: warnings of the format's reader.
 pub fn recordings(
     mut table: Table,
     plan: &Plan,

@@ -9,7 +9,7 @@ use haptics::recording::Labels;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// At most so many values of a selected column are named when none fits.
+/// Largest number of values of a selected column that are named when none fits.
 const SHOWN_VALUES: usize = 6;
 
 /// Makes the table as `plan` says.

@@ -39,7 +39,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// Somebody is still writing it.
+    /// The file is still being written.
     #[error(
         "the file changed from {before} to {after} bytes while it was read; wait until the recording has ended and read it again: {path}",
         path = path.display()
@@ -52,7 +52,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// Somebody ended the reading.
+    /// The reading was cancelled.
     #[error("reading was cancelled; nothing of the file is loaded: {path}", path = path.display())]
     Cancelled {
         /// The file.
@@ -150,7 +150,7 @@ pub enum LogError {
     MissingColumn {
         /// The program's or file's name of it.
         column: String,
-        /// Who needs it.
+        /// Task that needs the column.
         why: String,
         /// Columns of the file.
         present: String,
@@ -239,7 +239,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// The sidecar is not what it should be.
+    /// The sidecar is faulty.
     #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", why = plain(why), path = path.display())]
     Sidecar {
         /// Fault and its place.

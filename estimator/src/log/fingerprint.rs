@@ -4,7 +4,7 @@ use super::plan::Plan;
 use csv::ByteRecord;
 use std::collections::BTreeMap;
 
-/// A checkpoint is kept every so many rows.
+/// Number of rows from one checkpoint to the next.
 const STRIDE: usize = 32;
 
 /// Running hashes of one column in one trial.

@@ -8,7 +8,7 @@ use std::path::Path;
 /// Formats that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A table of text; also what nothing else claims.
+    /// A table of text; also anything that no other format claims.
     Csv,
     /// Foxglove's container of messages.
     Mcap,

@@ -319,7 +319,7 @@ fn a_stream_with_labels_and_facts_that_come_last_reads_back() {
     assert!(McapStream::create_labelled(&path, &taken, &early, &[]).is_err(), "one column too many of that name");
 }
 
-/// Every reader shows what it has before it is done, and all of it in the end.
+/// Every reader shows its rows before it is done, and all of them in the end.
 #[test]
 fn a_preview_grows_while_a_log_is_read() {
     const ROWS: usize = 120_000;

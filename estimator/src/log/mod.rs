@@ -1,7 +1,8 @@
 //! Reading and writing logs: tables of samples with a sidecar of facts (`spec/logs.md`).
 //!
-//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that says what is wrong and where. The format
-//! is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every format.
+//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that names the fault and its place.
+//! The format is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every
+//! format.
 
 mod assemble;
 mod checks;

@@ -1,5 +1,5 @@
-//! Room for long columns in pages of two megabytes, if the system has them. Twelve channels of a million rows take 24
-//! 000 ordinary pages, and getting each of them from the system costs as long as parsing a thousand numbers.
+//! Room for long columns in pages of two megabytes, if the system has them. Twelve channels of a million rows take
+//! 24 000 ordinary pages, and getting each of them from the system costs as long as parsing a thousand numbers.
 
 /// Columns with room for less are left to ordinary pages: a large page that is half empty is wasted memory.
 #[cfg(target_os = "linux")]
@@ -21,7 +21,7 @@ fn ask_for_large_pages(column: &mut Vec<f64>) {
         return;
     }
     let start = spare.as_mut_ptr().cast::<u8>();
-    // Whole pages of the room alone: what shares a page with it is not ours.
+    // Whole pages of the room alone: anything that shares a page with it is not ours.
     let skipped = start.align_offset(PAGE_BYTES);
     if skipped > bytes {
         return;

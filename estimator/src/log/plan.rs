@@ -107,7 +107,7 @@ struct Planner<'a> {
     taken: HashMap<String, usize>,
 }
 
-/// Decides what each column is.
+/// Decides the use of each column.
 pub fn plan(headers: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
     let empty = Plan { uses: vec![Use::Ignore; headers.len()], ..Plan::default() };
     let mut planner = Planner { headers, meta, path, plan: empty, taken: HashMap::new() };
@@ -200,7 +200,7 @@ impl Planner<'_> {
                 let unit = foreign_unit(header).unwrap_or_default();
                 return Err(self.unknown_unit(header, unit, quantity));
             }
-            // Its own name says nothing usable, or a scale states how to get there: the program's name gives the unit.
+            // Its own name says nothing usable, or a scale states the conversion: the program's name sets the unit.
             _ => target,
         };
         let si = format!("{quantity}_{}", target.si);

@@ -39,8 +39,8 @@ pub struct Curve {
 }
 
 impl Preview {
-    /// Takes in what is new: `columns` are (name, all or the newest values), whose first value is sample `first`; `time_s` likewise,
-    /// empty without a clock. `group` tells clocks apart.
+    /// Takes in new values: `columns` are (name, all or the newest values), whose first value is sample `first`;
+    /// `time_s` likewise, empty without a clock. `group` tells clocks apart.
     pub fn grow<'a>(
         &self,
         group: &str,
@@ -129,7 +129,7 @@ mod tests {
         let time: Vec<f64> = (0..100_000).map(|i| f64::from(i) * 1e-3).collect();
         let wave: Vec<f64> = time.iter().map(|t| (0.3 * t).sin()).collect();
         for end in [7, 5_000, 60_123, 100_000] {
-            // All rows so far, or only the newest: what is known already is passed over.
+            // All rows so far, or only the newest: known values are passed over.
             let first = if end == 60_123 { 4_000 } else { 0 };
             preview.grow("", first, &time[first..end], [("wave", &wave[first..end])]);
             let curves = preview.curves(500);

@@ -35,7 +35,8 @@ impl Band {
     /// Of these values; of none, one that joins with anything.
     pub fn of(values: &[f64]) -> Self {
         const LANES: usize = 4;
-        // In lanes, so that the compiler can use wide registers; what is no number is neither smaller nor larger.
+        // In lanes, so that the compiler can use wide registers; a value that is not a number is neither smaller nor
+        // larger.
         let (mut lows, mut highs) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         let (blocks, rest) = values.as_chunks::<LANES>();
         for block in blocks {

@@ -64,8 +64,8 @@ fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
 
 /// Writes the sidecar of `recording` beside `log` and returns its path.
 ///
-/// A written table is in the program's names and SI units already: what the sidecar said about the old file's columns is
-/// left out, everything else is kept.
+/// A written table is in the program's names and SI units already: statements about the old file's columns are left
+/// out, everything else is kept.
 pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
     let path = path_for(log);
     write_as_is(&super::write::portable_meta(&recording.meta), &path)?;

@@ -10,7 +10,7 @@ pub struct Watch<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Set by anybody to end the read; it then answers [`LogError::Cancelled`](super::LogError::Cancelled).
     pub cancelled: &'a AtomicBool,
-    /// Shown what has been read so far, where somebody wants to look at it.
+    /// Preview that is shown the rows read so far, if there is one.
     pub preview: Option<&'a Preview>,
 }
 
@@ -23,7 +23,7 @@ impl Watch<'_> {
         Watch { progress: &|_| {}, cancelled: &NEVER, preview: None }
     }
 
-    /// True when somebody has ended it.
+    /// True after the caller has ended it.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

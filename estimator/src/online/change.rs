@@ -15,7 +15,7 @@ const SIZES: [f64; 2] = [0.4, 1.5];
 const MOST_A_ROW: f64 = 5.0;
 /// Innovations beyond this many standard deviations teach nothing about the noise.
 const CLIP: f64 = 7.0;
-/// Noise and correlation must be known from so many rows before anything is tested.
+/// Number of rows from which noise and correlation must be known before anything is tested.
 const WARM_UP: u32 = 24;
 /// Rows over which noise and correlation are remembered.
 const MEMORY: f64 = 1500.0;
@@ -139,7 +139,7 @@ impl<const P: usize> ChangeDetector<P> {
         found.map(|(_, change)| change)
     }
 
-    /// All sums at zero again; what is known of the noise stays.
+    /// All sums at zero again; the estimate of the noise stays.
     pub fn restart(&mut self, time_s: f64) {
         self.sums = [[[0.0; 2]; SIZES.len()]; P];
         self.since = [[[time_s; 2]; SIZES.len()]; P];

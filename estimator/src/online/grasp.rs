@@ -81,7 +81,8 @@ impl Grasp {
         (self.bound, self.grip, self.held_rows, self.carried_rows, self.told) = (None, [0.0; 2], 0, 0, false);
     }
 
-    /// Takes in a row and, where it is known, what weight and inertia leave of its force; says when the weight jumped, with the weight before, bias in.
+    /// Takes in a row and, if it is known, the residual force after weight and inertia; reports a jump of the weight,
+    /// with the weight before, bias in.
     pub(super) fn take(&mut self, row: &Row, left: Option<&Left>) -> Option<(super::change::Change, f64)> {
         self.held_rows += 1;
         let share = 1.0 / self.held_rows as f64;

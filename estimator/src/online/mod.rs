@@ -35,7 +35,7 @@ use serde::Serialize;
 /// Settings of the estimator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Time after which what is excited all the while is forgotten, s; infinite: never.
+    /// Time after which a direction that is excited all the while is forgotten, s; infinite: never.
     pub memory_s: f64,
     /// Most false alarms of the change detectors of one object, an hour.
     pub false_alarms_per_hour: f64,

@@ -172,7 +172,7 @@ impl<const P: usize> Recursive<P> {
         (self.filled, self.blocks) = (0, self.blocks + 1.0);
     }
 
-    /// The values; zero for what was never excited.
+    /// The values; zero for directions that were never excited.
     pub fn values(&self) -> [f64; P] {
         back(&self.root, &self.rotated)
     }
@@ -229,7 +229,8 @@ impl<const P: usize> Recursive<P> {
         let persistence = ((1.0 + rho) / (1.0 - rho)).max(1.0);
         let long_run = own * (1.0 + rho) / (1.0 - rho) * n / (n - 2.0).max(1.0);
         let correlated = long_run * inflation((n / (3.0 * persistence)).max(3.0));
-        // Never below what independent rows would give; forgetting halves that, because a long memory weighs its rows unevenly.
+        // Never below the errors of independent rows; forgetting halves that, because a long memory weighs its rows
+        // unevenly.
         let even = if self.forgets > 0.0 { 0.5 } else { 1.0 };
         let white = even * self.power / self.freedom * inverse[j][j] * inflation(self.freedom);
         correlated.max(white)

@@ -10,14 +10,14 @@ use crate::segment::threshold::Usual;
 use haptics::Vec2;
 use haptics::recording::Task;
 
-/// Bias of the sensors is remembered for so many seconds of free motion.
+/// Memory of the sensors' bias, seconds of free motion.
 const BIAS_MEMORY_S: f64 = 20.0;
 /// A zero of a sensor moves no farther than this, N, and no faster than this, N/s, on top.
 const MOST_DRIFT_N: f64 = 0.1;
 const MOST_DRIFT_N_S: f64 = 0.02;
 /// Rows of free motion are so far apart, s.
 pub(super) const FREE_ROW_S: f64 = 0.06;
-/// Before anything was seen: the thesis's thresholds come out of these.
+/// Usual levels before anything was seen: they lead to the thesis's thresholds.
 const START: Usual = Usual { force_noise_n: 0.003, net_n: 0.3, grip_n: 1.5, velocity_noise_m_s: 0.0, speed_m_s: 0.15 };
 
 /// The state of the middle sample, and since when it holds.
@@ -182,7 +182,7 @@ impl Sense {
         let follow = |usual: &mut f64, value: f64, share: f64, low: f64, high: f64| {
             *usual = (*usual * (1.0 + step * if value > *usual { share } else { share - 1.0 })).clamp(low, high);
         };
-        // Resting does not make what is usual smaller.
+        // Resting does not make the usual levels smaller.
         if force[0].norm() + force[1].norm() > 0.2 * self.usual.grip_n {
             follow(&mut self.usual.net_n, (force[0] + force[1]).y.abs(), 0.9, 0.02, 50.0);
             follow(&mut self.usual.grip_n, force[0].x.min(-force[1].x), 0.95, 0.2, 50.0);

@@ -8,7 +8,7 @@ use super::subtasks::{Run, Subtask};
 const MISSED_PENALTY: f64 = 0.01;
 /// Price of a failed attempt: an object was gripped, let go, and gripped again.
 const RETRY_PENALTY: f64 = 0.005;
-/// Price of what the places of two grasps speak against.
+/// Price of a step that the places of two grasps contradict.
 const CONTRADICTED_PENALTY: f64 = 0.05;
 
 /// Cost per unit of time of being in `seen` while `expected` should hold.
@@ -22,7 +22,7 @@ fn mismatch(seen: SystemState, expected: SystemState) -> f64 {
     }
 }
 
-/// The order, with what may follow what.
+/// The order, with the permitted transitions.
 struct Order<'a> {
     steps: &'a [Subtask],
     /// The step before the first one of the same object: where a failed attempt begins again.

@@ -201,7 +201,7 @@ impl Definition {
         }
     }
 
-    /// The expected order for so many objects; nothing where no order is expected.
+    /// The expected order for a number of objects; nothing if no order is expected.
     pub fn order(&self, objects: usize) -> Vec<Subtask> {
         let Subtasks::Ordered(ordered) = &self.subtasks else { return Vec::new() };
         let first = ordered.first.iter().map(|step| Subtask { object: 0, ..step.numbered(1) });

@@ -21,7 +21,7 @@ pub struct Hand<'a> {
 /// Relation of the objects of two grasps, told by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// The second one takes up what the first one lost.
+    /// The second one takes up the object that the first one lost.
     Again,
     /// The second one takes something else.
     Other,
@@ -169,7 +169,8 @@ impl Grasp {
     }
 }
 
-/// For every run: what the free motion that it is part of lies between. Runs elsewhere: nothing.
+/// For every run: the relation of the grasps on both sides of the free motion that it is part of. Runs elsewhere:
+/// `None`.
 pub(super) fn between(runs: &[Run], grasps: &[Grasp]) -> Vec<Option<Next>> {
     let mut told = vec![None; runs.len()];
     for pair in grasps.windows(2) {

@@ -38,7 +38,7 @@ const LEVELS: [f64; 2] = [0.7, 1.0];
 /// Rules and model that differ in more than this share of the samples are said to.
 const DISAGREEMENT: f64 = 0.05;
 
-/// The most probable path through a recording, and what is known of every sample.
+/// The most probable path through a recording, and the posterior of every sample.
 pub struct Decoded {
     /// State of every sample.
     pub path: Vec<SystemState>,
@@ -149,7 +149,7 @@ struct Start {
     samples: usize,
 }
 
-/// Mean and covariance of what the rules called so, sample by sample and after smoothing.
+/// Mean and covariance of the samples of each state by the rules, sample by sample and after smoothing.
 fn starts(evidence: &Evidence, smooth: &[SystemState], states: &[SystemState]) -> Vec<Start> {
     let d = evidence.channels;
     let rows = |state: SystemState| {
@@ -204,7 +204,7 @@ impl Trainer<'_> {
         let transitions = chain.transition().iter().map(|p| p * self.dwell * PRIOR_STAYS).collect();
         let total: usize = self.starts.iter().map(|s| s.samples).sum();
         let effective = self.weight * (self.values.len() / self.channels) as f64 / total.max(1) as f64;
-        // No rule says what `no state` looks like: training would only let it take what belongs to others.
+        // No rule defines the look of `no state`: training would only let it take the samples of others.
         let believed = |(state, start): (&SystemState, &Start)| match state {
             SystemState::NoState => f64::INFINITY,
             _ => (PRIOR_SHARE * effective * start.samples as f64).max(PRIOR_LEAST),
@@ -252,7 +252,7 @@ impl Trainer<'_> {
 fn affinity(states: &[SystemState]) -> Vec<f64> {
     use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, Penetration, SlidingOnGround};
     let likely = |a: SystemState, b: SystemState| match (a, b) {
-        // A needle goes through what it has pressed in, and is drawn out before it is free.
+        // A needle goes through a sheet that it has pressed in, and is drawn out before it is free.
         (FreeMotion, Penetration | HoldAboveGround | SlidingOnGround)
         | (Penetration, FreeMotion)
         | (HoldAboveGround, SlidingOnGround) => false,
@@ -292,7 +292,7 @@ mod tests {
         if mean[0].sinh() > level { Turning } else { Holding }
     }
 
-    /// A channel that is at each level for so many samples of 10 ms, with the states that the rules see there.
+    /// A channel that is at each level for a number of samples of 10 ms, with the states that the rules see there.
     fn evidence(parts: &[(f64, SystemState, usize)], spread: f64) -> (Vec<f64>, Evidence) {
         let mut rng = StdRng::seed_from_u64(21);
         let noise = Normal::new(0.0, spread).expect("a spread");

@@ -9,7 +9,8 @@ use crate::estimate::{EstimateError, Phase, StrokePhase};
 use crate::identify::needle::{self, Channels};
 use haptics::recording::Recording;
 
-/// A threshold of the model's channels is this many times the noise, or this share of what the signal reaches, as for blocks.
+/// Threshold of the model's channels, in multiples of the noise, or as a share of the signal's usual size, as for
+/// blocks.
 const NOISES: f64 = 5.0;
 const SIGNAL_SHARE: f64 = 0.06;
 const SPEED_SHARE: f64 = 0.06;

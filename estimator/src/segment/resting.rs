@@ -21,9 +21,9 @@ const STILL: f64 = 1.6;
 const NEAR: f64 = 2.0;
 /// Levels that are tried, from the smallest force on: more stand still in contact only.
 const MOST_SEEDS: usize = 200;
-/// A bias is small against what the hand does otherwise.
+/// Largest bias, as a share of the usual forces of the hand.
 const LARGEST_BIAS: f64 = 0.35;
-/// Off the circle: by this share of the radius, and by this multiple of what the path misses it.
+/// Distance off the circle: as a share of the radius, and in multiples of the path's usual distance from it.
 const OFF_SHARE: f64 = 0.03;
 const OFF_MULTIPLE: f64 = 4.0;
 /// Points that a circle is fitted to are enough.
@@ -122,7 +122,7 @@ impl Resting {
         self
     }
 
-    /// The force at rest at a time, N: in between of what it was before and is afterwards where the sensor drifts.
+    /// The force at rest at a time, N: interpolated between the rests before and after if the sensor drifts.
     pub fn bias_at(&self, time_s: f64) -> Vec2 {
         let next = self.drift.partition_point(|(t, _)| *t < time_s);
         match (next.checked_sub(1).and_then(|k| self.drift.get(k)), self.drift.get(next)) {

@@ -75,7 +75,7 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
     if truth.iter().all(Option::is_none) {
         return None;
     }
-    // Who labels only whether a handle is held says nothing of turning and holding it still.
+    // Labels that only say whether a handle is held say nothing of turning and holding it still.
     let moved = matches!(found.like()?, Task::Crank | Task::Mechanism | Task::Switch);
     let apart = truth.contains(&Some(SystemState::Holding));
     let one = |state: SystemState| match state {

@@ -14,7 +14,7 @@ const SLID_M: f64 = 5e-3;
 /// Least share of the time for which it stands on the ground at that very height.
 const GROUNDED_SHARE: f64 = 0.2;
 
-/// Puts back on the ground what was never lifted from it, in a recording in which a block is slid.
+/// Puts blocks that were never lifted back on the ground, in a recording in which a block is slid.
 pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [SystemState]) {
     use SystemState::{HoldAboveGround, HoldOnGround, SlidingOnGround};
     let held: Vec<usize> =

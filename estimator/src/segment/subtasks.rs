@@ -104,7 +104,7 @@ fn best_order(
     }
 }
 
-/// Says what of the expected order is missing.
+/// Warns of missing steps of the expected order.
 fn missing(ordered: &Ordered, order: &[Subtask], states: &[Interval], warnings: &mut Vec<String>) {
     if ordered.first.first().is_some_and(|first| first.numbered(1).name != order[0].name) {
         warnings.push(format!(

@@ -25,8 +25,8 @@ pub struct Derivatives {
 /// Local polynomial fit (Savitzky and Golay 1964) of `order` over 2·`half_width` + 1 samples, also for uneven `time_s`;
 /// one-sided at the ends.
 ///
-/// `time_s`, `values`: n samples each, time strictly increasing. Degenerate: a record shorter than the window uses what
-/// there is; fewer samples than the polynomial needs give a lower order.
+/// `time_s`, `values`: n samples each, time strictly increasing. Degenerate: a record shorter than the window uses all
+/// its samples; fewer samples than the polynomial needs give a lower order.
 pub fn savitzky_golay(time_s: &[f64], values: &[f64], half_width: usize, order: usize) -> Derivatives {
     let n = values.len().min(time_s.len());
     let mut out = Derivatives { value: vec![0.0; n], first: vec![0.0; n], second: vec![0.0; n] };

@@ -64,7 +64,7 @@ fn mean_period(times: &[f64]) -> Option<f64> {
     (period.is_finite() && period > 0.0).then_some(period)
 }
 
-/// Means over even stretches of time, less their own mean, with running sums of them and of their squares.
+/// Means over even intervals of time, less their own mean, with running sums of them and of their squares.
 struct Bins {
     means: Vec<f64>,
     sums: Vec<f64>,

@@ -9,7 +9,7 @@ const FOURTH_POWER: f64 = 70.0;
 const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
 
 /// Standard deviation of the white part of the noise: median size of the fourth differences, robust against motion,
-/// impacts and outliers. Never below what the channel's quantum implies (q/√12).
+/// impacts and outliers. Never below the value that the channel's quantum implies (q/√12).
 ///
 /// `values`: n samples, evenly spaced. Fewer than 8 samples give 0.
 pub fn white_noise(values: &[f64]) -> f64 {
@@ -45,8 +45,8 @@ pub fn white_noise_under_fast_motion(values: &[f64]) -> f64 {
     if eighth < CLEARLY_LESS * fourth { eighth } else { fourth }
 }
 
-/// The same for samples at uneven times: each one against the cubic through its two neighbours on either side, in units of
-/// what unit noise would make of that difference.
+/// The same for samples at uneven times: each one against the cubic through its two neighbours on either side, in units
+/// of that difference for unit noise.
 pub fn white_noise_uneven(time_s: &[f64], values: &[f64]) -> f64 {
     let n = values.len().min(time_s.len());
     if n < 8 {
@@ -171,7 +171,7 @@ mod tests {
             }
             let seen = (squares / 50.0).sqrt();
             let expected = resolution_error(step, step * (share * share + 1.0 / 12.0).sqrt());
-            // The mean of so many samples scatters by share · step / 200 itself.
+            // The mean of this number of samples scatters by share · step / 200 itself.
             assert!((seen - expected).abs() < 0.05 * expected + 0.004 * step, "{share}: {seen} against {expected}");
         }
     }

@@ -28,7 +28,7 @@ pub struct TaskSignals {
     pub grip_width_m: Vec<f64>,
     /// Rigid-body velocity: mean of the tip velocities, m/s.
     pub velocity: Vec<Vec2>,
-    /// Net force on what is held: sum of the tip forces, N.
+    /// Net force on the held object: sum of the tip forces, N.
     pub net_force_n: Vec<Vec2>,
     /// Grip normal force: min(Fx1, −Fx2), N.
     pub grip_force_n: Vec<f64>,
@@ -236,7 +236,7 @@ fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
     let mut means: Vec<f64> = (0..half).map(by_itself).collect();
     for first in (half..n - half).step_by(2 * half) {
         let window = &values[first - half..=first + half];
-        // About a value of the window: what is common to all cancels nothing.
+        // About a value of the window: the common part cancels nothing.
         let level = values[first];
         let (mut plain, mut linear, mut square) = (0.0, 0.0, 0.0);
         for (k, value) in window.iter().enumerate() {

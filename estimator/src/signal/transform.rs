@@ -112,7 +112,7 @@ fn smoothed(times: &[f64], values: &[f64], cutoff_hz: f64) -> Vec<f64> {
     interpolate_cubic(&grid, &even, times)
 }
 
-/// Sum of trapezia from the first sample on; nothing is added across what is no number.
+/// Sum of trapezia from the first sample on; nothing is added across values that are not numbers.
 fn integral(times: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     (0..values.len())

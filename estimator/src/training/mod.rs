@@ -36,8 +36,8 @@ pub struct Measures {
     pub course: Option<Course>,
 }
 
-/// Measures a recording of two fingers, or of one tool; with the world that was touched also what became of its objects. Forces above
-/// `limit_n` count as too large, N.
+/// Measures a recording of two fingers, or of one tool; with the world that was touched also the results for its
+/// objects. Forces above `limit_n` count as too large, N.
 ///
 /// The recording must begin where the world does: objects at rest in their places.
 ///

@@ -4,7 +4,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-/// A session is over after so long without an attempt, s.
+/// Time without an attempt after which a session is over, s.
 const PAUSE_S: f64 = 3_600.0;
 /// Fewer attempts show no curve: it has three parameters.
 const LEAST_ATTEMPTS: usize = 6;
@@ -85,8 +85,8 @@ pub struct CurvePoint {
 ///
 /// Method: for every exponent of a grid, level and gain are a linear regression; the best exponent is that of least
 /// squares. The interval of the exponent holds all whose squares an F test with one degree of freedom does not refuse
-/// at 5 % (profile likelihood). The interval of the curve holds everything within the regression's t interval for any of them.
-/// Attempts count alike and are taken for independent.
+/// at 5 % (profile likelihood). The interval of the curve holds everything within the regression's t interval for any
+/// of them. Attempts count alike and are taken for independent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearningCurve {
     /// Asymptote after endless practice.
@@ -95,7 +95,7 @@ pub struct LearningCurve {
     pub gain: f64,
     /// Exponent of the decay.
     pub exponent: f64,
-    /// 95 % interval of the exponent, within what is tried.
+    /// 95 % interval of the exponent, within the grid.
     pub exponent_interval: [f64; 2],
     /// Scatter of single attempts about it, a standard deviation.
     pub scatter: f64,

@@ -103,7 +103,7 @@ pub fn gamepad(start_in_world: [Vec2; 2], workspace: Workspace, mode: GamepadMod
     (GamepadHandle { pad: pad_in, rumble: rumble_out }, device)
 }
 
-/// Stick position without its dead zone, with fine control near the middle; 0 for what is no number.
+/// Stick position without its dead zone, with fine control near the middle; 0 for values that are not numbers.
 fn shaped(stick: Vec2) -> Vec2 {
     let size = stick.norm().min(1.0);
     if size.is_finite() && size > DEAD {

@@ -1,7 +1,7 @@
-//! The keyboard, for those who can use no mouse: keys that are held move the hand, close it and open it.
+//! The keyboard, for people who cannot use a mouse: keys that are held move the hand, close it and open it.
 //!
-//! Only what is held counts, never how often the system repeats a key. Speeds come up and go down with a bounded acceleration, and
-//! the fine mode makes everything five times slower.
+//! Only held keys count, never how often the system repeats a key. Speeds come up and go down with a bounded
+//! acceleration, and the fine mode makes everything five times slower.
 
 use super::pointer::Pointer;
 use super::steering::Steering;

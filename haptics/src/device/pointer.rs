@@ -50,7 +50,7 @@ impl Pointer {
         }
     }
 
-    /// Its goals come in steps of so many seconds. Windows that are drawn rarely move the fingers far at once.
+    /// Sets the time between two goals, s. Windows that are drawn rarely move the fingers far at once.
     pub fn smooth_steps_of(&mut self, step_s: f64) {
         self.smoothing_s = (SMOOTHING_STEPS * step_s).clamp(SMOOTHING_S, MOST_SMOOTHING_S);
     }

@@ -1,7 +1,7 @@
 //! Replay of a recording: the fingers go where they went.
 //!
-//! A servo that ticks at the recording's own times gets the recorded samples themselves, so that the same world gives the same
-//! forces to the bit. At any other rate positions and velocities are interpolated linearly.
+//! A servo that ticks at the recording's own times gets the recorded samples themselves, so that the same world
+//! computes the same forces to the bit. At any other rate positions and velocities are interpolated linearly.
 
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;

@@ -17,9 +17,9 @@ use crate::device::DeviceSpec;
 use crate::servo::passivity::required_damping;
 use crate::world::World;
 
-/// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
+/// Time constant with which the receiver of waves follows the arrivals, beside the jitter, s.
 pub(super) const SMOOTHING_S: f64 = 0.005;
-/// The receiver's time constant is at least so many times the longest gap between packets.
+/// Least ratio of the receiver's time constant to the longest gap between packets.
 const SMOOTH_GAPS: f64 = 4.0;
 /// A longer gap is a break, s: it is not smoothed over.
 const LONGEST_GAP_S: f64 = 0.05;
@@ -39,7 +39,7 @@ const PURSE_J: f64 = 1e-4;
 pub struct Waves {
     /// Wave impedance b, N s/m.
     pub impedance_n_s_m: f64,
-    /// A damper beside the world, N s/m, that takes up what the sampled world gives out.
+    /// A damper beside the world, N s/m, that takes up the energy that the sampled world generates.
     pub damper_n_s_m: f64,
 }
 
@@ -105,8 +105,8 @@ struct Sender {
 }
 
 impl Sender {
-    /// Sends a wave for `dt_s`. `income_j` is what this end took in meanwhile (from its port and from the wave that arrived): the
-    /// wave may not carry more, whatever sampling, filters and limits do.
+    /// Sends a wave for `dt_s`. `income_j` is the energy that this end took in meanwhile (from its port and from the
+    /// wave that arrived): the wave may not carry more, whatever sampling, filters and limits do.
     fn send(&mut self, wave: Vec2, income_j: f64, dt_s: f64) {
         self.account.integral += wave * dt_s;
         self.purse_j += income_j;
@@ -175,7 +175,7 @@ impl WorldEnd {
         let mut velocities = [Vec2::zeros(); 2];
         for finger in 0..2 {
             let u = self.arriving[finger].draw(smoothing_s, dt_s);
-            // The force of the tips on the world is the reaction to what the operator is to feel.
+            // The force of the tips on the world is the reaction to the operator's force.
             let (velocity, w) = waves.at_world(u, -force_on_operator_n[finger]);
             // The port takes F v, the damper beside it the rest: the balance is exact here.
             self.leaving[finger].send(w, 0.5 * w.norm_squared() * dt_s, dt_s);

@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn one_effect() {
-        // Bent by one way the friction is 1 − 1/e of what slides, and goes with the load at once.
+        // Bent by one way the friction is 1 − 1/e of that of sliding, and follows the load at once.
         let values = [0.2, 1e-3, 0.0, 0.0, 0.0];
         let at = |load_n: f64| Motion { velocity: 1e-3, direction: 1.0, normal_force_n: load_n, ..Motion::default() };
         let mut memory = [0.0; 2];

@@ -1,5 +1,5 @@
-//! The page of a cause for `docs/causes/`, made of what the catalogue says about it. `cargo run -p haptics --example causes` writes
-//! all of them; `haptics/tests/causes.rs` fails when the written ones say something else.
+//! The page of a cause for `docs/causes/`, made from the catalogue. `cargo run -p haptics --example causes` writes all
+//! of them; `haptics/tests/causes.rs` fails if the written ones differ.
 
 use super::{Enters, Entry, Kind, ParameterSpec};
 use std::fmt::Write as _;
@@ -72,7 +72,7 @@ fn enters(enters: Enters) -> &'static str {
     }
 }
 
-/// The page of what has no name (`other:<expression>`).
+/// The page of a term without a name (`other:<expression>`).
 pub fn nameless() -> String {
     format!(
         "{MADE}\n\n# Something that no law explains\n\n`other:<expression>` · unnamed\n\n{}\n\n[All causes](README.md)\n",

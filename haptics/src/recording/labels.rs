@@ -4,7 +4,7 @@ use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::ops::{Index, Range};
 
-/// From so many distinct texts on it is asked whether texts repeat at all.
+/// Number of distinct texts from which it is checked whether texts repeat at all.
 const MANY: usize = 1 << 15;
 
 /// A column of text: labels, names of trials or frames. Rows repeat each other, so a row takes four bytes and a text is kept once. Texts

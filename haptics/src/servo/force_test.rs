@@ -73,7 +73,7 @@ impl Request {
         self.on.store(wanted_n.is_some(), Ordering::Release);
     }
 
-    /// The servo: what is asked for.
+    /// The servo's side: the force that the window asks for.
     pub fn get(&self) -> Option<[Vec2; 2]> {
         if !self.on.load(Ordering::Acquire) {
             return None;

@@ -49,7 +49,7 @@ pub struct Snapshot {
     pub timing: Timing,
     /// The virtual coupling that the device needs in this world at this rate; `None`: it renders the world directly.
     pub coupling: Option<Coupling>,
-    /// Delay that the device states of itself, s ([`Device::delay_s`]): what can be rendered passively counts with it.
+    /// Delay that the device states of itself, s ([`Device::delay_s`]): the passive rendering limits count with it.
     pub delay_s: f64,
     /// Stiffness of a line with waves between device and world, N/m ([`Device::line_stiffness_n_m`]); `None` without one.
     pub line_n_m: Option<f64>,
@@ -125,7 +125,7 @@ impl Loop {
         }
     }
 
-    /// Lets the passivity controller add up to so much damping (N s/m) while energy has been given out; off by default.
+    /// Lets the passivity controller add up to this damping (N s/m) while energy has been generated; off by default.
     #[must_use]
     pub fn with_passivity_control(mut self, most_n_s_m: Option<f64>) -> Self {
         self.passivity_control_n_s_m = most_n_s_m;
@@ -155,7 +155,7 @@ impl Loop {
             None => Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity },
         };
         step(world, state, &input, dt_s);
-        // The operator feels the reaction to what the tips exert, or the coupling that they hang on.
+        // The operator feels the reaction to the tips' force, or the coupling that they hang on.
         let mut wanted = match &self.proxy {
             Some(proxy) => proxy.force_n(&sample),
             None => state.tip_force_n.map(|f| -f),
@@ -293,7 +293,7 @@ impl Loop {
         self.sent_force_n = [Vec2::zeros(); 2];
     }
 
-    /// World and state, for what keeps a model true.
+    /// World and state, for the corrections of a model.
     pub(crate) fn model_mut(&mut self) -> (&mut World, &mut State) {
         let Swap { world, state, .. } = &mut *self.current;
         (world, state)

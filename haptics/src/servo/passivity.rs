@@ -5,8 +5,9 @@
 //! for K < (b + B)/(T/2 + `t_d`) (Gil et al. 2009, light damping). The first is the promise that nothing the operator does can
 //! draw energy out of the wall; the second only that a free hand is left alone. With B > b a wall can be stable and never passive.
 //!
-//! Positions in steps of Δ make the spring's force wrong by up to K Δ/2, and the damper's, which takes the difference of two of
-//! them, by up to B Δ/T: only Coulomb friction `f_c` takes up what that gives out (Abbott & Okamura 2005, for the spring).
+//! Positions in steps of Δ make the spring's force wrong by up to K Δ/2, and the damper's, which takes the difference
+//! of two of them, by up to B Δ/T. Only Coulomb friction `f_c` takes up the energy of these errors (Abbott & Okamura
+//! 2005, for the spring).
 
 #[cfg(test)]
 mod oracles;
@@ -56,7 +57,7 @@ pub fn passive_damping(spec: &DeviceSpec, period_s: f64) -> f64 {
     spec.damping_n_s_m.min(friction_per_step_n_m(spec) * period_s)
 }
 
-/// `f_c`/Δ, N/m: what friction takes up of the steps; without bound where there are none.
+/// `f_c`/Δ, N/m: the part of the steps that friction takes up; infinite without steps.
 pub(super) fn friction_per_step_n_m(spec: &DeviceSpec) -> f64 {
     if spec.resolution_m > 0.0 { spec.coulomb_n / spec.resolution_m } else { f64::INFINITY }
 }
@@ -91,7 +92,7 @@ impl Observer {
         self.stored_j = Some((start_j, stored_j));
     }
 
-    /// Energy taken in and not held, J; negative: the environment has given out what it never had.
+    /// Energy taken in and not held, J; negative: the environment has generated energy.
     pub fn energy_j(&self) -> f64 {
         self.taken_j - self.stored_j.map_or(0.0, |(start_j, now_j)| now_j - start_j)
     }

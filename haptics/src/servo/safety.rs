@@ -32,7 +32,7 @@ const COASTING_S: f64 = 0.005;
 const FARTHEST_M: f64 = 10.0;
 const FASTEST_M_S: f64 = 100.0;
 
-/// Why the force is not what the world says.
+/// Reasons why the force differs from that of the world.
 #[allow(clippy::struct_excessive_bools)] // four independent lights, shown as such
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SafetyFlags {
@@ -102,7 +102,7 @@ impl Safety {
     /// The sample to simulate with: of each finger the given one when it is fresh, else the last good one, which comes to rest
     /// after [`COASTING_S`]. A sample with anything impossible in it is refused as a whole, and both fingers rest.
     pub fn admit(&mut self, sample: &Sample, dt_s: f64, flags: &mut SafetyFlags) -> Sample {
-        // Written so that what is not a number is impossible too.
+        // Written so that not-a-number is impossible too.
         let possible = sample.tip_in_world.iter().all(|v| v.norm() <= FARTHEST_M)
             && sample.tip_velocity.iter().all(|v| v.norm() <= FASTEST_M_S);
         flags.not_finite |= !possible;

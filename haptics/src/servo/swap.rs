@@ -44,7 +44,7 @@ impl Swap {
         self.state.copy_from(&running.state);
         let law = |swap: &Self, k: usize| swap.world.crank.as_ref()?.effects.get(k).map(|effect| effect.law().id());
         for k in 0..MAX_EFFECTS {
-            // Another law knows nothing of what the one in its place remembers.
+            // Another law cannot use the memory of the one in its place.
             if law(self, k) != law(running, k)
                 && let Some(memory) = self.state.crank.memories.get_mut(k)
             {

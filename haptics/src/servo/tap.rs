@@ -1,4 +1,4 @@
-//! A second way out for ticks: a ring that the servo fills only while somebody records.
+//! A second way out for ticks: a ring that the servo fills only during a recording.
 //!
 //! The ring that the window empties once a frame may overflow when no frame is drawn. A recording must not lose ticks to that, so a
 //! thread of its own empties this one. The servo's side never waits: a tick that finds the ring full is counted and dropped.
@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// State shared by both ends.
 #[derive(Debug)]
 struct Shared {
-    /// True while somebody records.
+    /// True during a recording.
     open: AtomicBool,
     /// Ticks that found the ring full since it was opened.
     dropped: AtomicU64,
@@ -19,7 +19,8 @@ struct Shared {
     home: Mutex<Option<Consumer<TickRecord>>>,
 }
 
-/// A closed tap: what a tick fills, and where it is opened. Room for `capacity` ticks is allocated here.
+/// A closed tap: the end that a tick fills, and the one where it is opened. Room for `capacity` ticks is allocated
+/// here.
 pub fn tap(capacity: usize) -> (TapFiller, TapSource) {
     let (ticks, out) = RingBuffer::new(capacity);
     let shared = Shared { open: AtomicBool::new(false), dropped: AtomicU64::new(0), home: Mutex::new(Some(out)) };
@@ -35,7 +36,7 @@ pub struct TapFiller {
 }
 
 impl TapFiller {
-    /// Gives a tick to whoever records. Allocates, locks and waits for nothing.
+    /// Hands a tick to the recorder, if there is one. Allocates, locks and waits for nothing.
     pub fn offer(&mut self, tick: TickRecord) {
         // Relaxed is enough: a world that is swapped in after the tap was closed comes through a ring that orders the two.
         if self.shared.open.load(Ordering::Relaxed) && self.ticks.push(tick).is_err() {
@@ -66,7 +67,8 @@ impl TapSource {
         Some(Tap { ticks: Some(ticks), shared: Arc::clone(&self.shared) })
     }
 
-    /// Lets no further tick in; what is in the ring stays there for its reader. A world that is swapped in afterwards is never seen.
+    /// Lets no further tick in; ticks in the ring stay there for their reader. A world that is swapped in afterwards is
+    /// never seen.
     pub fn close(&self) {
         self.shared.open.store(false, Ordering::Release);
     }

@@ -1,4 +1,4 @@
-//! The handle of a running servo: what the window keeps.
+//! The handle of a running servo, for the window.
 
 use super::force_test::Request;
 use super::guard::{Beat, FAULT_AFTER_S, watch};
@@ -125,7 +125,7 @@ impl Servo {
                 .name("servo-guard".to_owned())
                 .spawn(move || watch(&watched, guard, watchdog_s, real_time))?,
             std::thread::Builder::new().name("servo".to_owned()).spawn(move || runner.run(scratch)).inspect_err(
-                // Nobody else would tell the guard.
+                // Nothing else would tell the guard.
                 |_| beat.finish(),
             )?,
         ];

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 /// Largest relative error of a guess: people's estimates from the look of a thing are of this order.
 pub const GUESS_OFF: f64 = 0.4;
 
-/// Salt of the guesses of walls: what was guessed before there were any stays as it was.
+/// Salt of the guesses of walls: earlier guesses stay as they were before walls were guessed.
 const WALLS: u64 = 0x3c6e_f372_fe94_f82b;
 
 /// Guess of a world: masses, friction under the fingers, stiffness of walls and laws of the crank. Each gets a factor

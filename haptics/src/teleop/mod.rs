@@ -33,7 +33,7 @@ use crate::servo::safety::Limits;
 use crate::world::{State, World};
 use serde::{Deserialize, Serialize};
 
-/// A slow line to the world, and what is done about it.
+/// A slow line to the world, and the method against its delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Delay {
@@ -58,7 +58,7 @@ impl Delay {
         self.round_trip_s == 0.0 && self.jitter_s == 0.0 && self.loss == 0.0
     }
 
-    /// Says what makes the line impossible, if anything does.
+    /// Fault of the line's settings, if there is one, in one sentence.
     pub fn check(&self) -> Result<(), ChannelError> {
         self.channel(0).check()
     }
@@ -92,7 +92,7 @@ pub struct Ends<'a> {
     pub seed: u64,
 }
 
-/// Puts a line between `operator` and the world that the servo runs. The view is what the operator is to be shown.
+/// Puts a line between `operator` and the world that the servo runs. The view is for the operator's display.
 pub fn connect(
     operator: Box<dyn Device>,
     ends: &Ends<'_>,

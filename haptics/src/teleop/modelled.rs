@@ -18,7 +18,7 @@ use crate::servo::safety::Limits;
 use crate::servo::{ForceGuard, Loop, Swap};
 use crate::world::{State, World};
 
-/// Salt of the fate of what the hand says.
+/// Salt of the fate of the hand's messages.
 const SALT: u64 = 0x9b05_688c_2b3e_6c1f;
 
 /// Stamp of a picture: near-clock time of the message that the far hand followed, and of the picture itself, s.

@@ -24,7 +24,7 @@ fn gain(line_n_m: Option<f64>) -> f64 {
     line_n_m.map_or(1.0, |line_n_m| (hand_stiffness_n_m() / line_n_m).max(1.0))
 }
 
-/// An operator behind a line with waves who sees late.
+/// An operator behind a line with waves, with delayed sight.
 pub(super) struct WavedHand {
     channel: ChannelDevice,
     spec: DeviceSpec,

@@ -30,7 +30,7 @@ pub struct Block {
     /// Shape of the body: its look, and whether it may turn.
     #[serde(default, skip_serializing_if = "Shape::is_block")]
     pub shape: Shape,
-    /// Its wall gives under a finger; absent: rigid.
+    /// Its wall yields under a finger; absent: rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<Wall>,
     /// Content that it can lose; absent: it is solid.
@@ -72,7 +72,7 @@ impl Shape {
     }
 }
 
-/// A wall that gives: a spring in series with the finger's pad.
+/// A wall that yields: a spring in series with the finger's pad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {

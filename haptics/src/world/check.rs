@@ -43,7 +43,7 @@ pub enum WorldError {
     Overlap {
         /// Name of the first body.
         who: String,
-        /// In what.
+        /// Name of the other body or surface.
         other: String,
         /// Depth of the overlap, mm.
         depth_mm: f64,
@@ -129,7 +129,8 @@ fn outline(block: &Block) -> Rect {
     Rect { center_m: block.start.center_m, half_m, axis_x: Vec2::new(cos, sin) }
 }
 
-/// Refuses values outside the bounds that a law states for them: a damper that gives energy out, a stiffness below zero.
+/// Refuses values outside the bounds that a law states for them: a damper that generates energy, a stiffness below
+/// zero.
 pub(super) fn effects(list: &[Effect]) -> Result<(), WorldError> {
     for effect in list {
         for (spec, value) in effect.law().parameters().iter().zip(effect.values) {

@@ -46,7 +46,7 @@ struct Found {
     depth_m: f64,
 }
 
-/// Gathers touches with what the tick before knew of them.
+/// Gathers touches with the memory of the tick before.
 struct Gather<'a> {
     world: &'a World,
     tips: [Vec2; 2],
@@ -111,7 +111,7 @@ fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid
 }
 
 impl Gather<'_> {
-    /// Adds a touch with what the tick before left.
+    /// Adds a touch with its memory of the tick before.
     fn add(&mut self, found: &Found, material: &Material) {
         // The buffer is sized for the densest packing. Should that ever be wrong, the tick continues without this
         // touch, because growing here would allocate in the servo.
@@ -228,7 +228,7 @@ impl Gather<'_> {
         }
     }
 
-    /// Fingers on what stands fixed. Whoever pushes the sheet down is inside of the cup and does not meet its wall.
+    /// Fingers on fixed objects. A finger that pushes the sheet down is inside of the cup and does not meet its wall.
     fn fixed(&mut self) {
         let (cup, base) = (self.world.membrane.as_ref().zip(self.world.floor.as_ref()), self.world.switch.as_ref());
         for finger in 0..2_u8 {
@@ -276,7 +276,8 @@ impl Gather<'_> {
                 let held = self.kept(pair).is_some();
                 let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
                 let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
-                // Whoever comes down on it from above does not press on its side: that would be a blow out of nothing.
+                // A finger that comes down on it from above does not press on its side: that would be a blow out of
+                // nothing.
                 let arrives = depth_m < self.tip_sweep_m[usize::from(finger)] + handle_sweep_m + ARRIVAL_M;
                 if level && (held || arrives || self.begins) {
                     let found = Found { pair, feature: 0, point_m: tip, normal: Vec2::new(-facing, 0.0), depth_m };

@@ -198,7 +198,7 @@ impl Touch {
 /// Impacts slower than this are resting contact, m/s: the damper that a measured restitution asks for does not grow further.
 pub(super) const RESTING_M_S: f64 = 0.01;
 
-/// A value held between −`most` and `most`. Unlike `clamp` it does not panic on what is not a number.
+/// A value held between −`most` and `most`. Unlike `clamp` it does not panic on not-a-number.
 #[inline]
 fn within(value: f64, most: f64) -> f64 {
     if value > most {

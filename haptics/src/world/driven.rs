@@ -45,7 +45,7 @@ pub(super) fn move_crank(
     state.rate_rad_s = speed / crank.radius_m;
     state.angle_rad += state.rate_rad_s * dt_s;
     move_radially((crank, mass_kg), state, pull, &motion, outward.y, dt_s);
-    // The chord that it moved along, not the tangent: what the pads' anchors add up must be the way that was gone.
+    // The chord that it moved along, not the tangent: the sum of the pads' anchors must be the travelled way.
     state.handle_velocity = (handle(crank, state, arm) - before_m) / dt_s;
 }
 

@@ -16,7 +16,7 @@ pub struct Stored {
 }
 
 impl Stored {
-    /// The energy now. Call it with every tick: what the crank's laws hold depends on the way.
+    /// The energy now. Call it with every tick: the energy of the crank's laws depends on the way.
     pub fn update(&mut self, world: &World, state: &State) -> f64 {
         let crank_j = world.crank.as_ref().map_or(0.0, |crank| self.crank(crank, state));
         bodies_j(world, state) + crank_j + switch_j(world, state)

@@ -20,8 +20,9 @@ pub(super) struct Fixed {
     pub depth_m: f64,
 }
 
-/// The cup's wall, from outside only: it leans from the rim of the sheet out to the table at `floor_m`. `kept` is the side that
-/// the finger pressed on in the tick before; whoever is deeper inside than `arrival_m` without that came another way.
+/// The cup's wall, from outside only: it leans from the rim of the sheet out to the table at `floor_m`. `kept` is the
+/// side that the finger pressed on in the tick before; a finger deeper inside than `arrival_m` without that came
+/// another way.
 pub(super) fn cup_wall(
     membrane: &Membrane,
     floor_m: f64,

@@ -44,7 +44,7 @@ pub struct Guided {
 }
 
 impl Guide {
-    /// Pieces of the curve between control points.
+    /// Number of spans of the curve between control points.
     pub fn pieces(&self) -> usize {
         if self.closed { self.points_m.len() } else { self.points_m.len().saturating_sub(1) }
     }

@@ -1,4 +1,4 @@
-//! The immutable description of a virtual world: what stands in a world file.
+//! The immutable description of a virtual world: the content of a world file.
 
 use super::block::Block;
 use super::check::{self, WorldError, finite, not_negative, positive};
@@ -85,10 +85,10 @@ pub struct Pad {
     pub shear_stiffness_n_m: f64,
     /// Tangential damping of the sticking pad, N s/m, ≥ 0.
     pub shear_damping_n_s_m: f64,
-    /// Height of the pad's flat face, m, ≥ 0: it keeps what it presses on from turning. 0: it touches at a point.
+    /// Height of the pad's flat face, m, ≥ 0: it keeps the pressed object from turning. 0: it touches at a point.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub face_m: f64,
-    /// A slip of what is held, at a given time and over a given way; absent: it slips when friction says so.
+    /// A slip of the held object, at a given time and over a given way; absent: it slips when friction says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slip: Option<FingertipSlip>,
 }
@@ -268,7 +268,7 @@ impl World {
         Vec2::new(sin, -cos) * self.gravity_m_s2
     }
 
-    /// Says what makes the world impossible to run, if anything does.
+    /// Fault that makes the world impossible to run, if there is one.
     pub fn check(&self) -> Result<(), WorldError> {
         if self.schema > SCHEMA {
             return Err(WorldError::NewerSchema(self.schema));

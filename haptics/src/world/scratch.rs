@@ -79,7 +79,7 @@ impl Scratch {
     }
 }
 
-/// The scratch space is no part of what a state is.
+/// The scratch space is no part of a state's identity.
 impl PartialEq for Scratch {
     fn eq(&self, _: &Self) -> bool {
         true

@@ -173,7 +173,7 @@ pub struct State {
     pub tick: u64,
     /// The input that led here.
     pub input: Input,
-    /// Force each tip exerts on the environment, N (what a force sensor in the tip reads).
+    /// Force each tip exerts on the environment, N (the reading of a force sensor in the tip).
     pub tip_force_n: [Vec2; 2],
     /// Blocks, in the order of the world's.
     pub bodies: Vec<BodyState>,

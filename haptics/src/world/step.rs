@@ -94,7 +94,7 @@ fn parts_of(world: &World, dt_s: f64, pad_m: f64) -> u32 {
     ((dt_s * part_rate(world, pad_m).0).ceil() as u32).clamp(1, MAX_PARTS)
 }
 
-/// Parts a second that the world needs with the deepest fingertip at `pad_m`, and what needs them.
+/// Parts a second that the world needs with the deepest fingertip at `pad_m`, and the body that needs them.
 pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     const LIMIT: f64 = 0.5;
     const DAMPING_LIMIT: f64 = 1.0;
@@ -139,7 +139,7 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     (most.0.sqrt(), most.1)
 }
 
-/// Stiffness and damping of what holds one body besides contacts: cable, guide and membrane, N/m and N s/m.
+/// Stiffness and damping of one body's constraints besides contacts: cable, guide and membrane, N/m and N s/m.
 fn held_by(world: &World, block: &Block) -> (f64, f64) {
     let (mut stiffness, mut damping) = block.cable.map_or((0.0, 0.0), |c| (c.stiffness_n_m, c.damping_n_s_m));
     if let Some(guide) = &block.guide {
@@ -173,7 +173,8 @@ fn advance(world: &World, state: &mut State, part: &Part, first: bool) {
     }
 }
 
-/// Presses all touches and loads what takes part. Returns the force on the crank's handle and on the switch's knob, N.
+/// Presses all touches and adds their forces to the bodies. Returns the force on the crank's handle and on the switch's
+/// knob, N.
 fn press_all(
     world: &World,
     state: &mut State,
@@ -221,7 +222,7 @@ fn press_all(
             }
         }
         match touch.contact.on {
-            // A finger feels the reaction; its sensor reads what it exerts.
+            // A finger feels the reaction; its sensor reads its own force.
             Surface::Finger(finger) => state.tip_force_n[usize::from(finger)] -= force,
             Surface::Block(index) => load(&mut solids[usize::from(index)], touch.arm_on_m, force),
             _ => {}

@@ -44,7 +44,7 @@ fn draw_arrow(
     }
     let arrow = force * view.options.force_scale_m_per_n;
     let (tail, head) = match view.options.arrow_anchor {
-        // Just off the foam, so that the head does not hide what it pushes on.
+        // Just off the foam, so that the head does not hide the pushed object.
         ArrowAnchor::HeadAtTip => (tip - arrow, tip),
         ArrowAnchor::TailAtTip => (tip, tip + arrow),
     };

@@ -11,7 +11,7 @@ use crate::vec2;
 use glam::{Vec2, Vec3};
 
 const RADIUS_M: f32 = 0.00065;
-/// Pieces that a slack cable is drawn in.
+/// Segments of the drawing of a slack cable.
 const PIECES: u16 = 28;
 /// Radius of the eyelet's ring and of its wire, m.
 const RING_M: f32 = 0.0027;
@@ -26,7 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
             eyelet(canvas, anchor, depth);
         }
         let taut = state.cable_n > 0.0;
-        // As hard as it can look: three times what hangs on it.
+        // As hard as it can look: three times the hanging weight.
         let weight_n = (block.mass_kg * view.world.gravity_m_s2.abs()).max(0.5);
         let (color, unlit) =
             if taut { pull_color(canvas, (state.cable_n / weight_n) as f32) } else { (canvas.palette.rope, 0.0) };

@@ -23,7 +23,7 @@ const LOBES: [[f32; 3]; 6] = [
 ];
 /// Bright places, likewise; much longer than deep.
 const GLINTS: [[f32; 3]; 3] = [[-0.46, 0.44, 0.22], [0.46, 0.46, 0.13], [0.10, 0.74, 0.10]];
-/// A drop leaves every so many seconds of simulated time, and takes as long to fall as it does to grow.
+/// Time between two drops, s of simulated time; a drop takes as long to fall as it does to grow.
 const DROP_PERIOD_S: f64 = 0.45;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {

@@ -10,7 +10,7 @@ pub(crate) enum MapFormat {
 }
 
 impl MapFormat {
-    /// The best that a device can draw into: it is tried, because a device does not tell what its driver lacks.
+    /// The best that a device can draw into: it is tried, because a device does not tell the limits of its driver.
     pub(crate) fn of(device: &wgpu::Device) -> Self {
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let tried = device.create_texture(&wgpu::TextureDescriptor {

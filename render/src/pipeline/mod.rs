@@ -191,7 +191,7 @@ fn table_map<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule, [vertex, fra
     }
 }
 
-/// Steps of depth that a ghost is pushed back by, so that it does not fight with what it coincides with.
+/// Steps of depth that a ghost is pushed back by, so that it does not fight with a coincident solid.
 const GHOST_DEPTH_BIAS: i32 = 24;
 
 /// First pass of a ghost: only depth, so that its own inner faces do not show through.

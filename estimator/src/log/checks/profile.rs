@@ -2,7 +2,7 @@
 
 use haptics::recording::Span;
 
-/// At most so many samples are sorted: quantiles of a million samples are not needed to the last digit.
+/// Largest number of samples that are sorted: quantiles of a million samples are not needed to the last digit.
 const SORTED: usize = 8192;
 
 /// Extremes, quantiles, and how often the channel does not change.

@@ -107,7 +107,7 @@ fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
     (count >= FEWEST_WINDOWS && together && vv > 0.0).then(|| (pv / vv).abs())
 }
 
-/// Positions, angles and forces against what a hand can do.
+/// Positions, angles and forces against the abilities of a hand.
 fn ranges(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     let hand = recording.meta.hand();
     let reach_m = 2.0 * hand.fingers[0].link_m.max(hand.fingers[1].link_m)

@@ -168,7 +168,7 @@ mod tests {
     }
 
     proptest! {
-        /// The library's parser accepts what the standard library accepts, to the bit.
+        /// The library's parser accepts the same texts as the standard library, to the bit.
         #[test]
         fn numbers_are_those_of_the_standard_library(bits in any::<u64>(), digits in "[+-]?[0-9]{0,25}\\.?[0-9]{0,25}([eE][+-]?[0-9]{1,3})?") {
             let value = f64::from_bits(bits);

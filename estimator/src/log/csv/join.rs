@@ -102,7 +102,7 @@ impl<'a> Join<'a> {
         Ok(part.columns)
     }
 
-    /// Shows what has been joined, of tables with one recording.
+    /// Shows the joined rows, of tables with one recording.
     fn show(&self) {
         let (Some(preview), [(_, group)], None) = (self.preview, self.table.groups.as_slice(), self.plan.trial) else {
             return;

@@ -144,7 +144,7 @@ struct Split {
 /// State shared by the threads.
 struct Reading<'a, R> {
     blocks: Mutex<Blocks<R>>,
-    /// Whoever has it joins for all: a thread that finds it taken parses on.
+    /// Held by the thread that joins for all: a thread that finds it taken parses on.
     join: Mutex<Join<'a>>,
     parts: Mutex<Parts>,
     /// Told after parts were joined, and when the work stops.
@@ -187,7 +187,7 @@ impl<R> Drop for StopOnDrop<'_, '_, R> {
 }
 
 impl<R> Reading<'_, R> {
-    /// Nobody takes another block.
+    /// Stops all threads from taking another block.
     fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
         // Under the lock, so that no thread has looked at the flag and not yet begun to wait.
@@ -279,7 +279,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             Ok(Some(block)) => block,
             Ok(None) => return false,
             Err(stop) => {
-                // The blocks before it are still being parsed: what is wrong in one of them comes first.
+                // The blocks before it are still being parsed: a fault in one of them comes first.
                 lock(&self.refused).get_or_insert(stop);
                 return false;
             }
@@ -296,7 +296,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         }
     }
 
-    /// Joins what has been parsed, if no other thread is at it.
+    /// Joins the parsed parts, if no other thread is at it.
     fn join_parsed(&self) -> Result<(), LogError> {
         // Looked at again after the join is free: a part that comes in between found it taken.
         while !lock(&self.parts).parsed.is_empty() {

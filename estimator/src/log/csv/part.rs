@@ -34,7 +34,7 @@ pub struct Layout<'a> {
 pub enum Fault {
     /// Number of cells.
     Unequal(usize),
-    /// Column, and what stands there.
+    /// Column, and the text of the cell.
     Cell(usize, String),
 }
 
@@ -250,7 +250,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         Err(Fault::Cell(column, what))
     }
 
-    /// Leaves what the comparison of trials needs.
+    /// Leaves the marks for the comparison of trials.
     fn mark(&mut self, record: &[u8], cells: &Cells) {
         let plan = self.layout.plan;
         if plan.watched.is_empty() {

@@ -25,7 +25,7 @@ pub struct Plain<'a> {
     batch: Option<Batch>,
 }
 
-/// Finds what [`Plain::ends`] needs to know; nothing on processors that make no use of it.
+/// Finds the ends for [`Plain::ends`]; nothing on processors that make no use of it.
 pub fn find_ends(bytes: &[u8], delimiter: u8, ends: &mut Vec<u32>) {
     ends.clear();
     #[cfg(target_arch = "x86_64")]
@@ -39,8 +39,8 @@ pub fn find_ends(bytes: &[u8], delimiter: u8, ends: &mut Vec<u32>) {
 }
 
 impl<'a> Plain<'a> {
-    /// Reads into `columns`, one for each of `uses`; those that are read have the same length. `ends`: what [`find_ends`] found in the
-    /// block.
+    /// Reads into `columns`, one for each of `uses`; those that are read have the same length. `ends`: result of
+    /// [`find_ends`] for the block.
     pub fn new(delimiter: u8, uses: &'a [Use], columns: &'a mut [Vec<f64>], ends: &'a [u32]) -> Self {
         #[cfg(target_arch = "x86_64")]
         return Self { delimiter, uses, columns, ends, batch: None };

@@ -62,7 +62,7 @@ static EDGE: Edge = {
     Edge(edge)
 };
 
-/// True when the processor has what the functions here are compiled with.
+/// True if the processor has the features that the functions here are compiled with.
 pub fn is_at_home() -> bool {
     use std::arch::is_x86_feature_detected as has;
     has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") && has!("fma")

@@ -18,7 +18,7 @@ struct Style {
     quoted: bool,
 }
 
-/// A table and what it says.
+/// A table and its expected content.
 struct Drawn {
     text: String,
     meta: String,

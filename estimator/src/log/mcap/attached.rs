@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(read("world.json").as_deref(), Some(&b"{}"[..]));
         assert_eq!(read("a").as_deref(), Some(&b"first"[..]));
         assert_eq!(read("b"), None);
-        // Cut at any place it says nothing, or what was whole.
+        // Cut at any place it returns nothing, or the whole attachment.
         let bytes = std::fs::read(&file).expect("there");
         for end in (0..bytes.len()).step_by(7) {
             std::fs::write(&file, &bytes[..end]).expect("written");

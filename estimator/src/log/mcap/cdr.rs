@@ -8,7 +8,7 @@ use super::rosmsg::{Count, Definitions, Field, Kind, Primitive};
 use super::topic::{MAX_DEPTH, MAX_ITEMS, Topic};
 use std::fmt::Write as _;
 
-/// Lists may nest without holding anything; so many of such items are followed.
+/// Number of empty items that are followed: lists may nest without holding anything.
 const MAX_EMPTY_ITEMS: usize = 10_000;
 
 /// Puts one message into the current row of `topic`.

@@ -1,4 +1,4 @@
-//! Do the lengths inside a record lie within it? Asked before the library reserves what they claim.
+//! Check that the lengths inside a record lie within it, before the library reserves room for them.
 
 use mcap::records::op;
 

@@ -97,7 +97,7 @@ pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Log, LogError> 
 }
 
 impl Log {
-    /// One table on one clock, with what the reader should know about it.
+    /// One table on one clock, with notes for the reader.
     pub fn columns(self, meta: &Meta) -> Result<(Raw, Vec<Warning>), LogError> {
         let mut notes = Vec::new();
         if let End::CutOff(why) = &self.end {
@@ -269,7 +269,7 @@ impl<'a> Reading<'a> {
         if self.messages.is_multiple_of(CHECK_EVERY) { self.check_memory() } else { Ok(()) }
     }
 
-    /// Shows what has been decoded, by the log's own time.
+    /// Shows the decoded rows, by the log's own time.
     fn show(&mut self) {
         let Some(preview) = self.preview else { return };
         let start = self.sources.iter().filter_map(|s| s.topic.log_ns.first().copied()).min().unwrap_or(0);

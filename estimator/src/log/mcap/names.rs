@@ -51,7 +51,7 @@ pub fn quantity(name: &str) -> Option<&str> {
         .map(|(q, _)| q)
 }
 
-/// True for a name of a position or an angle: whoever measures it has the clock of the motion.
+/// True for a name of a position or an angle: its source has the clock of the motion.
 pub fn is_motion(name: &str) -> bool {
     quantity(name).is_some_and(|q| matches!(q.trim_end_matches(['1', '2']), "x" | "y" | "z" | "q" | "qb" | "qt"))
 }

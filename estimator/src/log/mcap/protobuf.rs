@@ -15,7 +15,7 @@ enum Node {
     Text(usize),
     /// A message of its own.
     Message(Box<Shape>),
-    /// A list: its path, what it holds, and the items met so far.
+    /// A list: its path, the kind of its items, and the items met so far.
     List(String, Kind, Vec<Node>),
     /// Bytes, maps: not read.
     Skip,

@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Largest block that is unpacked in any case, bytes; beyond it, four times the size of the file.
 const CHUNK_BYTES: u64 = 32 << 20;
-/// The caller hears of the progress, and may end it, every so many bytes.
+/// Number of bytes from one report of the progress to the next; at each the caller may end the walk.
 const WATCH_BYTES: u64 = 1 << 20;
 /// Op code and length before every record.
 pub(super) const PREFIX: usize = 9;
@@ -152,7 +152,8 @@ impl Walk<'_> {
         }
     }
 
-    /// A record as the library sees it, once its lengths have been found to lie within it: the library reserves what they claim.
+    /// A record as the library sees it, once its lengths have been found to lie within it: the library reserves room
+    /// for them.
     fn parsed<'b>(&self, opcode: u8, body: &'b [u8]) -> Result<Record<'b>, LogError> {
         if !lengths::fit(opcode, body) {
             return Err(self.damaged("a record with a text or a table longer than itself"));

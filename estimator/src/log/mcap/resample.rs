@@ -6,9 +6,9 @@ use haptics::recording::Labels;
 
 /// A channel that is this much faster than the clock is low-passed first.
 const FASTER: f64 = 1.2;
-/// Cut-off of that low-pass (−6 dB), as a share of the clock's rate: what would fold is down to a tenth.
+/// Cut-off of that low-pass (−6 dB), as a share of the clock's rate: the part that would fold is down to a tenth.
 const CUTOFF_SHARE: f64 = 0.4;
-/// A step of so many periods is a gap across which values are made up.
+/// Step in periods from which there is a gap across which values are made up.
 const GAP_PERIODS: f64 = 10.0;
 
 /// Median time between samples, s.

@@ -180,7 +180,7 @@ impl McapStream {
     fn give_up(&mut self, error: &McapError) -> LogError {
         // It tries to write its end, on a disk that may have room again.
         drop(self.sink.take());
-        // Should this fail too there is nothing left to try; readers then say what they meet.
+        // If this fails too there is nothing left to try; readers then report the damage.
         let _ = self.file.set_len(self.whole);
         failure(error, &self.path)
     }

@@ -13,7 +13,7 @@ const DEEPEST: usize = 64;
 const SCHEMA: i64 = 2;
 const CHILDREN: i64 = 5;
 
-/// Nothing, or what is wrong with the claims of the footer. A file without one is left to the library.
+/// Fault of the footer's claims, if there is one. A file without a footer is left to the library.
 pub fn fault(file: &mut File, size: u64) -> std::io::Result<Option<String>> {
     if size < TAIL_BYTES {
         return Ok(None);

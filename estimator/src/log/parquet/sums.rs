@@ -14,7 +14,7 @@ const SUMS: &str = "touchstone.crc32";
 /// Numbers that are turned into bytes at a time.
 const BATCH: usize = 512;
 
-/// CRC-32 of every column and of what is said about them.
+/// CRC-32 of every column and of its metadata.
 #[derive(Default, Deserialize, Serialize)]
 pub struct Sums {
     columns: BTreeMap<String, u32>,

@@ -27,7 +27,7 @@ const GUARD_S: f64 = 0.12;
 const WAITING: usize = 16;
 /// Different objects that are kept apart.
 const MOST_OBJECTS: usize = 6;
-/// After being let go for so long the next grasp may be of another object, s.
+/// Time of release after which the next grasp may be of another object, s.
 const LET_GO_S: f64 = 0.25;
 /// Number of carried rows after which an object is told by width and weight.
 const TELL_ROWS: u64 = 16;

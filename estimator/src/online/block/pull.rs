@@ -18,7 +18,7 @@ use serde::Serialize;
 const MATTERS_N: f64 = 0.03;
 /// Residual by pads, swinging and geometry, as a share of the weight.
 const MODEL_SHARE: f64 = 0.01;
-/// A row beyond so many standard deviations of the sensors teaches nothing about the weight.
+/// Size of a row in standard deviations of the sensors above which it teaches nothing about the weight.
 const SUSPECT: f64 = 6.0;
 /// Number of suspect rows on one side in a row that are a pull before the sums have learned the usual residual.
 const IN_A_ROW: u32 = 10;
@@ -30,7 +30,7 @@ const LINE_SHARE: f64 = 0.2;
 const GRASP_M: f64 = 1e-3;
 /// An anchor is told when no direction is less certain than this, m.
 const TELL_M: f64 = 0.012;
-/// Neighbouring rows of one pull err alike: so many count as one.
+/// Number of neighbouring rows of one pull that count as one: their errors are alike.
 const ALIKE: f64 = 5.0;
 /// Lines that are kept.
 const LINES: usize = 160;
@@ -77,7 +77,7 @@ pub(in super::super) struct Left {
 }
 
 impl Left {
-    /// Size of what no model gets right, N, for a weight.
+    /// Model error of the force, N, for a weight.
     pub(in super::super) fn model_n(weight_n: f64) -> f64 {
         MODEL_SHARE * weight_n.abs()
     }
@@ -235,7 +235,7 @@ impl Line {
 /// the normal equations, as for any regression with errors in the variables.
 fn meet(lines: &[Line], noise_n: f64) -> Option<(Vec2, Matrix2<f64>)> {
     const LEAST: usize = 6;
-    /// A first guess of the distance; two more rounds take what came out. Nothing is tied nearer than the least.
+    /// A first guess of the distance; two more rounds take the result. Nothing is tied nearer than the least.
     const FAR_M: f64 = 0.05;
     const LEAST_FAR_M: f64 = 0.01;
     /// Least information in the weakest direction, in multiples of the part by noise alone.

@@ -16,7 +16,7 @@ const KNOWN: f64 = 0.05;
 const MOVED: f64 = 0.004;
 /// Rows a block of scores.
 const BLOCK: u32 = 16;
-/// A jump of the centre by so much is a slip of the grasp, m; radius and give do not jump.
+/// Least jump of each parameter that is a slip of the grasp, m for the centre; radius and give do not jump.
 const MATTERS: [f64; 5] = [f64::INFINITY, 2e-4, 2e-4, f64::INFINITY, f64::INFINITY];
 /// Sensible radii, m.
 const RADII_M: std::ops::Range<f64> = 1e-3..1.0;

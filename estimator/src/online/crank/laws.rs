@@ -23,7 +23,8 @@ const MATTERS: [f64; COUNT] = [0.02, 0.02, 0.2, 0.02, 0.03];
 const SHIFT: [f64; 4] = [1e-4, 1e-4, 1e-5, 1e-5];
 /// A circle that differs by more than this share of the radius from the one in the rows asks for new rows.
 const ANEW: f64 = 0.03;
-/// A parameter whose error alone moves the force by more than this share of what is measured is not shown (as in the batch fit).
+/// Largest force by the error of a parameter, as a share of the measured force, for it to be shown (as in the batch
+/// fit).
 const LARGEST_ERROR: f64 = 0.3;
 
 /// Weight, frictions and inertia while it is turned.

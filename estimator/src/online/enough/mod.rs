@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Nobody waits longer than this for a number, s.
+/// Longest wait for a number, s.
 const LONGEST_S: f64 = 1800.0;
 /// Time within which continuing as before is fine, s.
 const SOON_S: f64 = 8.0;
@@ -161,13 +161,13 @@ pub struct Missing {
     pub seconds: Option<f64>,
 }
 
-/// One regression with what other motions would add to it.
+/// One regression with the information that other motions would add to it.
 #[derive(Clone, Debug)]
 pub(super) struct Problem {
     pub(super) object: String,
     /// Names of parameters with their place among the columns.
     pub(super) names: Vec<(String, usize)>,
-    /// Inverse covariance of what was collected, columns in their own units.
+    /// Inverse covariance of the collected data, regressors in their own units.
     pub(super) information: DMatrix<f64>,
     /// Standard deviation of every column's value before anything is seen: far beyond any object.
     pub(super) before: Vec<f64>,
@@ -176,11 +176,11 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// Variance of a column's value after so many seconds of a motion.
+    /// Variance of a parameter's value after a number of seconds of a motion.
     fn variance(&self, column: usize, motion: &DMatrix<f64>, seconds: f64) -> f64 {
         let n = self.before.len();
         let prior = DMatrix::from_diagonal(&DVector::from_iterator(n, self.before.iter().map(|s| s.powi(-2))));
-        // Scaled by what is known before: the columns' units differ by orders of magnitude.
+        // Scaled by the present errors: the regressors' units differ by orders of magnitude.
         let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&self.before));
         let total = &scale * (&self.information + motion * seconds + prior) * &scale;
         let inverse = total.cholesky().map(|c| c.inverse());
@@ -294,7 +294,7 @@ fn missing(motion: Motion, seconds: Option<f64>) -> Missing {
 mod tests {
     use super::*;
 
-    /// A constant and a slope: what was collected shows the constant only.
+    /// A constant and a slope: the collected data show the constant only.
     fn problem() -> Problem {
         let per = |rows: &[[f64; 2]]| {
             rows.iter().fold(DMatrix::zeros(2, 2), |sum, r| {

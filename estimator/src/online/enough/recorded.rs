@@ -101,7 +101,7 @@ fn course(recording: &Recording) -> Option<Course> {
     Some(all.map(|(((t, p), v), f)| (t, p, v, f)).collect())
 }
 
-/// Rows of a regression, with what is usual in them.
+/// Rows of a regression, with the usual figures in them.
 #[derive(Default)]
 struct Rows {
     columns: Vec<Vec<f64>>,
@@ -142,7 +142,7 @@ impl Rows {
         self.usual.iter().map(|u| u[0].abs()).sum::<f64>() / self.usual.len().max(1) as f64
     }
 
-    /// Information, and the variance that makes rows into it: so that the errors that are known come out. `None` where none is.
+    /// Information, and the variance that makes rows into it, so that the known errors result. `None` if none is known.
     fn counted(&self, error: &dyn Fn(usize) -> Option<f64>) -> Option<(DMatrix<f64>, f64)> {
         let n = self.columns.first()?.len();
         if self.columns.len() < 3 * n {

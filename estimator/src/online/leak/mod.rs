@@ -26,7 +26,7 @@ pub const CONFIDENT: f64 = 0.95;
 pub const NEGLIGIBLE: f64 = 0.03;
 /// A drift during the carry may differ by this share from the mean one between the readings before and after.
 const UNEVEN: f64 = 0.1;
-/// A change within so many standard errors is no change.
+/// Size of a change in standard errors below which it is none.
 const SIGNIFICANT: f64 = 4.0;
 /// Before anything is seen: nothing, leak, drift, both.
 const BEFORE: [f64; 4] = [0.25, 0.36, 0.36, 0.03];
@@ -76,7 +76,7 @@ pub enum Verdict {
     SensorDrift,
     /// Both change.
     Both,
-    /// Something changes; what it is the recording does not show.
+    /// Something changes; the recording does not show the cause.
     CannotTell,
 }
 

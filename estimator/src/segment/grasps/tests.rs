@@ -6,7 +6,7 @@ use crate::segment::{Segmentation, Thresholds, subtasks};
 use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround};
 use haptics::recording::Task;
 
-/// A part of a recording: state, samples of 10 ms, place, mm, and weight of what is held, N.
+/// A part of a recording: state, samples of 10 ms, place, mm, and weight of the held object, N.
 type Part = (SystemState, usize, [f64; 2], f64);
 
 /// Blocks as wide in mm as ten times their weight in N.

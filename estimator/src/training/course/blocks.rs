@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A block that falls farther than this after it was let go was dropped, m.
 pub const DROP_M: f64 = 0.003;
-/// A pad that slides farther than this over what is held has slipped, m.
+/// Least way of a pad over a held object that is a slip, m.
 pub const SLIP_M: f64 = 0.0005;
 /// Slower than this a block rests, m/s.
 const RESTING_M_S: f64 = 0.002;

@@ -103,7 +103,7 @@ pub fn measure_over(lesson: &Lesson, line: &Delay) -> Result<Expert, EstimateErr
     Ok(expert)
 }
 
-/// Mean and standard deviation of what lies within the fences of the quartiles.
+/// Mean and standard deviation of the values within the fences of the quartiles.
 pub fn spread_of(values: &[f64]) -> Option<Spread> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

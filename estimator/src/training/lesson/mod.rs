@@ -153,7 +153,7 @@ impl Lesson {
     /// Reads a lesson and checks it.
     ///
     /// # Errors
-    /// One sentence: what is wrong with it.
+    /// One sentence that names the fault.
     pub fn from_json(json: &str, text: &str) -> Result<Self, EstimateError> {
         let mut lesson: Self = serde_json::from_str(json)
             .map_err(|error| wrong(format!("this is no lesson: {error}; docs/lessons.md shows how one is written")))?;

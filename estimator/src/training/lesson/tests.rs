@@ -118,7 +118,7 @@ fn every_built_in_lesson_has_a_text_and_what_experts_need() {
         let expert = lesson.expert.as_ref().expect("measured");
         assert_eq!(expert.completed, [expert::ATTEMPTS; 2], "{}", lesson.id);
         assert_eq!(expert.measures_version, crate::training::VERSION, "{}", lesson.id);
-        // Nobody presses softly half a second late.
+        // Every line is listed: experts complete the lesson over all of them.
         assert_eq!(lesson.expert_over.len(), 4, "{}", lesson.id);
         assert!(lesson.text.len() > 200 && !lesson.goal.is_empty(), "{}", lesson.id);
     }

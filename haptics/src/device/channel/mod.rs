@@ -1,8 +1,9 @@
 //! Simulated slow and unreliable network between the servo and any device: delay, jitter and loss both ways, drawn by a
 //! seed. Optional wave variables keep it stable.
 //!
-//! Without them the servo's forces arrive late at the operator, and a wall that is stiffer than the operator's arm starts to swing
-//! and grows: this is what the plain channel is for, to see and to measure it. With them the line cannot give energy out.
+//! Without them the servo's forces arrive late at the operator, and a wall that is stiffer than the operator's arm
+//! starts to swing and grows: the plain channel is there to see and to measure this. With them the line cannot generate
+//! energy.
 //!
 //! The wrapped device is asked every tick, as if it ran at the servo's clock at the far end.
 
@@ -56,7 +57,7 @@ pub enum ChannelError {
 }
 
 impl ChannelConfig {
-    /// Says what makes the network impossible, if anything does.
+    /// Fault of the settings, if there is one, in one sentence.
     pub fn check(&self) -> Result<(), ChannelError> {
         for (name, time_s) in [("delay", self.delay_s), ("jitter", self.jitter_s)] {
             if !(0.0..=2.0).contains(&time_s) {

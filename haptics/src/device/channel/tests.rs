@@ -157,7 +157,8 @@ fn waves_stay_passive_and_do_not_drift_when_packets_are_late_and_lost() {
     }
 }
 
-/// Two fingers that move to the left at 0.2 m/s for half a second, are not seen any more, and what is put on them meanwhile.
+/// Two fingers that move to the left at 0.2 m/s for half a second, are not seen any more, and the forces on them
+/// meanwhile.
 struct Lost(DeviceSpec, u32, Arc<Mutex<Vec<f64>>>);
 
 impl Device for Lost {

@@ -1,10 +1,10 @@
 //! Rumble as a cue of the finger force and of the speed of impacts.
 
-/// Force that gives the strongest rumble, N.
+/// Force of the strongest rumble, N.
 const FULL_FORCE_N: f64 = 4.0;
 /// Slower impacts are not felt, m/s.
 const FAINTEST_M_S: f64 = 0.02;
-/// The speed that gives the strongest knock, m/s.
+/// Speed of the strongest knock, m/s.
 const FULL_M_S: f64 = 0.5;
 /// A knock stays at its full strength for this long, s: a pad takes some thirty commands a second, and its motors need as long to
 /// come up.

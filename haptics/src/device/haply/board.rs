@@ -264,7 +264,7 @@ impl Worker {
             self.tally.add((verdict == Verdict::Refused).then(|| heard.err().unwrap_or(Fault::Impossible)));
             self.answers.write(answer);
             if let Some(line) = self.plug.turned(refused, Instant::now()) {
-                // Nothing that was known of the hand holds for what comes over another line.
+                // An earlier position of the hand does not hold for another line.
                 (self.turns, gate, angles) = (Turns::new(line, self.model.id), Gate::default(), None);
             }
         }

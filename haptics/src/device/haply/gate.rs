@@ -57,7 +57,7 @@ impl Gate {
             Some(old) if is_possible(old.newest, tip_m, now) => {
                 Candidate { newest: (tip_m, now), since: old.since, answers: old.answers + 1 }
             }
-            // One false reply among many must not throw away what the others say.
+            // One false reply among many must not throw away the others.
             Some(old) if old.answers > AGREEING => Candidate { answers: old.answers - AGREEING, ..old },
             _ => fresh,
         };

@@ -1,4 +1,4 @@
-//! The hAPI wire format: what goes to a board and what comes back.
+//! The hAPI wire format: commands to a board and its replies.
 //!
 //! Host → board `[command][device id][bytes…][f32 little endian…]`, no checksum, no length. Board → host only after a write:
 //! `[device id][f32 analog…][f32 encoder degrees in port order]`.

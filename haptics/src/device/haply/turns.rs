@@ -28,7 +28,7 @@ struct Heard {
     bytes: usize,
     /// Nothing more came.
     silent: bool,
-    /// Exactly what was owed, and the last of it is a reply by its looks.
+    /// True if exactly the owed bytes came, and the last of them look like a reply.
     settled: bool,
 }
 
@@ -71,13 +71,13 @@ impl Turns {
         read_reply(self.id, &heard.last).filter(|_| believed).ok_or(Fault::Foreign)
     }
 
-    /// Reads what is owed, or until the line is silent.
+    /// Reads the owed replies, or until the line is silent.
     fn listen(&mut self) -> Heard {
         let mut heard = Heard::default();
         let mut some = [0; 64];
         let expected = self.owed * REPLY_BYTES;
         while heard.bytes < MOST_BYTES {
-            // Never beyond what is owed, as long as it is known: what comes after it belongs to a later turn.
+            // Never beyond the owed bytes, as long as they are known: later ones belong to a later turn.
             let most = expected.saturating_sub(heard.bytes).clamp(1, some.len());
             let Some(count) = self.line.read(&mut some[..most]).ok().filter(|count| *count > 0) else {
                 heard.silent = true;
@@ -97,7 +97,7 @@ impl Turns {
         heard
     }
 
-    /// Counts what is still owed after a silence.
+    /// Counts the replies still owed after a silence.
     fn forgive(&mut self, replies: usize) {
         if replies == 0 {
             return;

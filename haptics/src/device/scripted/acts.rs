@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Spare opening of the fingers around an object, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
-/// Height that objects are carried above what stands in the way, m.
+/// Height that objects are carried above any obstacle, m.
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Modulation of the speed of an even turn by a steady hand, relative.
 const UNEVENNESS: f64 = 0.03;

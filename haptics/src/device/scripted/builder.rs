@@ -10,7 +10,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// Spare opening of the fingers around an object, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
-/// Height that objects are carried above what stands in the way, m.
+/// Height that objects are carried above any obstacle, m.
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Share of the reaction time that passes between a miss and its correction: the eye leads the hand.
 const CORRECTION_LAG: f64 = 0.6;
@@ -35,7 +35,7 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Goes on from `at` at `now_s`.
+    /// Continues from `at` at `now_s`.
     pub fn new(
         phases: &'a mut Vec<Phase>,
         now_s: f64,
@@ -52,7 +52,7 @@ impl<'a> Builder<'a> {
         self.at
     }
 
-    /// Who does it.
+    /// Skill of the operator.
     pub(super) fn skill(&self) -> Skill {
         self.skill
     }
@@ -185,7 +185,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Opens the fingers where they are, goes up and waits until what fell has come to rest.
+    /// Opens the fingers where they are, goes up and waits until a fallen object has come to rest.
     pub fn back_off(&mut self, width_m: f64, clear_y_m: f64) {
         self.reach(0.3, Goal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
         let above = Vec2::new(self.at.center_m.x, self.at.center_m.y.max(clear_y_m));
@@ -212,7 +212,7 @@ impl<'a> Builder<'a> {
         };
         let held = Goal { aperture_m: width_m, pinch_n, ..around };
         self.reach(0.5, held);
-        // Leaning on it a little before lifting is what people do; it also separates holding from lifting.
+        // People lean on it a little before lifting; it also separates holding from lifting.
         let lean_m = self.rng.random_range(0.0002..0.0006);
         let leaning = Goal { center_m: held.center_m - Vec2::new(0.0, lean_m), ..held };
         self.reach(0.25, leaning);
@@ -294,7 +294,7 @@ impl<'a> Builder<'a> {
     fn turn(&mut self, world: &World, from_rad: f64, turns: f64, grasp: Goal) -> f64 {
         let Some(crank) = &world.crank else { return from_rad };
         let to_rad = from_rad + turns * std::f64::consts::TAU;
-        // Whoever aims badly also pulls off the circle.
+        // A badly aimed hand also pulls off the circle.
         let pull_m = self.rng.random_range(0.0008..0.0016) + 0.3 * self.skill.aim_error_m;
         let (center_m, radius_m) = (crank.center_m, crank.radius_m);
         self.push(1.1 + 1.6 * turns.abs(), Move::Turn { center_m, radius_m, from_rad, to_rad, pull_m, grasp });

@@ -7,7 +7,7 @@ use crate::Vec2;
 use crate::device::HandImpedance;
 use crate::world::{Membrane, Shape, State, World};
 
-/// Spread of an expert's pinch: who varies more holds more firmly.
+/// Spread of an expert's pinch: a hand that varies more holds more firmly.
 const EXPERT_SPREAD: f64 = 0.06;
 /// Spare opening around hub, barrel and knob, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
@@ -44,7 +44,7 @@ impl Builder<'_> {
         let index = world.blocks.iter().position(|b| b.shape == Shape::Needle)?;
         let (needle, start) = (&world.blocks[index], state.bodies[index].center_m);
         let point_below_m = Vec2::new(0.0, 0.5 * needle.height_m);
-        // Held by its upper third: the lower part is what goes in.
+        // Held by its upper third: the lower part goes in.
         let grip = Vec2::new(0.0, needle.height_m / 6.0);
         let open = Goal { center_m: start + grip, aperture_m: needle.width_m + CLEARANCE_M, pinch_n: 0.0 };
         self.aim(0.9, Goal { center_m: open.center_m + Vec2::new(0.0, 0.010), ..open });
@@ -62,7 +62,7 @@ impl Builder<'_> {
         membrane.law.puncture_depth_m() + 0.5 * membrane.law.puncture_n / HandImpedance::default().stiffness_n_m
     }
 
-    /// Weighs the barrel, finds out what holds it, squeezes its wall, and puts it back.
+    /// Weighs the barrel, finds out its constraint, squeezes its wall, and puts it back.
     pub fn examine_barrel(&mut self, world: &World, state: &State, mistakes: &[Mistake]) {
         let Some(index) = world.blocks.iter().position(|b| b.shape == Shape::Barrel) else { return };
         let (barrel, start) = (&world.blocks[index], state.bodies[index].center_m);
@@ -89,7 +89,7 @@ impl Builder<'_> {
             let away = (start - cable.anchor_m).x.signum();
             let far = lifted.center_m.y - give_m - cable.anchor_m.y;
             let reach_m = (cable.length_m.powi(2) - far.powi(2)).max(0.0).sqrt();
-            // Whoever is not sure of the hand pulls until it shows.
+            // An operator unsure of the hand pulls until the resistance shows.
             let until_m = 0.6 * self.skill().aim_error_m;
             let x = cable.anchor_m.x + away * (reach_m + until_m + self.between(0.0015, 0.0025));
             self.reach(1.8, Goal { center_m: Vec2::new(x, lifted.center_m.y), ..lifted });

@@ -178,7 +178,7 @@ mod tests {
         let seen = pull(&cart, &wanted).run(3, &|_| true).expect("it moves").expect("not ended");
         let worst = seen.iter().map(|p| (p.position - wanted(p.time_s)).abs()).fold(0.0, f64::max);
         assert!(worst < 0.025 && worst > 1e-4, "a hand follows, and not exactly: {worst}");
-        // Energy: what goes in is in the cart or went into friction.
+        // Energy: the input is in the cart or went into friction.
         let (mut put_in, mut lost) = (0.0, 0.0);
         for pair in seen.windows(2) {
             let way = pair[1].position - pair[0].position;

@@ -11,15 +11,15 @@ const THERE_M: f64 = 3e-3;
 const OPEN_M: f64 = 2e-3;
 /// A hand that moves less than this from one look to the one before it counts as at rest, m.
 const STILL_M: f64 = 2e-4;
-/// Share of the wanted pinch that must be seen; the rest gives in pads and springs.
+/// Share of the wanted pinch that must be seen; pads and springs take up the rest.
 const PINCHED: f64 = 0.45;
 /// A grip below this is none, N.
 const LOOSE_N: f64 = 0.05;
-/// A press is steady while the force stays this near to what it was, N, for so long, s. Over a slow line the far fingers weigh some
-/// kilograms and swing on what they press.
+/// Largest change of the force, N, for a time, s, in a steady press. Over a slow line the far fingers weigh some
+/// kilograms and swing on the pressed surface.
 const STEADY_N: f64 = 0.25;
 const STEADY_S: f64 = 0.6;
-/// Who has left what is pressed for no longer than this may come back to it, s.
+/// Time after leaving a pressed surface within which the hand may come back to it, s.
 const BOUNCES_S: f64 = 1.2;
 /// Less is no press, N.
 const PRESSES_N: f64 = 0.15;

@@ -68,7 +68,7 @@ pub(super) struct Spin {
     pub pull_m: f64,
     /// Modulation of the speed by each of the waves, relative.
     pub uneven: f64,
-    /// Frequency, Hz, and phase of what the speed varies with.
+    /// Frequency, Hz, and phase of the speed's variations.
     pub waves: [(f64, f64); 2],
     pub grasp: Goal,
 }
@@ -114,7 +114,7 @@ pub(super) struct Job {
     pub clear_y_m: f64,
     /// Height from which the fingers come down on it, and to which they go afterwards, m.
     pub above_y_m: f64,
-    /// Width that the world gives it between the pads, m.
+    /// Width of the block between the pads in the world, m.
     pub width_m: f64,
     /// Least pinch that holds it, N per finger.
     pub least_pinch_n: f64,
@@ -154,9 +154,9 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Turn the crank if there is one, pierce the membrane, throw the switch, examine the barrel, else unstack and restack the
-    /// blocks, else look around. `rng` draws what every operator
-    /// varies, `habits` what only some levels of skill do.
+    /// Turn the crank if there is one, pierce the membrane, throw the switch, examine the barrel, else unstack and
+    /// restack the blocks, else look around. `rng` draws the variations of every operator, `habits` those of some
+    /// levels of skill only.
     pub fn for_world(
         world: &World,
         state: &State,
@@ -191,7 +191,7 @@ impl Plan {
         plan.with_room()
     }
 
-    /// Does what it is told, act by act; what the world lacks is left out.
+    /// Does a list of acts, one by one; acts that are impossible in the world are left out.
     pub fn of_acts(
         world: &World,
         state: &State,
@@ -223,7 +223,7 @@ impl Plan {
         self
     }
 
-    /// Acts on what was seen of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
+    /// Acts on the sight of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
     pub fn notice(&mut self, blocks: &[Block], seen: &Frame, now_s: f64) {
         if let Some(job) = self.retry {
             if now_s >= self.duration_s() {
@@ -292,7 +292,7 @@ impl Plan {
         for (index, job) in self.jobs.iter().enumerate().skip(first) {
             if let (Some((center_m, angle_rad)), Some(block)) = (seen.bodies.get(job.block), blocks.get(job.block)) {
                 let (sin, cos) = angle_rad.sin_cos();
-                // A block that lies on its side is taken by what is its width now.
+                // A block that lies on its side is taken by its present width.
                 let width_m = block.width_m * cos.abs() + block.height_m * sin.abs();
                 builder.carry(index, job, *center_m, width_m);
             }

@@ -166,7 +166,7 @@ fn dropped_blocks_are_noticed_late_and_fetched_again() {
             assert!(shown.seconds > clean.seconds + 3.0, "{mistake:?}, seed {seed}: tried again");
             let gap = shown.state.bodies[1].center_m.y - shown.state.bodies[0].center_m.y;
             rebuilt += usize::from(gap > 0.014);
-            // Whoever does not look carries on with empty fingers.
+            // An operator that does not look carries on with empty fingers.
             let blind = Skill { reaction_s: None, ..Skill::advanced() };
             assert!(perform(&world, blind, &[mistake], seed).seconds < clean.seconds + 3.0);
         }

@@ -126,7 +126,7 @@ pub struct UdpDevice<W: Wire = UdpSocket> {
     /// Draws the sessions.
     rng: StdRng,
     session: u64,
-    /// The session that was promised to whoever asked last; it counts from its first motion.
+    /// The session promised to the newest request; it counts from its first motion.
     promised: u64,
     /// Sequence that the next motion must exceed; `None` before the first.
     newest: Option<u64>,
@@ -185,9 +185,9 @@ impl<W: Wire> UdpDevice<W> {
         self.monitor.clone()
     }
 
-    /// Reads what has come, at most [`PACKETS_A_TICK`] packets.
+    /// Reads the waiting packets, at most [`PACKETS_A_TICK`].
     fn receive(&mut self) {
-        // One byte more than the largest packet shows what was too long.
+        // One byte more than the largest packet shows one that is too long.
         let mut buffer = [0; WAVE_UP_BYTES + 1];
         for _ in 0..PACKETS_A_TICK {
             let (size, from) = match self.wire.receive(&mut buffer) {
@@ -206,7 +206,7 @@ impl<W: Wire> UdpDevice<W> {
     fn decode(&self, packet: &[u8]) -> Result<Word, Refused> {
         let with_waves = packet.get(4) == Some(&WAVE_VERSION);
         if packet.starts_with(&MAGIC) && with_waves != self.waves.is_some() {
-            // Before its size is looked at: this is what a person needs to know.
+            // Before its size is looked at: a person needs to know this.
             return Err(Refused::Version);
         }
         if self.waves.is_some() {
@@ -275,7 +275,7 @@ impl<W: Wire> UdpDevice<W> {
         let (sequence, time_us) = (self.sent, (self.now_s * 1e6) as u64);
         if let Some(waves) = self.waves {
             let impedance_n_s_m = waves.impedance_n_s_m;
-            // Who only asks has no waves yet.
+            // A mere request has no waves yet.
             let accounts = if flags & FLAG_GREETING == 0 { self.world_end.accounts() } else { Default::default() };
             let packet = WaveDown { flags, session, sequence, time_us, accounts, impedance_n_s_m, echo_us };
             self.wire.send(&packet.encode(&self.key), to);

@@ -1,4 +1,4 @@
-//! The packets of a remote device, both ways. `docs/udp/README.md` is the description for those who write the other side.
+//! The packets of a remote device, both ways. `docs/udp/README.md` is the description for authors of the other side.
 //!
 //! Little-endian, fixed size, the same header, a seal at the end:
 //! `[magic 4][version 1][kind 1][flags 2][session 8][sequence 8][time 8][payload][seal 16]`.

@@ -141,7 +141,7 @@ fn a_device_that_is_started_anew_is_taken_at_once_and_a_repeated_question_ends_n
     client.send(&motion.encode(&key()));
     assert!(device.exchange(&Command::default(), DT).is_fresh());
     client.receive();
-    // Somebody sends a recorded question again: it is answered, and changes nothing.
+    // A recorded question is sent again: it is answered, and changes nothing.
     client.send(&hello.encode(&key()));
     client.send(&client_motion_after(&motion).encode(&key()));
     assert!(device.exchange(&Command::default(), DT).is_fresh());

@@ -100,7 +100,8 @@ impl Hand {
         Motion { session, sequence, tip_in_world, tip_velocity, ..Motion::default() }.encode(&key()).to_vec()
     }
 
-    /// One tick of the hand: what has arrived, forces, motion, what is sent. Returns the packets that reach the device now.
+    /// One tick of the hand: arrived packets, forces, motion, sent packets. Returns the packets that reach the device
+    /// now.
     fn tick(&mut self, now_s: f64, goal_m: f64) {
         if let Some((bytes, size)) = self.down.receive(now_s) {
             if self.with_waves {

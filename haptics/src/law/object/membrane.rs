@@ -68,8 +68,8 @@ impl MembraneLaw {
         (self.stiffness_n_m + self.cubic_n_m3 * x * x) * x
     }
 
-    /// Force that pushes the needle out, N, at an insertion, m, and its rate, m/s (positive: going in); what the place
-    /// remembers is moved along.
+    /// Force that pushes the needle out, N, at an insertion, m, and its rate, m/s (positive: going in). It moves the
+    /// memory of the place along.
     pub fn force_n(&self, insertion_m: f64, rate_m_s: f64, history: &mut MembraneHistory) -> f64 {
         if insertion_m <= 0.0 {
             // Out of it: a hole closes around nothing, a dent remains.
@@ -94,7 +94,7 @@ impl MembraneLaw {
         self.stiffness_n_m * stretch + self.drag_n_s_m * rate_m_s
     }
 
-    /// Slope of the force at an insertion, N/m: what an integrator must be able to follow.
+    /// Slope of the force at an insertion, N/m: an integrator must be able to follow it.
     pub fn stiffness_n_m(&self, insertion_m: f64) -> f64 {
         let x = insertion_m.max(0.0);
         (self.stiffness_n_m + 3.0 * self.cubic_n_m3 * x * x) / (1.0 - self.give.clamp(0.0, 0.9))

@@ -2,8 +2,8 @@
 //! back (recorded and played back this way for a real switch: Mac Lean 1996).
 //!
 //! The curve is a table of places with the force needed when moving forwards and when moving backwards; forward is nowhere
-//! below backward, so that a cycle never gives energy. After a reversal the force goes over from one branch to the other within
-//! `reversal_m` of travel. Between two places it is linear, beyond the ends a stop.
+//! below backward, so that a cycle never generates energy. After a reversal the force goes over from one branch to the
+//! other within `reversal_m` of travel. Between two places it is linear, beyond the ends a stop.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,8 +44,8 @@ impl ToggleCurve {
         at_m < low.at_m || at_m > high.at_m
     }
 
-    /// Energy that the curve half way between its branches holds at a displacement, J, from its first place on: what of the
-    /// work on the way there can come back.
+    /// Energy that the curve half way between its branches holds at a displacement, J, from its first place on: the
+    /// recoverable part of the work on the way there.
     pub fn held_j(&self, at_m: f64) -> f64 {
         let middle = |p: &CurvePoint| 0.5 * (p.forward_n + p.backward_n);
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return 0.0 };

@@ -102,7 +102,7 @@ mod tests {
             let acceleration = (before[m][k] - 2.0 * now[m][k] + after[m][k]) / (h * h);
             MASS[m] * (acceleration + if k == 1 { GRAVITY } else { 0.0 })
         };
-        // Moments about the joint that drives what is beyond it.
+        // Moments about the joint that drives the parts beyond it.
         let moment =
             |m: usize, about: [f64; 2]| (now[m][0] - about[0]) * force(m, 1) - (now[m][1] - about[1]) * force(m, 0);
         [moment(0, [0.0; 2]) + moment(1, [0.0; 2]), moment(1, now[0])]

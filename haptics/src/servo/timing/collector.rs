@@ -1,4 +1,4 @@
-//! Counts what the ticks took: one second a part, the last ten parts are "recent", what falls out is kept as a sum.
+//! Counts the timings of ticks: one second a part, the last ten parts are "recent", older parts are kept as a sum.
 
 use super::histogram::Histogram;
 use super::{Figures, STALL_S, TickTiming, Timing};

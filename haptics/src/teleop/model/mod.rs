@@ -42,7 +42,7 @@ impl Tutor {
         }
     }
 
-    /// Takes a picture of the far world, made when the far hand followed what was said at `said_s`.
+    /// Takes a picture of the far world, made when the far hand followed the message of `said_s`.
     pub fn learn(&mut self, far: &Picture, said_s: f64, now: Grasp) {
         if let Some(then) = self.past.at(said_s) {
             self.poses.compare(&then.picture, &then.corrected, far, now);

@@ -11,9 +11,9 @@ use crate::world::{BodyState, State, Surface};
 
 /// Time constant of a correction, s.
 const BLEED_S: f64 = 0.15;
-/// Fastest correction of what a finger touches, m/s.
+/// Fastest correction of a touched thing, m/s.
 const TOUCHED_M_S: f64 = 0.02;
-/// Fastest correction of what no finger touches, m/s: it may come to touch one.
+/// Fastest correction of an untouched thing, m/s: a finger may come to touch it.
 const FREE_M_S: f64 = 0.1;
 /// Metres that a radian counts as: half of a usual block's size.
 const RADIAN_M: f64 = 0.01;
@@ -56,7 +56,7 @@ pub(super) struct Poses {
     now: Grasp,
     /// State that is taken over as a whole at the next tick.
     discrete: Option<Discrete>,
-    /// With it: which walls are broken there, and what ran out of each, kg.
+    /// With it: for each body, its wall broken, and the mass that ran out, kg.
     spilled: Vec<(bool, f64)>,
 }
 
@@ -84,10 +84,11 @@ impl Poses {
         &self.corrected
     }
 
-    /// Compares a picture of the far world with the model `then`, corrected as it was then. `now`: what the model's hand holds now.
+    /// Compares a picture of the far world with the model `then`, corrected as it was then. `now`: present grasp of the
+    /// model's hand.
     pub fn compare(&mut self, then: &Picture, corrected_then: &Corrected, far: &Picture, now: Grasp) {
         self.now = now;
-        // Both hold it: what counts is how it lies in the hand. The far hand is on springs, and a moment behind.
+        // Both hold it: only its pose in the hand counts. The far hand is on springs, and a moment behind.
         let in_hand = then.grasp.body.filter(|body| far.grasp.body == Some(*body));
         let off_m = middle(far) - middle(then);
         for (index, (wanted, before)) in self.wanted.bodies.iter_mut().zip(&corrected_then.bodies).enumerate() {
@@ -117,7 +118,7 @@ impl Poses {
         }
     }
 
-    /// Corrects the model's state by what one tick allows.
+    /// Corrects the model's state by the allowance of one tick.
     pub fn bleed(&mut self, state: &mut State, dt_s: f64) {
         let share = 1.0 - (-dt_s / BLEED_S).exp();
         self.touched.fill(false);

@@ -9,11 +9,12 @@ use crate::world::{MAX_BLOCKS, World};
 
 /// Standard deviation of a guess, relative to it.
 const GUESS: f64 = 0.5;
-/// Error of the net force of two fingers in one picture, with what the velocities' differences make of the acceleration, N.
+/// Error of the net force of two fingers in one picture, with the error of the acceleration from velocity differences,
+/// N.
 const FORCE_N: f64 = 0.05;
 /// Share of a picture that is news.
 const NEWS: f64 = 0.1;
-/// A grasp must have lasted so long: what was just taken up still swings, s.
+/// Least duration of a grasp, s: an object just taken up still swings.
 const SETTLED_S: f64 = 0.1;
 /// Time constant with which a mass of the model follows its estimate, s.
 const BLEED_S: f64 = 0.1;

@@ -1,4 +1,5 @@
-//! The line without a model gives no energy out, however late it is and however hard the world; with one, only the model answers.
+//! The line without a model generates no energy, however late it is and however hard the world; with one, only the
+//! model answers.
 
 use super::*;
 use crate::Vec2;

@@ -48,7 +48,7 @@ fn a_needle_is_felt_as_the_membrane_says() {
         if held.phase == MembranePhase::Insertion && held.insertion_m > 1e-3 {
             assert!((down - law.loading_n(held.insertion_m)).abs() < 0.02, "{down} at {}", held.insertion_m);
         }
-        // The sudden drop throws the needle back for an instant: what counts is the order in which phases are first met.
+        // The sudden drop throws the needle back for an instant: only the order in which phases are first met counts.
         if !phases.contains(&held.phase) {
             phases.push(held.phase);
         }
@@ -81,7 +81,7 @@ fn a_barrel_gives_under_the_fingers_and_hangs_on_its_cable() {
     let world = presets::barrel();
     let barrel = world.blocks[0].clone();
     let mut state = grasp(&world, 2.5);
-    // Pad and wall in series: the pinch is what the grasp asked for.
+    // Pad and wall in series: the pinch is the wanted one.
     assert!((state.tip_force_n[0].x - 2.5).abs() < 1e-3, "{:?} {:?}", state.tip_force_n, state.bodies[0]);
     carry(&world, &mut state, Vec2::new(0.0, 0.010), 2.0, |_| {});
     run(&world, &mut state, 3.0);

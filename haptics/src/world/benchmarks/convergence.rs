@@ -121,9 +121,9 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_scene_converges_with_the_order_of_its_scheme() {
-    // Bodies move by a second-order scheme; dampers, friction, fingers and what is driven along one coordinate are of first
-    // order. The error at 1 kHz is that of places, m: after a bounce, on the way, where it came to rest. The needle happens to
-    // be better at 1 kHz than its order; a switch on its way goes at a metre a second, so a millisecond is a millimetre.
+    // Bodies move by a second-order scheme; dampers, friction, fingers and driven coordinates are of first order. The
+    // error at 1 kHz is that of places, m: after a bounce, on the way, where it came to rest. The needle happens to be
+    // better at 1 kHz than its order; a switch on its way goes at a metre a second, so a millisecond is a millimetre.
     type Scene = fn(f64) -> Vec<f64>;
     let scenes: [(&str, Scene, f64, f64); 8] = [
         ("a block that bounces without friction or damping", smooth_and_undamped, 2.0, 1e-4),

@@ -81,7 +81,7 @@ fn the_arm_holds_the_handle_on_its_circle_by_m_v2_over_r() {
         let expected_n = -0.05 * 0.6 * 0.6 / radius;
         let found_n = state.crank.constraint_force_n;
         assert!((found_n / expected_n - 1.0).abs() < 1e-3, "{stiffness:?}: {found_n} N, not {expected_n}");
-        // An arm that gives is longer by that.
+        // An arm that yields is longer by that.
         let given_m = stiffness.map_or(0.0, |k| -expected_n / k);
         assert!((state.crank.radial_m - given_m).abs() < 1e-3 * given_m + 1e-12, "{}", state.crank.radial_m);
     }
