@@ -1,4 +1,4 @@
-//! From a fit to a world: measured numbers go in with their errors, what was not measured is a stated assumption.
+//! From a fit to a world: measured numbers go in with their errors, all others are stated assumptions.
 
 mod barrel;
 mod switch;
@@ -25,7 +25,7 @@ const ASSUMED_HEIGHT_M: f64 = 0.015;
 const ASSUMED_FRICTION: f64 = 0.8;
 /// Spare above a lower bound of friction: the operator kept a margin (Johansson & Westling 1984 find 10 to 40 %).
 const FRICTION_MARGIN: f64 = 1.3;
-/// Where fingers hold a needle, above its point, m: two thirds of the built-in one.
+/// Height of the grip on a needle above its point, m: two thirds of the built-in one.
 const NEEDLE_GRIP_M: f64 = 0.023;
 /// Height of the cup that carries the sheet, m.
 const CUP_HEIGHT_M: f64 = 0.022;
@@ -131,7 +131,7 @@ impl Builder<'_> {
         } else if let Some((stiffness, std_error)) =
             self.fit.parameter("crank", "constraint_stiffness_N_m").and_then(|p| Some((p.value?, p.std_error)))
         {
-            // Two pads side by side carry the handle: each has half of what was seen.
+            // Two pads side by side carry the handle: each has half of the observed stiffness.
             let from = format!("half of the crank's radial stiffness, {}", self.from);
             self.world.pad.stiffness_n_m = 0.5 * stiffness;
             self.world.pad.shear_stiffness_n_m = 0.5 * stiffness;
@@ -188,7 +188,7 @@ impl Builder<'_> {
 
     /// Puts the blocks where they were picked up and the floor under them, taking them as gripped at mid-height.
     fn place(&mut self, spots: &[Spot]) {
-        // What was put on the floor last in the thesis's task: block 1. It shows the floor best.
+        // The block put down last in the thesis's task: block 1. It shows the floor best.
         let floor =
             spots.first().zip(self.world.blocks.first()).map(|(spot, block)| spot.placed.y - 0.5 * block.height_m);
         let height = floor.unwrap_or(Floor::default().height_m);
@@ -268,7 +268,7 @@ impl Builder<'_> {
     }
 }
 
-/// Where a block was picked up and put down, by the middle of the grip, m.
+/// Places where a block was picked up and put down, by the middle of the grip, m.
 struct Spot {
     picked: Vec2,
     placed: Vec2,

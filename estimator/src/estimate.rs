@@ -1,4 +1,4 @@
-//! What a fit answers: numbers with errors, constraints, warnings. These types *are* the JSON of `touchstone fit --json`.
+//! Result of a fit: numbers with errors, constraints, warnings. These types *are* the JSON of `touchstone fit --json`.
 
 mod constraint;
 
@@ -135,37 +135,37 @@ impl Fit {
     }
 }
 
-/// Why an estimate could not be made, in one sentence.
+/// Reason why an estimate could not be made, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum EstimateError {
     /// A channel is missing.
     #[error("{task} needs the column {column}, which {recording} does not have; add it, or map it in the sidecar")]
     MissingColumn {
-        /// What was asked for.
+        /// Task that needs the column.
         task: String,
         /// The column's name.
         column: String,
-        /// Which recording.
+        /// Name of the recording.
         recording: String,
     },
     /// There is not enough to work with.
     #[error("{recording} has only {samples} usable samples{what}; at least {needed} are needed")]
     TooFewSamples {
-        /// Which recording.
+        /// Name of the recording.
         recording: String,
-        /// How many.
+        /// Number of usable samples.
         samples: usize,
         /// For what (with a leading space), or empty.
         what: String,
-        /// How many it takes.
+        /// Number of samples that are needed.
         needed: usize,
     },
     /// The recording's clock is needed.
     #[error("{what} needs times, and {recording} has no clock; give a t_s column or rate_hz in the sidecar")]
     Clockless {
-        /// What was asked for.
+        /// Estimate that needs a clock.
         what: String,
-        /// Which recording.
+        /// Name of the recording.
         recording: String,
     },
     /// The task could not be told.
@@ -173,10 +173,10 @@ pub enum EstimateError {
         "the task of {recording} is not stated and its columns do not tell it; state it (--task, the card Fit in the window, or \"task\" in the sidecar)"
     )]
     UnknownTask {
-        /// Which recording.
+        /// Name of the recording.
         recording: String,
     },
-    /// Nobody waited for the result any more.
+    /// The result is not wanted any more.
     #[error("the work was ended before it was done")]
     Ended,
     /// Something else, already a sentence.

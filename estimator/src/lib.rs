@@ -1,9 +1,10 @@
 //! From a log to numbers one can sign.
 //!
-//! `log` reads, `signal` derives, `segment` says what was happening when, `identify` and `constraint` estimate, `calibrate`
-//! writes a world, `simulate` replays the measured motion through it. Every stage is a plain function between plain types.
+//! `log` reads, `signal` derives, `segment` finds the states and their times, `identify` and `constraint` estimate,
+//! `calibrate` writes a world, `simulate` runs the measured motion through it. Every stage is a plain function between
+//! plain types.
 //!
-//! From a log to parameters with errors, and to what the model gets wrong:
+//! From a log to parameters with errors, and to the defects of the model:
 //!
 //! ```
 //! use estimator::{diagnose, log, pipeline, simulate};
@@ -15,7 +16,7 @@
 //! let radius = analysis.fit.parameters.iter().find(|p| p.name == "radius_m").expect("a crank has one");
 //! assert!(radius.identified && radius.std_error.is_some_and(|error| error < 1e-4));
 //!
-//! // The measured motion through the world that came out of it: what forces would have been felt.
+//! // The measured motion through the calibrated world: the forces that would have been felt.
 //! let replayed = simulate::simulate(&analysis.world, &recordings[0])?;
 //! assert!(replayed.residual_rms.iter().all(|(_, left_n)| *left_n < 0.1));
 //!

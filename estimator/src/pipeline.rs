@@ -10,14 +10,14 @@ use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::OnceLock;
 
-/// What may be stated by the user.
+/// Options of the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
     /// The task; told from sidecar and columns when absent.
     pub task: Option<Task>,
     /// Thresholds; chosen from the noise when absent.
     pub thresholds: Option<Thresholds>,
-    /// How states are told apart.
+    /// Method of segmentation.
     pub method: Method,
 }
 
@@ -34,8 +34,8 @@ pub struct Analysis {
     pub world: World,
 }
 
-/// What of recordings does not depend on the options: an analysis that shares it with the one before takes a fraction of the time.
-/// It belongs to its recordings, in their order.
+/// Part of the analysis of recordings that does not depend on the options: an analysis that shares it with the one
+/// before takes a fraction of the time. It belongs to its recordings, in their order.
 #[derive(Default)]
 pub struct Prepared {
     cranks: OnceLock<Vec<crank::Prepared>>,
@@ -46,7 +46,7 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
     analyse_prepared(recordings, &Prepared::default(), options)
 }
 
-/// [`analyse`] for the second time and on: `prepared` keeps what the first one made of the same recordings.
+/// [`analyse`] for the second time and on: `prepared` keeps the first one's results for the same recordings.
 pub fn analyse_prepared(
     recordings: &[Recording],
     prepared: &Prepared,
@@ -98,10 +98,10 @@ pub fn analyse_prepared(
     Ok(Analysis { task, fit, segmentations, world })
 }
 
-/// Two ways to the same error that differ by more than this factor rest on too few independent stretches for either.
+/// Largest ratio of the two estimates of the same error: a larger one means too few independent segments for either.
 const DOUBTFUL: f64 = 2.0;
 
-/// Where the bootstrap says much more than the covariance, the larger error stands, with a word.
+/// Replaces an error by that of the bootstrap, with a warning, if that is much larger than the covariance says.
 fn doubt(fit: &mut Fit) {
     for parameter in &mut fit.parameters {
         let (Some(error), Some(resampled)) = (parameter.std_error, parameter.bootstrap_error) else { continue };
@@ -220,7 +220,7 @@ fn combine(fits: Vec<Fit>) -> Fit {
     total
 }
 
-/// How the warning about a parameter on which recordings disagree begins.
+/// Beginning of the warning about a parameter on which recordings disagree.
 fn disagreement_about(full_name: &str) -> String {
     format!("the recordings disagree about {}:", full_name.replacen('.', " ", 1))
 }
@@ -241,7 +241,7 @@ fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
     let apart = (a - b).abs() / ea.hypot(eb).max(f64::MIN_POSITIVE);
     let (wa, wb) = (ea.max(1e-300).powi(-2), eb.max(1e-300).powi(-2));
     mean.value = Some((a * wa + b * wb) / (wa + wb));
-    // When they disagree, the spread between them is the better error.
+    // Recordings that disagree: the spread between them is the better error.
     let error = (wa + wb).powf(-0.5) * (apart / std::f64::consts::SQRT_2).max(1.0);
     mean.std_error = Some(error);
     let parts = mean.bootstrap_error.zip(other.bootstrap_error);

@@ -1,4 +1,4 @@
-//! The measured motion through a world: what forces would have been felt?
+//! Simulation of the forces that would have been felt: the measured motion through a world.
 
 mod gap;
 
@@ -18,7 +18,7 @@ use serde::Serialize;
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
-/// Longest way between two looks at what a sheet remembers, m.
+/// Longest way between two updates of a sheet's memory, m.
 const STEP_M: f64 = 5e-5;
 /// The wish to end is looked at so often, samples.
 const LOOKS: usize = 500;
@@ -34,9 +34,9 @@ pub struct Simulation {
     pub residual_rms: Vec<(String, f64)>,
     /// The part of the forces that laws predict, where that is not all of them.
     pub part: Option<PredictedPart>,
-    /// What no law predicts and is taken from the recording: sentences.
+    /// Inputs that no law predicts and that are taken from the recording: sentences.
     pub inputs: Vec<String>,
-    /// What the sensors read while nothing is touched, by channel, N: the prediction there.
+    /// Resting values of the sensors, by channel, N: the prediction while nothing is touched.
     pub bias_n: Vec<(String, f64)>,
 }
 
@@ -67,17 +67,17 @@ pub struct LeftOpen {
     pub samples: usize,
 }
 
-/// What laws say of a recorded motion that does not drive the world by itself.
+/// Prediction of laws for a recorded motion that does not drive the world by itself.
 pub(crate) struct Needed {
     pub(crate) channels: Vec<Channel>,
-    /// Whether a sample's forces are predicted; elsewhere they are the operator's own, as measured.
+    /// True for samples whose forces are predicted; elsewhere they are the operator's own, as measured.
     pub(crate) is_predicted: Vec<bool>,
     pub(crate) part: PredictedPart,
     pub(crate) inputs: Vec<String>,
     pub(crate) bias_n: Vec<(String, f64)>,
 }
 
-/// What a sensor reads while nothing is touched: the mean of those samples, where it is no chance; else 0.
+/// Resting value of a sensor: the mean of the samples without a touch, if it is no chance; else 0.
 pub(crate) fn resting_level(values: &[f64], free: &[usize]) -> f64 {
     /// Standard errors of a mean of white noise; that of noise with a memory is some times larger.
     const SURE: f64 = 10.0;
@@ -90,7 +90,7 @@ pub(crate) fn resting_level(values: &[f64], free: &[usize]) -> f64 {
     if mean.abs() > SURE * (variance / count).sqrt() { mean } else { 0.0 }
 }
 
-/// RMS of what is left at samples of which there is one at least.
+/// RMS of a residual; `None` without samples.
 pub(crate) fn rms(left: impl Iterator<Item = f64>) -> Option<f64> {
     let (square, count) = left.fold((0.0, 0_usize), |(sum, n), r| (sum + r * r, n + 1));
     (count > 0).then(|| (square / count as f64).sqrt())
@@ -121,10 +121,11 @@ impl Simulation {
 
 /// Runs the measured motion of `recording` through `world`.
 ///
-/// Where the give of the pads was measured the world is stepped: the fingers go where they went and the world answers. Fingers
-/// that do not give cannot drive a world by their positions; there the laws say what the measured motion needs (along a crank's
-/// circle, or while a block is in the air), and the operator's own pull and grip, which no world can know, stay as measured
-/// ([`Simulation::inputs`] says so). Where nothing is touched nothing is felt but what the sensors read at rest.
+/// With a measured give of the pads the world is stepped: the fingers follow their recorded motion and the world
+/// answers. Fingers that do not yield cannot drive a world by their positions. For them the laws predict the forces of
+/// the measured motion (along a crank's circle, or while a block is in the air). The operator's own pull and grip,
+/// which no world can know, stay as measured ([`Simulation::inputs`] says so). A free hand feels nothing but the
+/// resting values of the sensors.
 pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
     let task =
         task_of(recording, None).or_else(|error| world.mechanism.as_ref().map(|_| Task::Mechanism).ok_or(error))?;
@@ -171,7 +172,8 @@ fn stepped(world: &World, recording: &Recording) -> Result<Simulation, EstimateE
     Ok(found)
 }
 
-/// A single tool is the needle: what the sheet pushes back along it. One place of the sheet, as in the fit of such a recording.
+/// Force of the sheet along a single tool, which is the needle. One place of the sheet, as in the fit of such a
+/// recording.
 fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
     let TipSeries { position, velocity, .. } = tip_series(recording, "")?;
     let (Some(sheet), Some(velocity)) = (&world.membrane, velocity) else {
@@ -186,7 +188,7 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
     let mut history = MembraneHistory::default();
     let mut values = Vec::with_capacity(position.len());
     for i in 0..position.len() {
-        // What a place remembers is moved in steps as fine as the servo's way.
+        // The memory of a place is moved in steps as fine as the servo's way.
         let from = position[i.saturating_sub(1)];
         let parts = (((position[i] - from).norm() / STEP_M).ceil().max(1.0)) as usize;
         let mut out_n = 0.0;
@@ -214,7 +216,7 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
     Ok(found)
 }
 
-/// Whether the world's pads come from a measurement: assumed ones would turn micrometres into newtons.
+/// True if the world's pads come from a measurement: assumed ones would turn micrometres into newtons.
 fn pads_are_measured(world: &World) -> bool {
     world.provenance.is_empty()
         || world
@@ -324,13 +326,13 @@ fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], Estimate
     Ok(forces)
 }
 
-/// Moves the recorded fingers through `world`, from where its things stand at first, and shows the state at every sample: its time, s,
-/// and the world's state then.
+/// Moves the recorded fingers through `world`, from the first positions of its objects, and shows the state at every
+/// sample: its time, s, and the world's state then.
 ///
 /// # Errors
 /// Without two fingers.
 pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
-    // The forces are what is asked for: the motion alone drives the world.
+    // The forces are the unknowns: the motion alone drives the world.
     let tips = [tip_series(recording, "1")?, tip_series(recording, "2")?];
     if tips.iter().any(|tip| tip.velocity.is_none()) {
         return Err(EstimateError::Clockless {
@@ -342,9 +344,9 @@ pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) 
     wanted::look()
 }
 
-/// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked,
-/// nor is the rest when nobody wants it any more ([`wanted`]). Over a gap in the time nothing is stepped: what both fingers held goes on
-/// where they are found again, everything else stays where it was.
+/// [`walk`] for fingers whose motion is known already: the positions of both at each time, s. Samples that one of the
+/// lists lacks are not walked, nor is the rest when it is not wanted any more ([`wanted`]). Over a gap in the time
+/// nothing is stepped: objects held by both fingers reappear with them, everything else stays in place.
 pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: impl FnMut(f64, &State)) {
     let n = tips.iter().map(|tip| tip.position.len()).fold(time_s.len(), usize::min);
     if n == 0 {

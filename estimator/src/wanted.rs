@@ -1,8 +1,9 @@
-//! Whether anybody still waits for a result: whatever runs for long looks from time to time, and ends early when nobody does.
+//! Early end of unwanted work: long computations look from time to time for a waiting caller, and end early without
+//! one.
 //!
-//! The wish belongs to the thread that works ([`while_wanted`]); without one, everything is wanted. It does not go along as an argument,
-//! because the loops that take the time lie deep below functions that have nothing else to do with it. What an ended loop leaves is no
-//! result: the stage around it asks [`look`] before it keeps anything for later or hands it on.
+//! The wish belongs to the thread that works ([`while_wanted`]); without one, everything is wanted. It is not passed as
+//! an argument, because the slow loops lie deep below functions that have nothing else to do with it. The output of an
+//! ended loop is no result: the stage around it asks [`look`] before it keeps anything for later or hands it on.
 
 use crate::estimate::EstimateError;
 use std::cell::RefCell;
@@ -14,7 +15,7 @@ thread_local! {
     static WISH: RefCell<Option<Wish>> = const { RefCell::new(None) };
 }
 
-/// Puts back what was wanted before, also when the work panics.
+/// Restores the earlier wish, also when the work panics.
 struct Before(Option<Wish>);
 
 impl Drop for Before {
@@ -32,14 +33,14 @@ pub fn while_wanted<T>(wanted: impl Fn() -> bool + 'static, work: impl FnOnce() 
     wish().then_some(done)
 }
 
-/// False when nobody waits for what this thread does: a loop ends, and its caller asks [`look`].
+/// False if the result of this thread is not wanted any more: a loop ends, and its caller asks [`look`].
 pub fn still() -> bool {
     // The wish is called outside of the borrow: it may look itself.
     let wish = WISH.with(|wish| wish.borrow().clone());
     wish.is_none_or(|wanted| wanted())
 }
 
-/// An error when nobody waits for what this thread does.
+/// An error if the result of this thread is not wanted any more.
 ///
 /// # Errors
 /// [`EstimateError::Ended`] then.

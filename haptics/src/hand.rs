@@ -7,7 +7,7 @@ use crate::Vec2;
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
-/// Which way the elbow bends, seen from the base towards the tip.
+/// Side to which the elbow bends, seen from the base towards the tip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Elbow {
@@ -105,8 +105,8 @@ impl Finger {
         Some(JointAngles { bottom_rad: heading + side * alpha, top_rad: heading - side * alpha })
     }
 
-    /// Motor torques that carry the links' weight and make the operator exert `operator_force_n` on the tip
-    /// (thesis, appendix A): gravity · cos q − fy L cos q + fx L sin q, i.e. gravity compensation minus Jᵀf.
+    /// Motor torques that carry the links' weight and make the operator exert `operator_force_n` on the tip (thesis,
+    /// appendix A): gravity · cos q − fy L cos q + fx L sin q. They are gravity compensation minus Jᵀf.
     pub fn torques(&self, q: JointAngles, operator_force_n: Vec2, gravity: &GravityTorque) -> JointTorques {
         let reaction = self.jacobian(q).transpose() * operator_force_n;
         JointTorques {
@@ -121,7 +121,7 @@ impl Finger {
 pub struct Hand {
     /// Left (1) and right (2) finger.
     pub fingers: [Finger; 2],
-    /// Where the tips may go.
+    /// Region that the tips may reach.
     pub workspace: Workspace,
     /// Gravity torques of the links (the same for both fingers).
     pub gravity_torque: GravityTorque,

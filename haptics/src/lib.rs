@@ -6,10 +6,10 @@
 //! * [`world`]: the model (immutable), its state (mutable) and `step`, deterministic to the bit.
 //! * [`law`]: one physical law a file, shared by the servo, the replay, the fit and the diagnosis.
 //! * [`servo`]: the kilohertz thread, its timing statistics and its safety.
-//! * [`device`]: where finger positions come from and forces go to.
+//! * [`device`]: sources of finger positions and sinks of forces.
 //! * [`teleop`]: the same with a slow line between operator and world.
 //! * [`recording`]: one log, in memory.
-//! * [`text_file`]: small files that others wrote, read with a bound.
+//! * [`text_file`]: small files of other programs or persons, read with a bound.
 
 pub mod device;
 pub mod hand;

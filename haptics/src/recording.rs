@@ -70,7 +70,7 @@ pub struct HandMeta {
 /// The sidecar `<stem>.meta.json`. Every key is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meta {
-    /// What was done.
+    /// Task that was performed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<Task>,
     /// Sampling rate where the table has no time column, Hz.
@@ -100,14 +100,14 @@ pub struct Meta {
     /// Parameters that are known and not to be estimated.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub known: BTreeMap<String, f64>,
-    /// What was believed of a parameter before the recording. Names are those of a fit (`weight_N`), or with the object in front
+    /// Prior of a parameter before the recording. Names are those of a fit (`weight_N`), or with the object in front
     /// (`block-2.weight_N`).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub prior: BTreeMap<String, Prior>,
     /// Least and largest value that a parameter can have, named as in `prior`; `null` leaves a side open.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bounds: BTreeMap<String, [Option<f64>; 2]>,
-    /// Which state held when, set by a person: in the place of what a segmentation finds.
+    /// States set by a person, with their times: in the place of the result of a segmentation.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<Segment>,
     /// The video that was taken meanwhile.
@@ -128,7 +128,7 @@ pub struct VideoMeta {
     pub begins_at_s: f64,
 }
 
-/// A stretch of a recording in one state, set by a person.
+/// Segment of a recording in one state, set by a person.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
     /// Start, s (sample number when the log is clockless).
@@ -157,7 +157,7 @@ impl Meta {
         self.gravity_m_s2.unwrap_or(9.81)
     }
 
-    /// The hand that made the recording: the default one, with what the sidecar states put in.
+    /// The hand that made the recording: the default one, with the sidecar's statements put in.
     pub fn hand(&self) -> Hand {
         let default = Hand::default();
         let Some(meta) = &self.hand else { return default };
@@ -207,7 +207,7 @@ pub struct Warning {
 /// One recording: equal-length channels, in SI units, with its sidecar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Where it came from (file, and trial when the file holds several).
+    /// Origin of the recording (file, and trial if the file holds several).
     pub name: String,
     /// Value of the `trial` column when the file holds several.
     pub trial: Option<String>,
@@ -215,7 +215,7 @@ pub struct Recording {
     pub time_s: Option<Vec<f64>>,
     /// All numeric columns but the time.
     pub channels: Vec<Channel>,
-    /// A person's or a generator's state label a sample: only ever used to score.
+    /// State label of each sample, by a person or a generator: only ever used to score.
     pub labels: Option<Labels>,
     /// The sidecar.
     pub meta: Meta,

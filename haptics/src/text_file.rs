@@ -1,4 +1,4 @@
-//! Small text files, ours and those that others wrote: worlds, sidecars, tasks, lessons, keys.
+//! Small text files, ours and those of others: worlds, sidecars, tasks, lessons, keys.
 //!
 //! A file of gigabytes under such a name is a mistake or malice; it is refused before memory is taken for it.
 
@@ -12,20 +12,21 @@ pub const MAX_BYTES: u64 = 64 << 20;
 /// The text of a file of at most [`MAX_BYTES`].
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::FileTooLarge`] for more than that, [`ErrorKind::InvalidData`] for what is not text.
+/// Errors of the system; [`ErrorKind::FileTooLarge`] for a longer file, [`ErrorKind::InvalidData`] if it is not text.
 pub fn read(path: &Path) -> Result<String> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     if size > MAX_BYTES {
         return Err(too_large());
     }
-    // What is no plain file states no size, and a file may grow: never more than the limit is taken in.
+    // Anything but a plain file states no size, and a file may grow: never more than the limit is taken in.
     let mut text = String::new();
     file.take(MAX_BYTES + 1).read_to_string(&mut text)?;
     if text.len() as u64 > MAX_BYTES { Err(too_large()) } else { Ok(text) }
 }
 
-/// Writes a file that is there as a whole or as it was: beside it first, which gets its name when it is on the disk; nobody reads half of one. What is no file (a pipe, a device) is written to as it is.
+/// Writes a file as a whole or not at all: beside the old one first, which it replaces when it is on the disk. No
+/// reader sees half of one. A target that is no plain file (a pipe, a device) is written to directly.
 ///
 /// # Errors
 /// The folder cannot be written to, or the disk is full; nothing is left of the new file then.
@@ -48,7 +49,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     })
 }
 
-/// Text out of a file, for a sentence of ours: on one line, and without what would be an order to a terminal.
+/// Text out of a file, for a sentence of ours: on one line, and without control sequences for a terminal.
 pub fn one_line(text: &str) -> String {
     // Besides control characters those that turn the direction of the text after them.
     let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

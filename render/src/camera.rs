@@ -10,7 +10,7 @@ use glam::{Mat4, Vec2, Vec3};
 /// Field of view of the perspective camera, rad: a long lens, so that lengths in the plane stay comparable.
 const FOV_Y_RAD: f32 = 0.34;
 
-/// How depth shortens things.
+/// Effect of depth on size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// Like the eye.
@@ -19,10 +19,10 @@ pub enum Projection {
     Orthographic,
 }
 
-/// Where the viewer is: looks at `target` from yaw and pitch and sees at least `extent_m` around it.
+/// Position of the viewer: looks at `target` from yaw and pitch and sees at least `extent_m` around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// How depth shortens things.
+    /// Effect of depth on size.
     pub projection: Projection,
     /// The point in the middle of the picture, world, m.
     pub target_m: Vec3,
@@ -95,7 +95,7 @@ impl Camera {
         }
     }
 
-    /// How far two cameras are apart, as a share of what they show and in radians, whichever is most.
+    /// Difference of two cameras, as a share of the visible extent and in radians, whichever is most.
     pub fn apart(&self, other: &Self) -> f32 {
         let shown = other.extent_m.max_element();
         let moved = self.target_m.distance(other.target_m) / shown;

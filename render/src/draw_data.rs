@@ -10,7 +10,7 @@ use crate::{Camera, vec2};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec4};
 
-/// What is drawn over what.
+/// Order of drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Solids of the world.
@@ -26,7 +26,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// The table only receives them; what is translucent or laid over casts none.
+    /// The table only receives them; translucent and overlaid shapes cast none.
     pub(crate) fn casts_shadows(self) -> bool {
         self == Self::World
     }
@@ -74,7 +74,7 @@ impl Globals {
 }
 
 impl DrawData {
-    /// Lists what `view` shows in a picture of `size` pixels.
+    /// Lists the shapes of `view` in a picture of `size` pixels.
     pub fn new(view: &SceneView<'_>, size: [u32; 2]) -> Self {
         let mut data = Self {
             globals: globals(view, size),
@@ -92,14 +92,14 @@ impl DrawData {
         data
     }
 
-    /// Fits the key light's map around what casts shadows.
+    /// Fits the key light's map around the shapes that cast shadows.
     fn set_light(&mut self) {
         let casters = self.solids.iter().filter(|(layer, _, _)| layer.casts_shadows());
         let light = KeyLight::around(casters.map(|(_, _, solid)| solid));
         (self.globals.map_from_world, self.globals.map) = (light.map_from_world, light.measures);
     }
 
-    /// How many shapes there are: solids, strokes.
+    /// Number of shapes: solids, strokes.
     pub fn counts(&self) -> [usize; 2] {
         [self.solids.len(), self.strokes.len() + self.overlay_strokes.len()]
     }

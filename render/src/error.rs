@@ -1,4 +1,4 @@
-//! What can go wrong, in sentences that say what to do.
+//! Errors of drawing, in sentences that name the remedy.
 
 /// A picture that could not be made.
 #[derive(Debug, thiserror::Error)]

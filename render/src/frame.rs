@@ -14,11 +14,11 @@ pub struct Frame {
     globals: wgpu::Buffer,
     pub(crate) bind_group: wgpu::BindGroup,
     pub(crate) maps: Maps,
-    /// Whether there is a table to be lit.
+    /// True if there is a table to be lit.
     pub(crate) has_table: bool,
-    /// What the light maps were made of: while it stays they stay, however the viewer moves.
+    /// Input of the light maps: while it stays they stay, however the viewer moves.
     lit: Option<Lit>,
-    /// Whether they are to be made anew.
+    /// True if the light maps must be made again.
     pub(crate) light_changed: bool,
     pub(crate) solids: Instances,
     pub(crate) strokes: Instances,
@@ -61,7 +61,7 @@ impl Frame {
         self.overlay_strokes.upload(device, queue, &data.overlay_strokes);
         self.has_table = data.solids.iter().any(|(layer, _, _)| *layer == Layer::Table);
         let lit = Lit::of(data);
-        // What was asked for and not drawn yet is still to be drawn.
+        // Maps that were requested and not drawn yet are still to be drawn.
         self.light_changed |= self.lit.as_ref() != Some(&lit);
         self.lit = Some(lit);
         self.batches.clear();

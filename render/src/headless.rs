@@ -120,7 +120,7 @@ impl Headless {
         self.queue.submit([encoder.finish()]);
         let (sender, receiver) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver waits below; if it is gone nobody needs the answer.
+            // The receiver waits below; if it is gone the answer is not needed.
             let _ = sender.send(result);
         });
         self.wait()?;

@@ -3,7 +3,7 @@
 //! Lengths are metres in the world's vertical plane, x to the right, **y up**; z points towards the viewer and only gives the
 //! planar objects a thickness. Everything inside is `f32`; [`camera::Camera`] is the seam to pixels.
 //!
-//! * [`SceneView`] borrows what is to be drawn: world, state, [`ViewOptions`].
+//! * [`SceneView`] borrows the things to be drawn: world, state, [`ViewOptions`].
 //! * [`DrawData`] is the plain list of shapes made from it, one file per thing under [`drawable`].
 //! * [`Renderer`] lives as long as the device: pipelines and meshes. A [`Frame`] holds one view's buffers.
 //! * [`TextureTarget`] is the multisampled texture drawn into; [`Blit`] copies it into another pass (egui's).

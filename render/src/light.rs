@@ -1,4 +1,4 @@
-//! The key light: where it comes from, and the box of space whose shadows are recorded in its map.
+//! The key light: its direction, and the box of space whose shadows are recorded in its map.
 
 use crate::shape::Solid;
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -21,7 +21,7 @@ const SOFTNESS: f32 = 0.085;
 /// The box grows in steps of this, m: a box that followed every movement would make edges of shadows crawl.
 const STEP_M: f32 = 0.02;
 
-/// What the shaders know of the shadow map.
+/// Shadow map as the shaders know it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct KeyLight {
     /// From the world to the map: x and y from 0 to 1 (y down), z from 0 at the light to 1.

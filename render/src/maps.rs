@@ -1,5 +1,5 @@
-//! One view's light maps: the depths that the key light sees, and what of it reaches the table; how high things hang over the table, and
-//! what they leave it of the sky.
+//! One view's light maps: the depths that the key light sees, and the share of it that reaches the table; the height of
+//! things over the table, and the share of the sky that they leave it.
 
 use crate::light::{MAP_TEXELS, SKY_TEXELS, TABLE_TEXELS};
 use crate::pipeline::{Groups, TABLE_LIGHT_FORMAT};
@@ -17,7 +17,7 @@ pub(crate) struct Maps {
     pub(crate) table_group: wgpu::BindGroup,
 }
 
-/// What is nearest at each place, and the buffer that finds it.
+/// Map of the nearest surface at each place, and the buffer that finds it.
 #[derive(Debug)]
 struct Depths {
     nearest: wgpu::TextureView,

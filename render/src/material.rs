@@ -1,4 +1,4 @@
-//! What solids are made of: how they take the light and which pattern they carry. The patterns are in `material.wgsl`.
+//! Materials of solids: their response to light and their pattern. The patterns are in `material.wgsl`.
 
 /// A material. Colour and gloss belong to the solid.
 #[repr(u32)]

@@ -1,9 +1,9 @@
 //! Stretchable unit meshes: every solid of the scene is one of a few, drawn many times.
 //!
-//! A vertex has a `corner` (which end or corner of the solid it belongs to, components −1, 0 or 1) and an `offset` (its place on
-//! the rounding around that corner). An instance stretches both apart: `position = corner · half + offset · radius`, with the
-//! rims of plates drawn in by `inset · radius.z`. So a bevel keeps its radius whatever the size, and a bar keeps round ends
-//! whatever its length.
+//! A vertex has a `corner` (the end or corner of the solid it belongs to, components −1, 0 or 1) and an `offset` (its
+//! place on the rounding around that corner). An instance stretches both apart: `position = corner · half + offset ·
+//! radius`, with the rims of plates drawn in by `inset · radius.z`. A bevel therefore keeps its radius whatever the
+//! size, and a bar keeps round ends whatever its length.
 
 mod round;
 
@@ -16,7 +16,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Vertex {
-    /// Which corner, components −1 to 1, times the instance's `half`.
+    /// Corner of the solid, components −1 to 1, times the instance's `half`.
     pub corner: [f32; 3],
     /// Place on the rounding, times the instance's `radius`.
     pub offset: [f32; 3],
@@ -149,8 +149,8 @@ fn rounded_box(steps: u16) -> Mesh {
     mesh
 }
 
-/// A stadium-like plate: `steps` segments for each quarter turn, walls along z, a bevel at the
-/// front rim; nobody sees the back.
+/// A stadium-like plate: `steps` segments for each quarter turn, walls along z, a bevel at the front rim; the back is
+/// never seen.
 fn plate(steps: u16) -> Mesh {
     let mut mesh = Mesh::default();
     let outline: Vec<([f32; 2], [f32; 2])> = (0..4_u16)

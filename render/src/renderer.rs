@@ -1,4 +1,4 @@
-//! What lives as long as the device: pipelines and unit meshes. One renderer draws any number of [`Frame`]s.
+//! Resources that live as long as the device: pipelines and unit meshes. One renderer draws any number of [`Frame`]s.
 
 use crate::draw_data::{DrawData, Layer};
 use crate::frame::Frame;
@@ -14,7 +14,7 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Samples a pixel: every driver can do four.
 pub const SAMPLES: u32 = 4;
 
-/// What lies in front of everything has the nearest part of the depth range to itself.
+/// Nearest part of the depth range, reserved for shapes in front of everything.
 const OVERLAY_DEPTH: f32 = 0.05;
 
 /// Cells of the background; see `background.wgsl`.
@@ -77,7 +77,7 @@ impl Renderer {
         Frame::new(device, &self.groups)
     }
 
-    /// Fills `frame` with what `view` shows in a picture of `size` pixels.
+    /// Fills `frame` with the shapes of `view` in a picture of `size` pixels.
     pub fn prepare(
         &self,
         device: &wgpu::Device,
@@ -98,7 +98,7 @@ impl Renderer {
         self.draw(&mut pass, frame);
     }
 
-    /// Records what the key light reaches.
+    /// Records the passes that find the surfaces lit by the key light.
     fn light(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
         let mut pass = frame.maps.begin_cast(encoder);
         pass.set_bind_group(0, &frame.bind_group, &[]);
@@ -115,7 +115,7 @@ impl Renderer {
         }
     }
 
-    /// Records what of the sky reaches the table.
+    /// Records the passes that find the share of the sky that reaches the table.
     fn sky(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
         let mut pass = frame.maps.begin_undersides(encoder);
         pass.set_bind_group(0, &frame.bind_group, &[]);

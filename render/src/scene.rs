@@ -1,4 +1,4 @@
-//! What a caller says about a picture: borrowed world and state, and options in plain data.
+//! Description of a picture by the caller: borrowed world and state, and options in plain data.
 
 use crate::{Camera, ColorRole, Theme};
 use haptics::Vec2;
@@ -9,26 +9,26 @@ use haptics::world::{State, World};
 pub struct SceneView<'a> {
     /// The world.
     pub world: &'a World,
-    /// Where everything is now.
+    /// Present state of the world.
     pub state: &'a State,
-    /// How it is shown.
+    /// Options of the view.
     pub options: &'a ViewOptions,
 }
 
-/// How a scene is shown and what is drawn over it.
+/// Options of a scene's view and of the overlays.
 #[derive(Clone, Debug)]
 pub struct ViewOptions {
     /// Light or dark.
     pub theme: Theme,
-    /// Where the viewer is.
+    /// Position of the viewer.
     pub camera: Camera,
-    /// How the fingers are drawn.
+    /// Style of the fingers.
     pub fingers: FingerStyle,
     /// Arrows of the forces that the tips exert on the environment.
     pub show_forces: bool,
     /// Length of a force arrow, m per N, positive.
     pub force_scale_m_per_n: f32,
-    /// Which end of a force arrow touches the tip.
+    /// End of a force arrow that touches the tip.
     pub arrow_anchor: ArrowAnchor,
     /// Small marks at active contacts.
     pub show_contacts: bool,
@@ -40,7 +40,7 @@ pub struct ViewOptions {
     pub highlight: Option<SolidRef>,
     /// Curves in the plane.
     pub trajectories: Vec<Trajectory>,
-    /// What a model says that the tips exert, N: slender arrows beside those of the measured forces.
+    /// Forces of the tips by a model, N: slender arrows beside those of the measured forces.
     pub predicted_force_n: Option<[Vec2; 2]>,
     /// Force vectors along a path (thesis, figure 5.10).
     pub force_vectors: Vec<ForceVector>,
@@ -75,7 +75,7 @@ impl Default for ViewOptions {
     }
 }
 
-/// How the fingers are drawn.
+/// Style of the fingers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FingerStyle {
     /// Links, joints and fingertips.
@@ -89,7 +89,7 @@ pub enum FingerStyle {
     Hidden,
 }
 
-/// Which end of a force arrow touches the fingertip.
+/// End of a force arrow that touches the fingertip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArrowAnchor {
     /// The arrow pushes: its head is at the tip, so that opposing grip forces do not cross inside the block.
@@ -126,7 +126,7 @@ pub struct Trajectory {
 /// A force at a point of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceVector {
-    /// Where, world, m.
+    /// Position, world, m.
     pub at_m: Vec2,
     /// The force, N; drawn from the point outwards with [`ViewOptions::vector_scale_m_per_n`].
     pub force_n: Vec2,
@@ -164,7 +164,7 @@ pub enum ConstraintMarker {
     },
     /// A surface that pushes one way.
     Surface {
-        /// Both ends of what was touched, world, m.
+        /// Both ends of the touched line, world, m.
         ends_m: [Vec2; 2],
         /// Out of the surface, need not be unit.
         normal: Vec2,

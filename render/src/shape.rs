@@ -17,7 +17,7 @@ pub struct Solid {
     pub radius_and_unlit: [f32; 4],
     /// Colour (gamma 2 undone) and opacity.
     pub color: [f32; 4],
-    /// What it is made of, as the shader numbers it.
+    /// Material, as the shader numbers it.
     pub material: u32,
 }
 

@@ -16,7 +16,7 @@ pub struct TextureTarget {
 }
 
 impl TextureTarget {
-    /// A target of `size` pixels, at least 1 × 1 and at most what the device can do.
+    /// A target of `size` pixels, at least 1 × 1 and at most the limit of the device.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, samples: u32, size: [u32; 2]) -> Self {
         let size = clamped(device, size);
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;

@@ -46,16 +46,16 @@ impl Color {
     }
 }
 
-/// What a colour stands for.
+/// Meaning of a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorRole {
     /// Finger 1 (index 0, left) or 2 (index 1, right): pad, arrow, curve.
     Finger(usize),
     /// A block, by index; six colours, then again.
     Block(usize),
-    /// What was measured.
+    /// Measured values.
     Measured,
-    /// What was simulated.
+    /// Simulated values.
     Simulated,
     /// The centre of rotation, a constraint.
     Constraint,
@@ -96,7 +96,7 @@ pub(crate) struct Palette {
     pub paper: Color,
     pub paper_cut: Color,
     pub rope: Color,
-    /// What runs out of a barrel.
+    /// Liquid that runs out of a barrel.
     pub liquid: Color,
     pub workspace: Color,
     pub ghost: Color,

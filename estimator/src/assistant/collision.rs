@@ -1,4 +1,4 @@
-//! Will what moves run into something, and how soon? Outlines are moved on at their present velocities until they meet.
+//! Time until moving things run into something. Outlines are moved on at their present velocities until they meet.
 
 use haptics::Vec2;
 use haptics::world::{Rect, State, Surface, World};
@@ -6,13 +6,13 @@ use serde::Serialize;
 
 /// Softer than this is a touch, m/s.
 pub const GENTLE_M_S: f64 = 0.06;
-/// A person who sees something coming needs so long, s.
+/// Reaction time of a person who sees something coming, s.
 const REACTION_S: f64 = 0.2;
-/// … and brakes like this, m/s².
+/// Deceleration with which a person then brakes, m/s².
 const BRAKE_M_S2: f64 = 1.0;
 /// As good as touching, m.
 const TOUCH_M: f64 = 3e-4;
-/// What is nearer than this touches already, m.
+/// Distance below which things touch already, m.
 const CONTACT_M: f64 = 5e-4;
 /// Steps of a search.
 const STEPS: usize = 24;
@@ -20,13 +20,13 @@ const STEPS: usize = 24;
 /// Something is about to hit something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Collision {
-    /// Where on what moves, m in the world.
+    /// Point of the moving thing, m in the world.
     pub from_m: Vec2,
-    /// Where it will hit, m in the world.
+    /// Point of the obstacle, m in the world.
     pub to_m: Vec2,
-    /// When, s from now, and its standard error by the sensors and the lateness of the picture.
+    /// Time until the impact, s, and its standard error by the sensors and the lateness of the picture.
     pub in_s: (f64, f64),
-    /// How fast, m/s.
+    /// Speed of the impact, m/s.
     pub speed_m_s: f64,
 }
 
@@ -108,8 +108,8 @@ struct Thing {
     surface: Surface,
 }
 
-/// The next thing that the hand, or what it holds, will hit too fast; `late_s`: how old the picture is; `position_m`: how well places are
-/// known.
+/// The next thing that the hand, or an object in it, will hit too fast; `late_s`: age of the picture; `position_m`:
+/// error of places.
 pub fn next(world: &World, state: &State, late_s: f64, position_m: f64) -> Option<Collision> {
     let held = held(state);
     let (movers, others) = things(world, state, held);
@@ -163,13 +163,13 @@ fn things(world: &World, state: &State, held: Option<usize>) -> (Vec<Thing>, Vec
         if held == Some(k) { movers.push(thing) } else { others.push(thing) }
     }
     if held.is_some() {
-        // Fingers that hold something go where it goes: what is beside them matters, what is between them does not.
+        // Held objects go with the fingers: things beside them matter, things between them do not.
         movers.retain(|m| !matches!(m.surface, Surface::Finger(_)) || m.velocity_m_s.norm() > GENTLE_M_S);
     }
     (movers, others)
 }
 
-/// What stands fast, and what turns about an axis.
+/// Things that are fixed, or turn about an axis.
 fn fixed(world: &World, state: &State) -> Vec<Thing> {
     let still = |outline: Outline, surface: Surface| Thing { outline, velocity_m_s: Vec2::zeros(), surface };
     let mut all = Vec::new();

@@ -1,7 +1,8 @@
-//! What may be in a vessel, by the density of what it holds.
+//! Possible contents of a vessel, by their density.
 //!
-//! Each kind of content has a range of densities, evenly likely on a logarithmic scale, and all kinds are as likely as each other before
-//! anything is weighed. A density with a normal error makes some of them more likely (Bayes); what no kind explains stays unnamed.
+//! Each kind of content has a range of densities, evenly likely on a logarithmic scale, and all kinds are as likely as
+//! each other before anything is weighed. A density with a normal error makes some of them more likely (Bayes); a
+//! density of no kind stays unnamed.
 
 use super::held::Known;
 use serde::Serialize;
@@ -16,7 +17,7 @@ pub struct Kind {
     pub density_kg_m3: [f64; 2],
 }
 
-/// What vessels hold (bulk densities where it is loose).
+/// Usual contents of vessels (bulk densities of loose ones).
 pub const KINDS: [Kind; 6] = [
     Kind { name: "nothing or a gas", density_kg_m3: [0.5, 25.0] },
     Kind { name: "foam, chips or rags", density_kg_m3: [25.0, 450.0] },
@@ -29,7 +30,7 @@ pub const KINDS: [Kind; 6] = [
 const STEPS: usize = 64;
 /// The density of something that is not in the list: anything between a gas and a heavy metal.
 const ANYTHING: [f64; 2] = [0.5, 12_000.0];
-/// How likely that is beside one kind of the list.
+/// Prior likelihood of that relative to one kind of the list.
 const UNLISTED: f64 = 0.1;
 
 /// Kinds that may be in it, the likeliest first.
@@ -41,7 +42,7 @@ pub struct Guess {
     pub kinds: Vec<(&'static str, f64)>,
 }
 
-/// What a content of this density may be. An error of zero is taken for a thousandth of the value.
+/// Possible contents of this density. An error of zero is taken for a thousandth of the value.
 pub fn guess(density: Known) -> Guess {
     /// Less likely kinds are not named.
     const NAMED: f64 = 0.1;
@@ -57,7 +58,7 @@ pub fn guess(density: Known) -> Guess {
     Guess { density, kinds }
 }
 
-/// Probability density of what was measured if the truth lies evenly (in its logarithm) within a range.
+/// Probability density of the measurement if the truth lies evenly (in its logarithm) within a range.
 fn likelihood(density: Known, [low, high]: [f64; 2]) -> f64 {
     let least = 1e-3 * density.value.abs().max(1.0);
     let Ok(error) = Normal::new(density.value, density.std_error.max(least)) else { return 0.0 };

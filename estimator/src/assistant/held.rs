@@ -1,4 +1,4 @@
-//! What is in the hand, as far as it is known: each value with its error, or not at all.
+//! Estimates of the object in the hand: each value with its error, or not at all.
 
 use super::contents::{Guess, guess};
 use super::slip::{Slip, slip};
@@ -17,18 +17,19 @@ pub struct Known {
     pub std_error: f64,
 }
 
-/// What one sees of a thing without touching it.
+/// Properties of a thing that are seen without touching it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
-    /// How tall it is, m, by eye.
+    /// Height of the thing, m, by eye.
     pub height_m: Option<f64>,
-    /// It is round: as deep as wide. What is not round has a depth that nobody knows.
+    /// True if it is round: as deep as wide. A thing that is not round has an unknown depth.
     pub round: bool,
-    /// What such a vessel weighs when it is empty, kg; absent: it is no vessel.
+    /// Mass of such a vessel when empty, kg; absent: it is no vessel.
     pub empty_kg: Option<f64>,
-    /// What it is called, where the report cannot know: to that, whatever is carried is a block.
+    /// Name of the thing, if the report cannot know it: there any carried object is a block.
     pub called: Option<&'static str>,
-    /// It meets what holds or bears it (a needle and its sheet), which would pass for its weight: that is not told.
+    /// True if it meets a thing that holds or bears it (a needle and its sheet): the force of that would pass for its
+    /// weight, so no weight is told.
     pub borne: bool,
 }
 
@@ -43,9 +44,9 @@ pub struct Held {
     pub width_m: Option<Known>,
     /// Stiffness of one pad and the wall behind it, N/m.
     pub grip_stiffness_n_m: Option<Known>,
-    /// How near it is to slipping.
+    /// Margin against slipping.
     pub slip: Option<Slip>,
-    /// What may be in it.
+    /// Possible contents.
     pub contents: Option<Guess>,
     /// It loses weight: kg/s.
     pub leaks_kg_s: Option<Known>,
@@ -59,7 +60,7 @@ const EMPTY_SHARE: f64 = 0.05;
 const INSIDE: f64 = 0.95;
 
 impl Held {
-    /// What a report says of the object in the hand; `None` while nothing is held.
+    /// Estimates in a report of the object in the hand; `None` while nothing is held.
     pub fn of(report: &Report, look: &Look) -> Option<Self> {
         let object = report.held.clone()?;
         let known =
@@ -76,7 +77,7 @@ impl Held {
             width_m,
             grip_stiffness_n_m: known("grip_stiffness_N_m"),
             slip: known("friction_lower_bound").zip(report.slip_margin).and_then(|(held, margin)| {
-                // The margin is what is left of the ratio that surely held.
+                // The margin is the remaining part of the ratio that surely held.
                 slip((1.0 - margin) * held.value, held)
             }),
             contents: known("mass_kg").zip(width_m).and_then(|(mass, width)| contents(mass, width, look)),
@@ -96,7 +97,7 @@ fn known(parameter: &Parameter) -> Option<Known> {
     Some(Known { value, std_error: parameter.std_error.filter(|e| e.is_finite())? })
 }
 
-/// Density of what is in a round vessel, and what that may be.
+/// Density of the content of a round vessel, and its possible kinds.
 fn contents(mass_kg: Known, width_m: Known, look: &Look) -> Option<Guess> {
     let (height_m, empty_kg) = (look.height_m.filter(|_| look.round)?, look.empty_kg?);
     let volume_m3 = INSIDE * 0.25 * PI * width_m.value.powi(2) * height_m;

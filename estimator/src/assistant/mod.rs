@@ -1,8 +1,9 @@
-//! What an assistant says while somebody handles things: what is in the hand, what is about to go wrong, what was found to hold.
+//! Assistant for handling things: the object in the hand, imminent faults, and constraints that were found.
 //!
-//! What is in the hand comes from the estimator beside the servo ([`crate::online`]), fed by the operator's own motion; nothing is told
-//! without its error. Warnings look at the newest tick and at the outlines of what stands around (the world as the operator sees it: over a
-//! slow line the late picture, with its lateness in the warning). No drawing here: the window draws it (`docs/assistant.md`).
+//! Estimates of the object in the hand come from the estimator beside the servo ([`crate::online`]), fed by the
+//! operator's own motion; each value has its error. Warnings look at the newest tick and at the outlines of the objects
+//! around: the world as the operator sees it (over a slow line the late picture, with its lateness in the warning). No
+//! drawing here: the window draws it (`docs/assistant.md`).
 
 pub mod collision;
 pub mod contents;

@@ -1,10 +1,10 @@
-//! How near what is held is to slipping.
+//! Margin of a held object against slipping.
 //!
-//! Nobody knows the friction of a thing before it slips. Two things are known: it has held so far, so the friction is above the largest
-//! ratio of shear to grip that held ([`crate::online`]); and fingertips of foam or rubber have a friction against wood, metal, paper or
-//! plastic that nineteen times of twenty lies between 0.4 and 1.6 (a logarithmic normal distribution about 0.8). The second, cut off below
-//! the first, is what is believed of the friction; from it follow what is free now, between which limits, and how likely a jolt would
-//! make it slip.
+//! The friction of a thing is unknown before it slips. Two things are known. It has held so far, so the friction is
+//! above the largest ratio of shear to grip that held ([`crate::online`]). And fingertips of foam or rubber have a
+//! friction against wood, metal, paper or plastic that nineteen times of twenty lies between 0.4 and 1.6 (a log-normal
+//! distribution about 0.8). The second, cut off below the first, is the belief about the friction. It leads to the free
+//! share now, its limits, and the probability that a jolt would make it slip.
 
 use super::held::Known;
 use serde::Serialize;
@@ -13,17 +13,17 @@ use statrs::distribution::{ContinuousCDF, LogNormal};
 /// Median of the friction of pads before anything is known, and its spread: ln 2 over 1.96.
 const MEDIAN: f64 = 0.8;
 const SPREAD: f64 = 0.3536;
-/// A jolt is so much more shear than now.
+/// Factor of a jolt on the present shear.
 const JOLT: f64 = 1.25;
 
-/// What is free of the friction.
+/// Free part of the friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Slip {
     /// Share of the friction that is free now, as likely too high as too low.
     pub free: f64,
-    /// Nineteen of twenty frictions leave between so much …
+    /// Lower limit of the free share for nineteen of twenty frictions.
     pub least: f64,
-    /// … and so much.
+    /// Upper limit of the free share for nineteen of twenty frictions.
     pub most: f64,
     /// Probability that a quarter more shear would make it slip.
     pub by_a_jolt: f64,
@@ -32,13 +32,14 @@ pub struct Slip {
 /// From the ratio of shear to grip now and the largest that surely held (with its error). `None` where these are no ratios.
 pub fn slip(ratio: f64, held: Known) -> Option<Slip> {
     let belief = LogNormal::new(MEDIAN.ln(), SPREAD).ok()?;
-    // What holds now holds; a bound is good to its error.
+    // A grip that holds now holds; a bound is good to its error.
     let bound = (held.value - held.std_error).max(0.0);
     if !(ratio >= 0.0 && ratio.is_finite() && bound.is_finite()) {
         return None;
     }
     let below = belief.cdf(bound);
-    // Above almost all that pads do, the belief has nothing to say: what is free is then what is above the bound, and nobody knows it.
+    // Above almost all frictions of pads the belief says nothing: the free part is then the one above the bound, and it
+    // is unknown.
     if below > 0.9999 {
         return Some(Slip { free: 0.0, least: 0.0, most: 1.0, by_a_jolt: 1.0 });
     }

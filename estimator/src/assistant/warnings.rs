@@ -1,4 +1,4 @@
-//! What is about to go wrong: too much force, a blow, the edge of where the hand can reach.
+//! Warnings of imminent faults: too much force, a blow, the edge of the hand's reach.
 
 use super::collision::{self, Collision};
 use haptics::Vec2;
@@ -7,20 +7,20 @@ use serde::Serialize;
 
 /// Forces from this share of the limit on are near it.
 const NEAR_FORCE: f64 = 0.8;
-/// The edge of the workspace is near from here on, m …
+/// Distance from the edge of the workspace from which it is near, m.
 const NEAR_EDGE_M: f64 = 0.008;
-/// … or when the hand gets there in less than this, s.
+/// Time to the edge from which it is near, s.
 const EDGE_SOON_S: f64 = 0.35;
 /// Standard error of a force and of a place by good sensors (strain gauges, encoders of the master hand): N and m.
 const FORCE_ERROR_N: f64 = 0.01;
 const PLACE_ERROR_M: f64 = 2e-4;
 
-/// What limits the operator.
+/// Limits of the operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
     /// The most that a finger should press, N.
     pub limit_n: f64,
-    /// How old the picture is, s.
+    /// Age of the picture, s.
     pub late_s: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct Load {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
-    /// A finger presses nearly, or more than, what is allowed.
+    /// A finger presses nearly as much as allowed, or more.
     Force {
         /// 0 left, 1 right.
         finger: usize,
@@ -45,9 +45,9 @@ pub enum Warning {
     Edge {
         /// 0 left, 1 right.
         finger: usize,
-        /// What is left, m, and its standard error; below zero it is beyond.
+        /// Remaining distance, m, and its standard error; negative beyond the edge.
         left_m: (f64, f64),
-        /// Where the edge is nearest, m in the world.
+        /// Nearest point of the edge, m in the world.
         at_m: Vec2,
     },
 }
@@ -55,7 +55,7 @@ pub enum Warning {
 /// The warnings of one moment, at most one of each kind.
 pub type Warnings = Vec<Warning>;
 
-/// What to warn of now.
+/// Present warnings.
 pub fn warnings(world: &World, state: &State, load: &Load) -> Warnings {
     let force =
         (0..2).filter_map(|finger| too_hard(state, load, finger)).max_by(|a, b| strength(a).total_cmp(&strength(b)));

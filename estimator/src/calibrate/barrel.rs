@@ -59,7 +59,7 @@ impl Builder<'_> {
             self.take(OBJECT, "wall_stiffness_N_m", wall_n_m);
             return Some(Wall { stiffness_n_m: wall_n_m, strength_n: None });
         }
-        // A wall that nobody would feel behind the pads is rigid.
+        // A wall that is too stiff to be felt behind the pads is rigid.
         let wall_n_m = left(pad_n_m).recip();
         if stated.is_some() || !(0.0..20.0 * pad_n_m).contains(&wall_n_m) {
             return None;
@@ -69,7 +69,7 @@ impl Builder<'_> {
         Some(Wall { stiffness_n_m: wall_n_m, strength_n: None })
     }
 
-    /// A leak that stands out of its error goes on from the start.
+    /// A leak that stands out of its error begins at the start.
     fn leak(&mut self, mass_kg: f64) -> Option<Content> {
         let leak = self.fit.parameter(OBJECT, "leak_kg_s")?;
         let (value, error) = (leak.value?, leak.std_error?);

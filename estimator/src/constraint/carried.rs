@@ -1,4 +1,4 @@
-//! What holds a carried block: nothing but the hand, if all is well.
+//! Constraint of a carried block: none but the hand, if all is well.
 
 use super::existence::{Rows, existence, sentence};
 use crate::estimate::{Constraint, ConstraintKind};

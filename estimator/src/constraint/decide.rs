@@ -1,4 +1,4 @@
-//! Which kind of constraint a path shows.
+//! Decision about the kind of constraint that a path shows.
 
 mod odds;
 mod report;
@@ -25,24 +25,25 @@ const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;
 /// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm.
 const HINGE_M: (f64, f64) = (0.03, 2.0);
-/// Distance from line and plane, as a share of the extent, up to which a path is still one.
+/// Largest distance from line and plane of a path that may follow them, as a share of the extent.
 const CLOSE_SHARE: f64 = 0.025;
-/// … and from which on it is certainly none.
+/// Distance from line and plane above which it certainly does not follow them, as a share of the extent.
 const FAR_SHARE: f64 = 0.04;
 /// Width of a path in its plane as a share of its length from which on it fills a region.
 const REGION_SHARE: f64 = 0.15;
-/// Passes must share this many times what they differ by to be told from noise that remembers …
+/// Least ratio of the common part of passes to their difference for a guide, to be told from noise with a memory.
 const GUIDE_RATIO: f64 = 3.0;
-/// … or this many times to put a circle in doubt, …
+/// The same ratio to put a circle in doubt.
 const SYSTEMATIC_RATIO: f64 = 1.5;
-/// … and lie this share of the extent away from the best circle, …
+/// Least distance of the common part from the best circle, as a share of the extent.
 const GUIDE_SHARE: f64 = 4e-3;
-/// … over this share of the points, or over this share where the path crosses itself as well.
+/// Least share of the points over which it is so; `GUIDE_ALONG_CROSSING`: the same for a path that crosses itself as
+/// well.
 const GUIDE_ALONG: f64 = 0.3;
 const GUIDE_ALONG_CROSSING: f64 = 0.6;
 /// Passes along one guide lie this close to each other, as a share of the extent.
 const SAME_SHARE: f64 = 0.012;
-/// A compact path may miss the recorded one by so many times its noise, or by this share of its extent.
+/// Largest distance of a compact path from the recorded one, in multiples of its noise, or as a share of its extent.
 const COMPACT_NOISES: f64 = 1.2;
 const COMPACT_SHARE: f64 = 2e-3;
 /// A path in space that leaves its plane by more than this share of its extent is not called flat.
@@ -51,10 +52,10 @@ const PLANE_SHARE: f64 = 0.01;
 const SCREW_ERRORS: f64 = 5.0;
 /// A constrained grip may leave its path by this much, m: less is no sign of freedom.
 const GRIP_SLIP_M: f64 = 2.5e-3;
-/// Stiffness of a hand of which nothing is known, N/m: what is as stiff counts as rigid.
+/// Stiffness of an unknown hand, N/m: a path as stiff as this counts as rigid.
 const RIGID_N_M: f64 = 2000.0;
 
-/// What is known about a path beside its points.
+/// Knowledge about a path beside its points.
 #[derive(Clone, Debug, Default)]
 pub struct Context {
     /// Name of the recording or trial.
@@ -227,8 +228,8 @@ impl Shape {
         (ConstraintKind::Undecided, text)
     }
 
-    /// Says so when the path follows one guide more than once that is neither a line nor a circle: what its passes have in common
-    /// is far from the best circle, and far more than what they differ by.
+    /// Says so if the path follows one guide more than once that is neither a line nor a circle. The common part of its
+    /// passes is then far from the best circle, and far larger than their difference.
     fn guide(&self, sizes: &str) -> Option<String> {
         let found = &self.retrace;
         let same = found.apart_m < (SAME_SHARE * self.frame.extent_m).max(4.0 * self.frame.noise_m);
@@ -270,7 +271,7 @@ impl Shape {
         (certain && fits && helix.radius_m < HINGE_M.1).then_some((helix, text))
     }
 
-    /// What the passes have in common is not noise.
+    /// True if the common part of the passes is not noise.
     fn systematic(&self) -> bool {
         let found = &self.retrace;
         found.along_share > GUIDE_ALONG
@@ -307,7 +308,7 @@ fn profile(frame: &Frame, arc: &Arc, best: f64, amplitude: f64, size: f64) -> (f
             inner = trial;
             step *= 1.3;
         }
-        // … and close in.
+        // Close in by halving.
         for _ in 0..30 {
             let middle = Arc { curvature: 0.5 * (inner.curvature + outer.curvature), ..inner };
             let (trial, trial_cost) = refine(&frame.flat, middle, true, frame.extent_m);

@@ -1,12 +1,12 @@
 //! Is there a constraint at all? Force that weight, inertia and friction do not explain (thesis, 4.2 and figure 5.12).
 //!
-//! Along the motion the force is fitted: weight, inertia and, where something rubs, friction. What the same weight and inertia
-//! leave of the force *across* the motion is tested twice, each at half the stated rate of false alarms:
+//! The force along the motion is fitted: weight, inertia and, if something rubs, friction. The residual of the force
+//! *across* the motion after the same weight and inertia is tested twice, each at half the stated rate of false alarms:
 //!
 //! - its mean, along the path's left normal and along its outward normal, against a standard error that counts the
-//!   autocorrelation, the errors of weight and inertia, the sensors' bias and what no model of a grip gets right;
-//! - its power, against the power of what is left along the motion: force that nothing explains does not know which way an
-//!   object moves, unless it is guided.
+//!   autocorrelation, the errors of weight and inertia, the sensors' bias and the model error of a grip;
+//! - its power, against the power of the residual along the motion: unexplained force is independent of the direction
+//!   of an object's motion, unless it is guided.
 
 use crate::estimate::{Existence, Sided};
 use crate::identify::linear::{LinearFit, integrated_autocorrelation, least_squares};
@@ -15,20 +15,20 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// Free motions that are called constrained, at most.
 pub const FALSE_ALARMS: f64 = 0.01;
-/// What pads, swinging and geometry leave unexplained without any constraint, as a share of the force.
+/// Residual by pads, swinging and geometry without any constraint, as a share of the force.
 const MODEL_SHARE: f64 = 0.02;
 /// A constraint force above this share of the force would matter: absence is only stated when it would have been seen.
 const MATTERS_SHARE: f64 = 0.25;
 /// Fewer rows tell nothing.
 const LEAST_ROWS: usize = 12;
-/// A side counts as loaded from this many deviations on …
+/// Least size of the force on a loaded side, standard deviations.
 const SIDE_DEVIATIONS: f64 = 4.0;
-/// … over this share of the rows.
+/// Least share of the rows with such a force.
 const SIDE_SHARE: f64 = 0.05;
 /// Quantile of the normal distribution for nineteen of twenty, and for half the rate of false alarms on two means.
 const SEEN_95: f64 = 1.645;
 
-/// Motion and force of what is held, at rows that do not share samples of a filter.
+/// Motion and force of the held object, at rows that do not share samples of a filter.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
     /// Velocity, m/s, or any vector along the path where there is no clock.
@@ -138,7 +138,7 @@ pub fn sentence(found: &Existence) -> String {
     }
 }
 
-/// Weight and inertia from the force along the motion, and what they leave in both directions.
+/// Weight and inertia from the force along the motion, and the residuals in both directions.
 fn unexplained(rows: &Rows) -> Option<Unexplained> {
     let tangent: Vec<Vec2> = rows.velocity.iter().map(Vec2::normalize).collect();
     let normal: Vec<Vec2> = tangent.iter().map(|t| Vec2::new(-t.y, t.x)).collect();
@@ -173,11 +173,11 @@ fn unexplained(rows: &Rows) -> Option<Unexplained> {
     })
 }
 
-/// Root mean square over the rows of what the errors of weight and inertia do across the motion, N.
+/// Root mean square over the rows of the error across the motion by the errors of weight and inertia, N.
 fn model_error(fit: &LinearFit, side: &[Vec<f64>], model: usize) -> f64 {
     let size = |column: &[f64]| (column.iter().map(|c| c * c).sum::<f64>() / column.len() as f64).sqrt();
     let parts = (0..model).map(|j| {
-        // What the motion does not show at all is bounded by nothing: a column that is zero across does no harm, though.
+        // A parameter that the motion does not show is unbounded; a regressor that is zero across does no harm, though.
         let error = if fit.identified[j] { fit.std_errors[j] } else { f64::INFINITY };
         if size(&side[j]) > 0.0 { (error * size(&side[j])).powi(2) } else { 0.0 }
     });
@@ -234,8 +234,8 @@ impl Power {
     }
 }
 
-/// +1 where the path bends to the right (its outside is on the left), −1 where it bends to the left; the sign of the nearest
-/// clear bend where it runs straight.
+/// Side of the outside of the bend: +1 where the path bends to the right (its outside is on the left), −1 where it
+/// bends to the left; on straight parts the sign of the nearest clear bend.
 fn outward_signs(velocity: &[Vec2]) -> Vec<f64> {
     let n = velocity.len();
     let turn = |i: usize| {

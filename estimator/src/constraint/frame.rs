@@ -87,8 +87,8 @@ fn upward(axis: Vector3<f64>) -> Vector3<f64> {
     if largest < 0.0 { -axis } else { axis }
 }
 
-/// Mean of the samples about each kept one: those on the way to its neighbours that lie nearer to it. What is left out between
-/// two kept points would be thrown away otherwise, and noise with it that averages out.
+/// Mean of the samples about each kept one: those on the way to its neighbours that lie nearer to it. Otherwise the
+/// samples between two kept points would be thrown away, and with them noise that averages out.
 fn averaged(points: &[Vector3<f64>], kept: &[usize]) -> Vec<Vector3<f64>> {
     let mut sums: Vec<(Vector3<f64>, f64)> = kept.iter().map(|&i| (points[i], 1.0)).collect();
     for (k, &first) in kept.iter().enumerate() {

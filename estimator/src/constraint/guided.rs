@@ -1,4 +1,4 @@
-//! What forces and screws add to a path: whether anything guides it, and the motion it allows.
+//! Evidence of forces and screws about a path: a guide, if there is one, and the motion it allows.
 
 use super::decide::Context;
 use super::existence::{Rows, existence};
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 const HALF_S: f64 = 0.06;
 /// Slower than this share of the usual speed, the direction is a guess.
 const SLOW_SHARE: f64 = 0.3;
-/// Half of the chord that gives the direction of a path without a clock, kept points.
+/// Half of the chord for the direction of a path without a clock, kept points.
 const CHORD: usize = 3;
 
 /// The test of [`existence`] on a tool's path in its plane, with the clock where there is one.

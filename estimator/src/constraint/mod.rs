@@ -1,4 +1,4 @@
-//! Geometric constraints: what kind of joint a tool path shows, with an honest interval for its radius.
+//! Geometric constraints: the kind of joint that a tool path shows, with an honest interval for its radius.
 
 mod carried;
 pub(crate) mod circle;

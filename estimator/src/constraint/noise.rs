@@ -1,10 +1,10 @@
-//! How far a path's error can bend it: the part of the noise that looks exactly like curvature cannot be seen in the
-//! residual, so it is extrapolated from the part that can.
+//! Bend of a path by its error. The part of the noise that looks exactly like curvature cannot be seen in the residual,
+//! so it is extrapolated from the part that can.
 //!
 //! Path errors (a slipping hook, a yielding finger) are strongly correlated along the path. The residual is expanded in
-//! cosines over the travelled distance; their powers are taken to follow A k^−p (white noise p = 0, a random walk p = 2), the
-//! exponent is averaged over its likelihood and the amplitude follows Student's t, which makes the answer heavy-tailed where
-//! the residual says little. What no residual shows, the give of the grip, is added as a floor.
+//! cosines over the travelled distance. Their powers are taken to follow A k^−p (white noise p = 0, a random walk p =
+//! 2). The exponent is averaged over its likelihood and the amplitude follows Student's t, which makes the answer
+//! heavy-tailed if the residual says little. The give of the grip, which no residual shows, is added as a floor.
 
 use super::circle::{Arc, gradient};
 use haptics::Vec2;
@@ -23,7 +23,7 @@ const LEAST_SHARE: f64 = 0.3;
 /// Give of a grip, m, one standard deviation: no path is trusted further. A quarter of the millimetre and more that the
 /// thesis measured at its fingers and a hook slips on a handle.
 const GRIP_M: f64 = 2.5e-4;
-/// … and for small mechanisms as a share of their extent.
+/// The same for small mechanisms, as a share of their extent.
 const GRIP_SHARE: f64 = 2.5e-3;
 /// Exponents that are averaged over.
 const EXPONENTS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
@@ -37,7 +37,7 @@ pub struct PathNoise {
     grip: f64,
 }
 
-/// Which direction of the sample space is asked about.
+/// Direction of the sample space that is in question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// A change of curvature.
@@ -127,7 +127,7 @@ fn cosine(n: usize, k: usize) -> Vec<f64> {
     (0..n).map(|i| size * (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos()).collect()
 }
 
-/// Orthonormal basis of what the fit can absorb, the direction asked about last and orthogonal to the others.
+/// Orthonormal basis of the space that the fit can absorb, the direction in question last and orthogonal to the others.
 fn basis(points: &[Vec2], arc: &Arc, extent_m: f64, direction: Direction) -> DMatrix<f64> {
     let rows: Vec<_> = points.iter().map(|p| gradient(arc, *p, extent_m)).collect();
     let order: &[usize] = match direction {

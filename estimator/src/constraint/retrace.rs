@@ -1,16 +1,16 @@
-//! Does a path come back to where it was, and how? A guide leads back along itself, a free hand crosses its way.
+//! Returns of a path to earlier places: a guide leads back along itself, a free hand crosses its way.
 
 use super::circle::Arc;
 use super::frame::Frame;
 use haptics::Vec2;
 
-/// Places are compared when the way between them is longer than this share of the extent, at least.
+/// Least way between two places that are compared, as a share of the extent.
 const APART_SHARE: f64 = 0.12;
-/// … and the path comes this near again, as a share of the extent.
+/// Largest distance of two such places, as a share of the extent.
 const NEAR_SHARE: f64 = 0.06;
-/// The direction of the path is taken over this share of the extent on either side.
+/// Length on either side over which the direction of the path is taken, as a share of the extent.
 const TANGENT_SHARE: f64 = 0.025;
-/// … and over this many times the noise.
+/// Least such length, in multiples of the noise.
 const TANGENT_NOISES: f64 = 8.0;
 /// Passes that meet at a larger angle cross, sine.
 const CROSSING_SINE: f64 = 0.5;
@@ -19,7 +19,7 @@ const ALONG_SINE: f64 = 0.3;
 /// Fewer meetings tell nothing.
 const LEAST_MEETINGS: usize = 12;
 
-/// Where the path comes back.
+/// Places to which the path comes back.
 #[derive(Clone, Debug, Default)]
 pub struct Retrace {
     /// Share of the points beside which another pass goes along.
@@ -28,9 +28,9 @@ pub struct Retrace {
     pub apart_m: f64,
     /// Places where the path crosses itself.
     pub crossings: usize,
-    /// Root mean square over the meetings of the mean of both passes' distance from the arc, m: what they have in common.
+    /// Root mean square over the meetings of the mean of both passes' distance from the arc, m: their common part.
     pub common_m: f64,
-    /// … and of half their difference.
+    /// Root mean square of half the difference of both passes' distance from the arc, m.
     pub differing_m: f64,
 }
 

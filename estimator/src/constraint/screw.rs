@@ -1,7 +1,7 @@
 //! Turning and sliding at once: a path in space that winds about an axis with a constant pitch.
 //!
-//! Positions alone show a pitch only while they wind; what the body's orientation does is not needed. The axis is where all
-//! directions of motion make one and the same angle with it; axis, centre, radius and pitch are then refined together.
+//! Positions alone show a pitch only while they wind; the body's orientation is not needed. All directions of motion
+//! make one and the same angle with the axis; axis, centre, radius and pitch are then refined together.
 
 use crate::wanted;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
@@ -72,7 +72,7 @@ impl Windings {
     /// Angles about the axis, continuous, and (distance, height) of each point.
     fn seen(&self, points: &[Vector3<f64>], p: &Parameters) -> (Vec<f64>, Vec<(f64, f64)>) {
         let (axis, at) = self.axis_of(p);
-        // A frame that turns with the axis smoothly, not one chosen anew.
+        // A frame that turns smoothly with the axis, instead of a new choice.
         let u = (self.u - axis * axis.dot(&self.u)).normalize();
         let v = axis.cross(&u);
         let arms: Vec<Vector3<f64>> = points.iter().map(|q| q - at).collect();
@@ -143,7 +143,7 @@ fn refine(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<Helix> {
     let angles = wind.seen(points, &p).0;
     let (low, high) = angles.iter().fold((f64::MAX, f64::MIN), |(l, h), a| (l.min(*a), h.max(*a)));
     let rms_m = (best.norm_squared() / n).sqrt();
-    // Ten independent pieces, however many samples.
+    // Ten independent blocks, however many samples.
     let variance = rms_m * rms_m * n / 10.0;
     let found = Helix {
         point,

@@ -1,10 +1,10 @@
-//! Sudden shifts of a path: the grasp slips on a handle, and the circle goes on beside itself (thesis, 5.3.1).
+//! Sudden shifts of a path: the grasp slips on a handle, and the circle continues beside itself (thesis, 5.3.1).
 //!
-//! The distance from the fitted path is a sum of known columns (for a circle 1, cos θ, sin θ: radius and centre). A slip at row k
-//! adds some of them once more, from k on. The best k is kept when its gain in the sum of squares passes an F test, on residuals
-//! freed of their memory, whose level is shared among all places where a slip could have been (Bonferroni), when a
-//! steady drift does not explain as much, and when the shift is larger than what is worth speaking of. Both parts are then
-//! searched again.
+//! The distance from the fitted path is a sum of known regressors (for a circle 1, cos θ, sin θ: radius and centre). A
+//! slip at row k adds some of them again, from k on. The best k is kept under three conditions. Its gain in the sum of
+//! squares passes an F test, on whitened residuals, whose level is shared among all possible places of a slip
+//! (Bonferroni). A steady drift does not explain as much. The shift is larger than the least that matters. Both parts
+//! are then searched again.
 
 use crate::identify::linear::integrated_autocorrelation;
 use nalgebra::{DMatrix, DVector};
@@ -32,8 +32,8 @@ pub struct Step {
     pub significance: f64,
 }
 
-/// Steps in `deviation`, first to last. `base`: columns of the path's own shape; `stepping`: which of them shift; `least`: size of
-/// a shift that matters, in the unit of the deviation.
+/// Steps in `deviation`, first to last. `base`: regressors of the path's own shape; `stepping`: indices of those that
+/// shift; `least`: size of a shift that matters, in the unit of the deviation.
 pub fn steps(base: &[Vec<f64>], stepping: &[usize], deviation: &[f64], least: f64) -> Vec<Step> {
     let mut found = Vec::new();
     search(base, stepping, deviation, least, 0..deviation.len(), &mut found);
@@ -107,7 +107,7 @@ fn best(columns: &[Vec<f64>], stepping: &[usize], deviation: &[f64], least: f64)
     })
 }
 
-/// Correlation of neighbouring residuals, corrected for what fitting and few samples take from it.
+/// Correlation of neighbouring residuals, corrected for the bias by fitting and by few samples.
 fn memory(residuals: &[f64], parameters: usize) -> f64 {
     let power: f64 = residuals.iter().map(|r| r * r).sum();
     let product: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();

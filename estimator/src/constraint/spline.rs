@@ -1,6 +1,6 @@
-//! A guided path written compactly: the fewest control points of a cubic B-spline whose distance from the recorded path is
-//! within its noise (thesis, 4.3.1; least squares as in de Boor 1978, with the places on the curve projected anew each round,
-//! Hoschek 1988).
+//! A guided path written compactly: the fewest control points of a cubic B-spline whose distance from the recorded path
+//! is within its noise (thesis, 4.3.1). Least squares as in de Boor 1978, with the places on the curve projected again
+//! each round (Hoschek 1988).
 
 use crate::wanted;
 use haptics::Vec2;
@@ -19,7 +19,7 @@ const WORTH: f64 = 0.9;
 /// The fitted curve.
 #[derive(Clone, Debug)]
 pub struct Spline {
-    /// The curve; what it does to a body is not meant here.
+    /// The curve; its forces on a body are not meant here.
     pub curve: Guide,
     /// Root mean square and largest distance of the points, m.
     pub rms_m: f64,
@@ -49,7 +49,7 @@ pub fn fit(points: &[Vec2], extent_m: f64, bound_m: f64) -> Option<Spline> {
     best
 }
 
-/// The longest stretch without a reversal, cut where it has come round; and whether it has.
+/// The longest segment without a reversal, cut where it closes; and true if it does.
 fn one_pass(points: &[Vec2], extent_m: f64) -> (Vec<Vec2>, bool) {
     let reach = 0.04 * extent_m;
     // A reversal: the way back to within reach is much shorter than the way gone.
@@ -140,7 +140,7 @@ fn solve(points: &[Vec2], places: &[f64], closed: bool, size: usize) -> Option<G
     })
 }
 
-/// How much each control point counts at a place, the mirrored ones beyond the ends taken back to their own.
+/// Weight of each control point at a place, the mirrored ones beyond the ends taken back to their own.
 fn weights(at: f64, closed: bool, size: usize) -> Vec<f64> {
     let pieces = if closed { size } else { size - 1 };
     let piece = at.floor().clamp(0.0, pieces as f64 - 1.0);

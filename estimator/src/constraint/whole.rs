@@ -1,6 +1,6 @@
-//! Is a recording a whole motion or a piece of one? Who tries a mechanism starts at rest, moves it and stops, or goes there and
-//! back; a piece cut out of a motion begins or ends on the move. It matters for what short paths mean: a hinge that somebody
-//! tried has been turned, a piece of a hinge's path may be as short as it likes.
+//! Decision between a whole motion and a part of one. A person who tries a mechanism starts at rest, moves it and
+//! stops, or goes there and back; a part cut out of a motion begins or ends on the move. It decides the meaning of
+//! short paths: a hinge that was tried has been turned, a part of a hinge's path may be as short as it likes.
 
 use nalgebra::Vector3;
 

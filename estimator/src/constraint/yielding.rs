@@ -1,4 +1,4 @@
-//! Rigid or not: does the path give way to force across it, and more than the hand itself does?
+//! Rigid or not: a test for a path that yields to force across it, by more than the hand itself.
 
 use crate::estimate::Yielding;
 use crate::identify::linear::least_squares;
@@ -36,7 +36,7 @@ pub fn judge(give_m_n: f64, error: f64, hand: &Manipulator) -> (Option<bool>, Op
     let (low, high) = (give - SIDES * error, give + SIDES * error);
     let limit = 1.0 / hand.stiffness_n_m;
     let seen = give > SEEN * error;
-    // A give that is only known worse than the hand's own says nothing, however it comes out.
+    // A give that is known worse than the hand's own says nothing, whatever its value.
     let rigid = if high < limit && SIDES * error < limit {
         Some(true)
     } else if seen && low > limit {
@@ -60,7 +60,7 @@ mod tests {
 
     const HAND: Manipulator = Manipulator { stiffness_n_m: 2000.0, give_m_n: (0.0, 0.0) };
 
-    /// A path that gives way with `stiffness` under a wandering force of `newtons`, seen with `noise_m`.
+    /// A path that yields with `stiffness` under a wandering force of `newtons`, seen with `noise_m`.
     fn look(stiffness: f64, newtons: f64, noise_m: f64, seed: u64) -> (Option<bool>, Option<Yielding>) {
         let mut rng = StdRng::seed_from_u64(seed);
         let force: Vec<f64> = (0..400).map(|i| newtons * (f64::from(i) * 0.05).sin()).collect();

@@ -8,7 +8,7 @@ pub enum HmmError {
     /// Sizes do not agree.
     #[error("the hidden Markov model does not fit together: {what}")]
     Shape {
-        /// What does not fit what.
+        /// Sizes that do not match.
         what: String,
     },
     /// Numbers that are no probabilities.
@@ -28,7 +28,7 @@ pub struct Chain {
     transition: Vec<f64>,
 }
 
-/// How far a distribution may be off 1 by rounding.
+/// Largest deviation of a distribution's sum from 1 by rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl Chain {
@@ -48,7 +48,7 @@ impl Chain {
         Ok(Self { start, transition })
     }
 
-    /// A chain that stays in a state for `dwell` samples on the average (at least 1) and then goes to one of the others by
+    /// A chain that stays in a state for `dwell` samples on average (at least 1) and then goes to one of the others by
     /// `affinity` (row by row, only ratios within a row count, the diagonal is ignored). Starts anywhere.
     pub fn sticky(states: usize, dwell: f64, affinity: &[f64]) -> Result<Self, HmmError> {
         if affinity.len() != states * states {

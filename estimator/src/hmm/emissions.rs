@@ -13,7 +13,8 @@ pub(super) type Lanes = [f64; LANES];
 /// Samples that one task works on: their channels stay in the processor's near memory.
 const TASK: usize = 1024;
 
-/// What to compute, and how rows of states are laid out: `stride` numbers a sample, of which the first ones are filled.
+/// Task of a computation, and the layout of rows of states: `stride` numbers a sample, of which the first ones are
+/// filled.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     /// The model.
@@ -89,7 +90,8 @@ fn fill_blocks(job: Job<'_>, values: &[f64], rows: &mut [f64]) {
     }
 }
 
-/// Turns samples into columns; not 0 where a sample has a number that is not finite. Lanes without a sample keep what they held.
+/// Turns samples into columns; not 0 where a sample has a number that is not finite. Lanes without a sample keep their
+/// values.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "see `fill_blocks`")]
 fn side_by_side(values: &[f64], columns: &mut [Lanes]) -> Lanes {
@@ -103,7 +105,7 @@ fn side_by_side(values: &[f64], columns: &mut [Lanes]) -> Lanes {
     let mut unknown = [0.0; LANES];
     for column in columns.iter() {
         for (unknown, value) in unknown.iter_mut().zip(column) {
-            // 0, and not a number for what is not finite.
+            // 0, and not a number for values that are not finite.
             *unknown += value * 0.0;
         }
     }

@@ -1,8 +1,8 @@
-//! Forward–backward: the likelihood of a sequence and what is known of the state at every sample.
+//! Forward–backward: the likelihood of a sequence and the posterior of the state at every sample.
 
 use super::Chain;
 
-/// What the whole sequence says.
+/// Posterior expectations over the whole sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// Logarithm of the probability density of the sequence.
@@ -18,8 +18,8 @@ const LOST: f64 = 1e-280;
 
 /// The procedure on the logarithms of the densities ([`super::Model::log_emissions`]): one row of states a sample, all finite.
 ///
-/// Each step takes one exponential and one logarithm a state; where that would lose a path by underflow (left–right chains with
-/// a sample that fits badly), the sum is made exactly.
+/// Each step takes one exponential and one logarithm a state. The sum is made exactly if that would lose a path by
+/// underflow (left–right chains with a sample that fits badly).
 pub fn forward_backward(chain: &Chain, log_emissions: &[f64]) -> Expectation {
     let k = chain.states();
     let samples = log_emissions.len() / k;

@@ -20,7 +20,7 @@ pub(super) enum Whitening<'a> {
     Rows(&'a [f64]),
 }
 
-/// A normal distribution with what its density needs.
+/// A normal distribution with the precomputed terms of its density.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaussian {
     mean: Vec<f64>,
@@ -32,8 +32,8 @@ pub struct Gaussian {
 }
 
 impl Gaussian {
-    /// A distribution whose variance in no direction is below that of independent channels with variances `floor` (positive): a
-    /// channel that never changes does not make its density infinite.
+    /// A distribution whose variance in any direction is at least that of independent channels with variances `floor`
+    /// (positive): a channel that never changes does not make its density infinite.
     ///
     /// Raising the small eigenvalues (in units of the floor) is the maximum of the likelihood under that bound, so that training
     /// with a floor still never loses likelihood. Numbers that are not finite count as the floor.

@@ -29,7 +29,7 @@ pub use viterbi::{path_log_probability, viterbi};
 /// Most states of a model: paths are kept in one byte a sample.
 pub const MOST_STATES: usize = 255;
 
-/// λ: how states follow each other and what is measured in each.
+/// λ: the chain of the states, and the emission of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// A and π.
@@ -61,8 +61,8 @@ impl Model {
 
     /// Logarithm of every state's density at every sample, one row a sample, times `weight`.
     ///
-    /// A weight below 1 is for samples that come faster than they bring news: of a channel that is correlated over τ and sampled
-    /// every Δt, each sample counts as Δt/τ of an independent one.
+    /// A weight below 1 is for samples that come faster than their information: of a channel that is correlated over τ
+    /// and sampled every Δt, each sample counts as Δt/τ of an independent one.
     pub fn log_emissions(&self, values: &[f64], weight: f64) -> Vec<f64> {
         let (channels, states) = (self.channels(), self.emissions.len());
         let samples = values.len() / channels;

@@ -155,7 +155,7 @@ fn no_step_of_training_loses_likelihood() {
         let truth = model(&mut rng, k, d, full, left_right);
         let mut values = drawn(&mut rng, &truth, 300);
         if case % 5 == 0 {
-            // A channel that never changes, and samples that nobody saw.
+            // A channel that never changes, and missing samples.
             values.iter_mut().step_by(d).for_each(|v| *v = 3.0);
             values[7 * d] = f64::NAN;
         }
@@ -267,7 +267,7 @@ fn what_is_no_model_is_refused_in_a_sentence() {
     assert!(empty.posterior.is_empty() && empty.log_likelihood == 0.0);
 }
 
-/// What every processor must agree with: density by density, then the general walk.
+/// Reference for every processor: density by density, then the general walk.
 fn by_definition(m: &Model, values: &[f64], weight: f64) -> Vec<f64> {
     let densities = |x: &[f64]| m.emissions.iter().map(|e| weight * e.log_density(x)).collect::<Vec<_>>();
     let none = vec![0.0; m.chain.states()];
@@ -286,7 +286,7 @@ fn decoding_in_one_pass_is_the_definition_step_by_step() {
             let spread = Covariance::Diagonal(vec![0.7; d]);
             m.emissions[k / 2] = Gaussian::new(vec![0.3; d], spread, &vec![1e-6; d]);
         }
-        // Lengths about those of blocks and stretches.
+        // Lengths about those of blocks and segments.
         let samples = [0, 1, 3, 31, 33, 1024, 1027, 8192, 8193, 20_001][case % 10];
         let mut values = noise(&mut rng, samples * d);
         if samples > 30 {

@@ -4,25 +4,25 @@ use super::{Chain, Covariance, Expectation, Gaussian, HmmError, Model, forward_b
 use crate::wanted;
 use nalgebra::DMatrix;
 
-/// What is believed before the data are seen, as if it had been seen in so many samples.
+/// Prior of the model, as if it had been seen in so many samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     /// Distributions that the emissions are drawn towards.
     pub emissions: Vec<Gaussian>,
     /// In how many (effective) samples each was seen; infinite: it is kept.
     pub emission_samples: Vec<f64>,
-    /// How often each transition was seen, row by row. Forbidden transitions stay forbidden.
+    /// Number of times that each transition was seen, row by row. Forbidden transitions stay forbidden.
     pub transitions: Vec<f64>,
 }
 
-/// How to train.
+/// Settings of the training.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Training {
     /// Most steps.
     pub most_steps: usize,
     /// Ends when a step gains less than this, in units of the logarithm of the likelihood.
     pub least_gain: f64,
-    /// What one sample counts, see [`Model::log_emissions`].
+    /// Weight of one sample, see [`Model::log_emissions`].
     pub weight: f64,
     /// Least variance of each channel.
     pub floor: Vec<f64>,
@@ -45,7 +45,7 @@ pub fn baum_welch(start: Model, values: &[f64], training: &Training) -> Result<T
     let mut model = start;
     let mut objective = Vec::new();
     for step in 0..=training.most_steps {
-        // Whoever asked for it looks, too: nothing of it is kept.
+        // The caller looks for the end, too: nothing of it is kept.
         if !wanted::still() {
             break;
         }

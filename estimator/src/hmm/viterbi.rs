@@ -80,7 +80,7 @@ struct Walk {
     /// log probability of the best path to each state; before the first sample log π.
     best: Row,
     begun: bool,
-    /// Where the best path to each state came from, for every sample.
+    /// Predecessor on the best path to each state, for every sample.
     came_from: Vec<[u8; LANES]>,
 }
 
@@ -96,7 +96,7 @@ impl Walk {
         Self { states: k, links, best, begun: false, came_from: Vec::with_capacity(samples) }
     }
 
-    /// Goes on through the next samples.
+    /// Continues through the next samples.
     fn along(&mut self, mut rows: &[Row]) {
         if let ([first, rest @ ..], false) = (rows, self.begun) {
             self.best.iter_mut().zip(first).for_each(|(value, density)| *value += density);
@@ -138,7 +138,7 @@ impl Walk {
 macro_rules! steps {
     ($($name:ident $states:literal),*) => {
         $(for_this_processor! {
-            /// One step a row for so many states.
+            /// One step a row for a given number of states.
             fn $name(links: &[Row; LANES], best: &mut Row, rows: &[Row], came_from: &mut [[u8; LANES]])
                 => steps::<$states>, steps_avx512::<$states>
         })*

@@ -1,7 +1,7 @@
 //! Log densities on processors with AVX-512: the states of a model, at most eight, lie side by side in one register.
 //!
-//! Samples are read as they lie, and what comes out is the row that Viterbi's step wants. Products are added by fused instructions, so
-//! that the last digit may differ from [`super::Gaussian::log_density`].
+//! Samples are read as they lie, and the result is the row that Viterbi's step wants. Products are added by fused
+//! instructions, so that the last digit may differ from [`super::Gaussian::log_density`].
 
 use super::gaussian::Whitening;
 use super::{Gaussian, Model};
@@ -14,10 +14,10 @@ use std::arch::x86_64::{
 pub(super) const STATES: usize = 8;
 /// One number a state.
 pub(super) type Row = [f64; STATES];
-/// Samples that are computed together, so that what is read of the model serves them all.
+/// Number of samples that are computed together, so that one read of the model serves them all.
 const TOGETHER: usize = 4;
 
-/// True when the processor has what [`Table::fill`] is compiled with.
+/// True if the processor has the features that [`Table::fill`] is compiled with.
 pub(super) fn is_at_home() -> bool {
     use std::arch::is_x86_feature_detected as has;
     has!("avx512f") && has!("avx512dq") && has!("avx512vl") && has!("avx512bw")

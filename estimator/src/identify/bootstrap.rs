@@ -1,8 +1,8 @@
 //! Errors of a regression by resampling: the second opinion beside the covariance.
 //!
-//! Neighbouring rows of a mechanical log are alike, so whole blocks of them are drawn, with replacement, from the recording bent to a
-//! circle (Künsch 1989; Politis & Romano 1992). A block's share of the normal equations is a difference of running sums, so that a
-//! draw costs as much as its blocks, not as its rows.
+//! Neighbouring rows of a mechanical log are alike, so whole blocks of them are drawn, with replacement, from the
+//! recording bent to a circle (Künsch 1989; Politis & Romano 1992). A block's share of the normal equations is a
+//! difference of running sums: the cost of a draw depends on the number of its blocks, not of its rows.
 
 use super::linear::{LinearFit, least_squares};
 use crate::wanted;
@@ -11,18 +11,18 @@ use std::ops::{Index, Range};
 
 /// Draws; the error of a standard error is then 4 %.
 const DRAWS: usize = 300;
-/// A block is this many correlation times long: what it cuts off at its ends is then an eighth of the variance …
+/// Length of a block in correlation times: the correlation cut off at its ends is then an eighth of the variance.
 const TIMES: f64 = 4.0;
-/// … but there are no fewer than this many in the recording.
+/// Least number of blocks in the recording.
 const LEAST_BLOCKS: usize = 12;
 /// Most values of which a median is drawn.
 const MOST_OF_A_MEDIAN: usize = 2000;
 /// Fewer values say nothing of their scatter.
 const LEAST_OF_FEW: usize = 3;
-/// Where every draw begins: equal recordings give equal errors.
+/// Seed of every draw: equal recordings have equal errors.
 const START: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// What the draws of a resampling say of p values: their covariance, and each one's standard error.
+/// Result of a resampling of p values: their covariance, and each one's standard error.
 #[derive(Clone, Debug)]
 pub struct Resampled {
     covariance: DMatrix<f64>,
@@ -45,7 +45,7 @@ impl Resampled {
         &self.covariance
     }
 
-    /// With what is not known of each value beside the draws, independent of them.
+    /// Adds an error of each value that is not in the draws, independent of them.
     #[must_use]
     pub fn widened(mut self, errors: &[f64]) -> Self {
         for (j, error) in errors.iter().enumerate().take(self.errors.len()) {
@@ -54,7 +54,7 @@ impl Resampled {
         Self::new(self.covariance)
     }
 
-    /// With every value (and its error) so many times as large.
+    /// Multiplies every value (and its error) by a factor.
     #[must_use]
     pub fn scaled(self, by: &[f64]) -> Self {
         let p = self.errors.len();
@@ -71,24 +71,25 @@ impl Index<usize> for Resampled {
     }
 }
 
-/// Standard error of each value of `fit` by a circular block bootstrap of its rows; `None` when they hold too few independent
-/// stretches, or when a value is not identified.
+/// Standard error of each value of `fit` by a circular block bootstrap of its rows; `None` if they hold too few
+/// independent blocks, or if a value is not identified.
 ///
-/// `columns`: p columns of n samples, `rhs`: n, `weights`: n (absent: all 1), as the fit was made from. The draws are the same every
-/// time.
+/// `columns`: p regressors of n samples, `rhs`: n, `weights`: n (absent: all 1), as in the fit. The draws are the same
+/// every time.
 pub fn block_bootstrap(
     columns: &[Vec<f64>],
     rhs: &[f64],
     weights: Option<&[f64]>,
     fit: &LinearFit,
 ) -> Option<Resampled> {
-    // One stretch, all of it.
+    // One segment, all of it.
     let whole = 0..rhs.len();
     block_bootstrap_within(columns, rhs, weights, fit, std::slice::from_ref(&whole))
 }
 
-/// The same for rows of several events (rests, lifts): blocks are drawn within each event, bent to a circle of its own, so that every
-/// event stays in every draw and what only one of them shows stays shown. A stretch of one row is kept as it is.
+/// The same for rows of several events (rests, lifts). Blocks are drawn within each event, bent to a circle of its own,
+/// so that every event stays in every draw and values that only one of them shows stay identified. A segment of one row
+/// is kept as it is.
 ///
 /// `stretches`: ranges of rows that follow each other and together hold all of them.
 pub fn block_bootstrap_within(
@@ -124,7 +125,8 @@ pub fn block_bootstrap_within(
         return None;
     }
     let count = values.len() as f64;
-    // As the variance of a mean of few blocks, which is too small by one in their number in each stretch.
+    // Correction as for the variance of a mean of few blocks, which is too small by one in their number in each
+    // segment.
     let drawn = stretches.iter().filter(|s| s.len() > 1);
     let (blocks, parts) = drawn.fold((0.0, 0.0), |(b, k), s| (b + s.len().div_ceil(length_in(s)) as f64, k + 1.0));
     let few = (blocks / (blocks - parts).max(1.0)).sqrt();
@@ -138,7 +140,8 @@ pub fn block_bootstrap_within(
     Some(Resampled::new(covariance).scaled(&scale))
 }
 
-/// Standard error of the median of `values` by a circular block bootstrap; `None` when they hold too few independent stretches.
+/// Standard error of the median of `values` by a circular block bootstrap; `None` if they hold too few independent
+/// blocks.
 ///
 /// `values`: n in order of time; of many, evenly spaced ones are taken.
 pub fn median_error(values: &[f64]) -> Option<f64> {
@@ -184,7 +187,7 @@ fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
 }
 
-/// Rows of a block among `n` rows that say as much as so many independent ones.
+/// Length of a block among `n` rows with this number of effective samples.
 fn block_length(n: usize, effective_samples: f64) -> usize {
     let apart = (n as f64 / effective_samples.max(1.0)).max(1.0);
     ((TIMES * apart).ceil() as usize).min(n / LEAST_BLOCKS).max(1)
@@ -223,7 +226,7 @@ impl RunningSums {
         Self { columns: p, width, scales, sums }
     }
 
-    /// Adds the block of `length` rows from `first` on, round the end of `stretch`.
+    /// Adds the block of `length` rows from `first` on, round the end of the segment `stretch`.
     fn add(&self, first: usize, length: usize, stretch: &Range<usize>, total: &mut [f64]) {
         let at = |row: usize| &self.sums[row * self.width..(row + 1) * self.width];
         let mut part = |from: usize, to: usize| {

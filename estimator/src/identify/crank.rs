@@ -1,8 +1,9 @@
 //! Centre, radius, rigidity and friction of a crank turned by its handle (thesis, 5.3.1, eqs. 5.1 and 5.2).
 //!
-//! Geometry before forces: the give of the pads displaces the tips by the force they carry, which would tilt the tangent. The
-//! radius residual shows it (it goes with the force, not with the angle), so it is fitted together with centre and radius, the
-//! handle's position is corrected, and only then are the forces split into normal and tangential parts.
+//! Geometry before forces: the give of the pads displaces the tips by the force they carry, which would tilt the
+//! tangent. The radius residual shows it (it depends on the force, not on the angle), so it is fitted together with
+//! centre and radius. The handle's position is corrected, and only then are the forces split into normal and tangential
+//! parts.
 
 pub mod frame;
 mod friction;
@@ -56,14 +57,14 @@ pub fn fit_by(
     Ok((fit, seen.segmentation))
 }
 
-/// A segmentation, what was asked for, and what is held by it.
+/// A segmentation, the options it was made with, and the held samples.
 struct Segmented {
     asked: (Method, Option<Thresholds>, Vec<Segment>),
     found: Segmentation,
     grasped: Arc<Grasped>,
 }
 
-/// What of a recording does not depend on how it is fitted: refits share it.
+/// Part of the analysis of a recording that does not depend on the options of the fit: refits share it.
 pub struct Prepared {
     smooth: Arc<Smooth>,
     /// Two fingers squeeze the handle; one tool does not.
@@ -79,7 +80,7 @@ impl Prepared {
         Ok(Self { smooth, grip, segmented: Mutex::new(None) })
     }
 
-    /// Made anew only when the thresholds, the method or what a person has set change.
+    /// Made again only when the thresholds, the method or a person's segments change.
     fn segmentation(
         &self,
         method: Method,
@@ -139,7 +140,7 @@ fn see(
     Ok(Seen { segmentation, held, geometry, slips, rows, friction })
 }
 
-/// What one recording shows, in the words of a fit.
+/// Fit of one recording: parameters, constraints and warnings.
 fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<Fit, EstimateError> {
     let Seen { segmentation, held, geometry, slips, rows, friction } = seen;
     let mut parameters = geometry_parameters(held, geometry);

@@ -1,9 +1,10 @@
-//! Errors of a regression's values from what every sample adds to them.
+//! Errors of a regression's values from the influence of every sample on them.
 //!
-//! The influence of sample i on value j is `aᵢⱼ wᵢ rᵢ`, with `a = (XᵀWX)⁻¹ x` and the residual r. The residual of a sample that
-//! pulls the fit towards itself is too small: it is divided by √(1 − leverage) (HC2, `MacKinnon` & White 1985). A value that hangs
-//! on few samples is known with few degrees of freedom, however many samples there are: (Σ a²)²/Σ a⁴ (Bell & `McCaffrey` 2002, in the
-//! limit of small leverages). Autocorrelation is counted by [`super::long_run`].
+//! The influence of sample i on value j is `aᵢⱼ wᵢ rᵢ`, with `a = (XᵀWX)⁻¹ x` and the residual r. The residual of a
+//! sample that pulls the fit towards itself is too small: it is divided by √(1 − leverage) (HC2, `MacKinnon` & White
+//! 1985). A value that depends on few samples is known with few degrees of freedom, however many samples there are: (Σ
+//! a²)²/Σ a⁴ (Bell & `McCaffrey` 2002, in the limit of small leverages). Autocorrelation is counted by
+//! [`super::long_run`].
 
 use super::long_run::{inflation, long_run};
 use nalgebra::DMatrix;
@@ -14,7 +15,8 @@ const BLOCKS: usize = 192;
 /// No residual is trusted to be shrunk by more than this.
 const LARGEST_LEVERAGE: f64 = 0.9;
 
-/// A solved regression: p columns of n samples scaled by `scales`, and the inverse of its normal matrix in scaled columns.
+/// A solved regression: p regressors of n samples scaled by `scales`, and the inverse of its normal matrix in scaled
+/// regressors.
 pub(super) struct Solved<'a> {
     pub(super) columns: &'a [Vec<f64>],
     pub(super) scales: &'a [f64],
@@ -109,7 +111,8 @@ impl Solved<'_> {
 /// Samples that are computed side by side.
 const LANES: usize = 16;
 
-/// What [`Solved::fill`] makes of some samples: p scaled columns and influences, and the residuals with their leverage taken out.
+/// Result of [`Solved::fill`] for some samples: p scaled regressors and influences, and the residuals with their
+/// leverage taken out.
 struct Lanes {
     x: Vec<[f64; LANES]>,
     a: Vec<[f64; LANES]>,
@@ -144,7 +147,7 @@ mod tests {
             let mut draw = |low: f64| -> Vec<f64> { (0..n).map(|_| rng.random_range(low..1.0)).collect() };
             let columns = [draw(-1.0), draw(-1.0), draw(0.5)];
             let residuals = draw(-1.0);
-            // A third of the samples takes no part.
+            // A third of the samples has zero weight.
             let weights: Vec<f64> = draw(-0.5).into_iter().map(|w| w.max(0.0)).collect();
             let inverse = DMatrix::from_fn(3, 3, |i, j| if i == j { 0.5 } else { 0.1 });
             let weights = weighted.then_some(&weights[..]);

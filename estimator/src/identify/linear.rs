@@ -1,8 +1,9 @@
 //! Weighted linear least squares with an honest covariance.
 //!
 //! Solved through QR and the singular values of R with columns scaled to unit norm (Golub & Van Loan, §5.3, §5.5). The
-//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its influence: the
-//! series of what every sample adds to its value (see [`super::influence`] and [`super::long_run`]).
+//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its
+//! influence: the series of every sample's contribution to its value (see [`super::influence`] and
+//! [`super::long_run`]).
 
 use super::influence::Solved;
 use super::long_run::inflation;
@@ -33,7 +34,7 @@ pub struct LinearFit {
     pub rms: f64,
     /// False for a parameter that the data do not excite, or only together with another one.
     pub identified: Vec<bool>,
-    /// How many independent samples the residuals amount to.
+    /// Number of independent samples in the residuals.
     pub effective_samples: f64,
     /// Inverse (pseudo-inverse) of the normal matrix `Σ wᵢ xᵢ xᵢᵀ`, in the columns' own units.
     pub normal_inverse: DMatrix<f64>,
@@ -41,15 +42,16 @@ pub struct LinearFit {
 
 /// Minimises Σ wᵢ (rhsᵢ − Σⱼ columns[j][i] valuesⱼ)².
 ///
-/// `columns`: p columns of n samples; `weights`: n numbers ≥ 0, inverse variances up to a factor (absent: all 1). A sample
-/// of zero weight takes no part. Degenerate: fewer weighted samples than columns is an error; a zero or dependent column is
-/// not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends ([`wanted`]).
+/// `columns`: p regressors of n samples; `weights`: n numbers ≥ 0, inverse variances up to a factor (absent: all 1). A
+/// sample of zero weight does not count. Degenerate: fewer weighted samples than regressors is an error; a zero or
+/// dependent regressor is not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends
+/// ([`wanted`]).
 pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<LinearFit, EstimateError> {
     Ok(least_squares_values(columns, rhs, weights)?.with_errors(columns, weights))
 }
 
-/// What [`least_squares`] finds, without the errors: telling those takes most of its time, and a search for a shape asks for them only
-/// at its end.
+/// Result of [`least_squares`] without the errors: their computation takes most of its time, and a search for a shape
+/// needs them only at its end.
 #[derive(Clone, Debug)]
 pub struct Values {
     /// As in [`LinearFit`].
@@ -117,7 +119,7 @@ impl Values {
         let solved = Solved { columns, scales: &scales, weights, residuals: &residuals, inverse: &inverse };
         let (mut covariance, correlation) = solved.covariance();
         let effective_samples = (used as f64 / correlation).clamp(1.0, used as f64);
-        // Never below what independent samples would give: an estimate of the correlation from few of them scatters.
+        // Never below the variance of independent samples: an estimate of the correlation from few of them scatters.
         let freedom = (used as f64 - p as f64).max(1.0);
         let variance = weight_sum_of_squares(&residuals, weights) / freedom * inflation(freedom);
         let raise = |j: usize| (inverse[(j, j)] * variance / covariance[(j, j)]).max(1.0).sqrt();
@@ -149,7 +151,7 @@ impl Values {
 
 /// The noise in the columns is known to about this share (a white level read from its upper band).
 pub(super) const COLUMN_NOISE_UNCERTAINTY: f64 = 0.25;
-/// Columns whose noise makes up more than this share of what only they explain are not corrected: it would amplify errors.
+/// Share of noise in the own part of a regressor above which it is not corrected: the correction would amplify errors.
 const CORRECTABLE: f64 = 0.5;
 
 impl LinearFit {
@@ -161,9 +163,10 @@ impl LinearFit {
         }
     }
 
-    /// Takes out the attenuation by noise in the columns (errors in variables, Fuller 1987, §2.2): the normal matrix is
-    /// larger than that of the true columns by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share `known_to`. That share of the
-    /// correction joins the errors; where the noise is too large to be taken out, the values stay and all of it does.
+    /// Takes out the attenuation by noise in the regressors (errors in variables, Fuller 1987, §2.2). The normal matrix
+    /// is larger than that of the true regressors by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share
+    /// `known_to`. This share of the correction joins the errors. With noise too large to be taken out, the values stay
+    /// and all of it joins the errors.
     #[must_use]
     pub fn without_attenuation(mut self, noise: &DMatrix<f64>, known_to: f64) -> Self {
         let p = self.values.len();
@@ -172,7 +175,7 @@ impl LinearFit {
         }
         let values = DVector::from_column_slice(&self.values);
         let loss = &self.normal_inverse * noise;
-        // Its trace sums the shares of noise in what each column alone explains.
+        // Its trace sums the shares of noise in the own parts of the regressors.
         let correctable = loss.trace().abs() < CORRECTABLE;
         let regained = if correctable { (DMatrix::identity(p, p) - &loss).try_inverse() } else { None };
         let (change, known_to) = match &regained {
@@ -355,7 +358,7 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(11);
         let n = 4000;
         let clean: Vec<f64> = (0..n).map(|i| (0.05 * f64::from(i)).sin()).collect();
-        // Nearly the same as the first column: what only one of them explains is small.
+        // Nearly the same as the first regressor: the own part of each is small.
         let other: Vec<f64> = (0..n).map(|i| (0.05 * f64::from(i) + 0.3).sin()).collect();
         let rhs: Vec<f64> = clean.iter().zip(&other).map(|(a, b)| 2.0 * a - b).collect();
         let noisy: Vec<f64> = clean.iter().map(|v| v + 0.05 * rng.sample::<f64, _>(StandardNormal)).collect();

@@ -1,10 +1,10 @@
 //! The long-run variance of a sum of correlated numbers, from an autoregressive model of the series.
 //!
-//! Residuals of a mechanical log are never white. A sum over n of them has n times their *long-run* variance, the spectral density
-//! at frequency zero, not n times their variance. An autoregression fitted to the series gives it (Berk 1974; den Haan and Levin
-//! 1998): σ²/(1 − Σ aₖ)². Its order is the one with the least BIC, but never zero: a test for correlation that comes out negative
-//! is no proof that there is none, and intervals after such a test are too short. The estimated sum of the coefficients is low by
-//! about (1 + 3 Σ aₖ)/n (Kendall 1954), which is given back.
+//! Residuals of a mechanical log are never white. A sum over n of them has n times their *long-run* variance, the
+//! spectral density at frequency zero, not n times their variance. It comes from an autoregression fitted to the series
+//! (Berk 1974; den Haan and Levin 1998): σ²/(1 − Σ aₖ)². Its order is the one with the least BIC, but never zero: a
+//! negative test for correlation is no proof that there is none, and intervals after such a test are too short. The
+//! estimated sum of the coefficients is low by about (1 + 3 Σ aₖ)/n (Kendall 1954), which is added back.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -69,7 +69,7 @@ fn autoregression(lags: &[f64], count: f64) -> (usize, f64, f64) {
     (best.1, best.2, best.3)
 }
 
-/// What the square of a standard error is multiplied by so that 1.96 of it cover as much as Student's t with `freedom` degrees.
+/// Factor on the square of a standard error so that 1.96 of it cover as much as Student's t with `freedom` degrees.
 pub fn inflation(freedom: f64) -> f64 {
     (student_quantile_975(freedom) / NORMAL_975).powi(2)
 }

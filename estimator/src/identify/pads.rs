@@ -1,9 +1,10 @@
-//! Width of what is held and give of the pads, from the distance of the tips over the grip force.
+//! Width of held objects and give of the pads, from the distance of the tips over the grip force.
 //!
-//! The thesis took the mean distance for the width, and its blocks came out 7 % too narrow: each pad gives by F/k. Here the
-//! distance is extrapolated to no grip at all, by the laws of a pad: a linear spring, a foam that hardens, a foam that comes to its
-//! end. Which of them holds, and how strongly, is rarely certain from one recording, so they are averaged by how well each explains
-//! it (Bayesian model averaging, Hoeting et al. 1999), and what they disagree about is part of the error.
+//! The thesis took the mean distance for the width, and its blocks were 7 % too narrow: each pad yields by F/k. Here
+//! the distance is extrapolated to no grip at all, by the laws of a pad: a linear spring, a foam that hardens, a foam
+//! that comes to its end. One recording rarely tells for certain which law holds, and how strongly. They are therefore
+//! averaged by their likelihoods (Bayesian model averaging, Hoeting et al. 1999), and their disagreement is part of the
+//! error.
 
 use super::bootstrap::{Resampled, block_bootstrap_within};
 use super::linear::{LinearFit, Values, least_squares_values};
@@ -28,9 +29,9 @@ pub(super) struct Grips {
     width: Vec<f64>,
     force: Vec<f64>,
     rate: Vec<f64>,
-    /// Which object was held, 0 …
+    /// Number of the held object, from 0.
     held: Vec<usize>,
-    /// Stretches of rows of which every draw of a bootstrap must have a part.
+    /// Segments of rows of which every draw of a bootstrap must have a part.
     stretches: Vec<Range<usize>>,
 }
 
@@ -55,12 +56,12 @@ impl Grips {
         (0..self.objects()).map(held).chain([depth, self.rate.clone()]).collect()
     }
 
-    /// How deep a pad of 1 N/m is pressed that gives like `cushion` (none: a linear spring).
+    /// Compression of a pad of 1 N/m with the give of `cushion` (none: a linear spring).
     fn depth(&self, cushion: Option<&Cushion>) -> Vec<f64> {
         cushion.map_or_else(|| self.force.clone(), |c| self.force.iter().map(|f| c.depth_m(*f)).collect())
     }
 
-    /// What pads that give like `cushion` explain, and the columns of that.
+    /// Fit of pads with the give of `cushion`, and its regressors.
     fn regress(&self, cushion: Option<&Cushion>) -> Result<(Values, Vec<Vec<f64>>), EstimateError> {
         let columns = self.columns(self.depth(cushion));
         Ok((least_squares_values(&columns, &self.width, None)?, columns))
@@ -76,7 +77,7 @@ pub(super) struct Estimate {
     pub(super) rows: usize,
 }
 
-/// What several holds show together.
+/// Estimates from several holds together.
 #[derive(Clone, Debug)]
 pub(super) struct Pressed {
     /// Width of each object at no force, m.
@@ -88,7 +89,7 @@ pub(super) struct Pressed {
     line: Vec<f64>,
 }
 
-/// What one grasp shows.
+/// Estimates from one grasp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PadFit {
     /// Distance of the tips at no force, m, and its standard error.
@@ -107,18 +108,19 @@ pub(super) struct PadFit {
     pub(super) line: (f64, f64),
 }
 
-/// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
+/// Half of the 95 % range of an even distribution, over 1.96: its weight beside errors that are normal.
 pub(super) const EVEN: f64 = 0.95 / 1.96;
-/// Give of a pad in shear over that under pressure where nothing shows it: its shear stiffness is evenly likely between 0.3 and 1.1 of its
-/// normal one, for soft pads of foam and rubber. The mean of one over that, and the error that holds 95 % (the far side is the soft one:
-/// half the width of the even distribution itself would leave the softest pads five errors away).
+/// Give of a pad in shear over that under pressure, if nothing shows it, with its error. The shear stiffness is taken
+/// as evenly distributed between 0.3 and 1.1 of the normal one, for soft pads of foam and rubber. These are the mean of
+/// the inverse ratio, and the error that holds 95 %. The far side is the soft one: half the width of the even
+/// distribution itself would leave the softest pads five errors away.
 pub(super) const SHEAR_GIVE: (f64, f64) = (1.62, 0.67);
 
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
 const SIMPLER: f64 = 12.0;
 /// A grip that differs from the usual one by more than this share of the largest difference is a squeeze.
 const SQUEEZED: f64 = 0.5;
-/// With more stretches than this the grip goes up and down all the time, and any part of the recording is like the others.
+/// Number of squeezes above which the grip varies all the time, and any part of the recording is like the others.
 const MOST_SQUEEZES: usize = 6;
 /// Values of a bend that are tried first, and then between the neighbours of the best one.
 const TRIALS: usize = 16;
@@ -133,7 +135,7 @@ enum Bend {
 }
 
 impl Bend {
-    /// Depth over force of a pad of 1 N/m, which any other one gives in proportion to.
+    /// Depth over force of a pad of 1 N/m; any other one yields in proportion.
     fn cushion(self, number: f64) -> Cushion {
         let linear = Cushion::linear(1.0);
         match self {
@@ -152,7 +154,7 @@ impl Bend {
     }
 }
 
-/// One way in which pads may give, with what speaks for it.
+/// One way in which pads may yield, with its likelihood.
 struct Model {
     fit: Values,
     columns: Vec<Vec<f64>>,
@@ -212,7 +214,8 @@ pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, Estima
     Ok(Some(average(models, grips, &line, resampled.as_ref().map(Resampled::errors))))
 }
 
-/// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.
+/// Segments of about the usual grip and of squeezes beside it: if few squeezes show all of the give, every draw must
+/// have them.
 fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
     let mut sorted = force.to_vec();
     let usual = percentile(&mut sorted, 0.5);
@@ -228,8 +231,8 @@ fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
     if stretches.len() > MOST_SQUEEZES { std::iter::once(0..force.len()).collect() } else { stretches }
 }
 
-/// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the probability
-/// is the part of the range that it stands for, so that what remains open about the bend is averaged over.
+/// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the
+/// probability is the part of the range that it stands for, so that the open part of the bend is averaged over.
 fn bent_models(
     grips: &Grips,
     bend: Bend,
@@ -255,8 +258,8 @@ fn bent_models(
     Ok(outside.chain(row(from, to)?).map(|(_, model)| model).collect())
 }
 
-/// `line`: the linear spring's fit, and `resampled`: errors of its columns by resampling. What bent pads have more of scatter, they
-/// have there, too.
+/// `line`: the linear spring's fit, and `resampled`: errors of its parameters by resampling. The larger scatter of bent
+/// pads applies to these errors, too.
 fn average(models: Vec<Model>, grips: &Grips, line: &LinearFit, resampled: Option<&[f64]>) -> Pressed {
     let likely = likely(models);
     let total: f64 = likely.iter().map(|m| m.weight).sum();
@@ -314,7 +317,7 @@ mod tests {
     use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
     use rand_distr::StandardNormal;
 
-    /// A grip that varies between 1.5 and 3.5 N on pads that give as `cushion` says, and what is made of it.
+    /// Fit of a grip that varies between 1.5 and 3.5 N on pads with the give of `cushion`.
     fn fitted(cushion: &Cushion, seed: u64, noise_m: f64) -> PadFit {
         let mut rng = StdRng::seed_from_u64(seed);
         let force: Vec<f64> = (0..150).map(|i| 2.5 + (0.13 * f64::from(i)).sin()).collect();

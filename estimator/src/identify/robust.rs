@@ -1,7 +1,7 @@
-//! Least squares where contacts ring: a few samples that are far off do not decide.
+//! Robust least squares for contacts that ring: a few far outliers do not decide.
 //!
-//! Only where the residuals have tails that no Gaussian noise has: there Tukey's bisquare by iteratively reweighted least squares
-//! (Beaton & Tukey 1974; Holland & Welsch 1977), elsewhere the plain fit, to the bit.
+//! Residuals with heavier tails than Gaussian noise are treated with Tukey's bisquare by iteratively reweighted least
+//! squares (Beaton & Tukey 1974; Holland & Welsch 1977). Otherwise the result is the plain fit, to the bit.
 
 use super::linear::{LinearFit, least_squares};
 use crate::estimate::EstimateError;
@@ -9,9 +9,9 @@ use statrs::statistics::{Data, OrderStatistics};
 
 /// Residuals beyond this many standard deviations do not count at all; 95 % efficient under Gaussian noise.
 const BISQUARE: f64 = 4.685;
-/// A residual of so many standard deviations is in the tail: one in two million under Gaussian noise …
+/// Size of a residual in the tail, standard deviations: one in two million under Gaussian noise.
 const TAIL: f64 = 5.0;
-/// … and a tail is heavy when at least this share of the samples is in it, and at least two.
+/// Share of the samples in the tail from which it is heavy; at least two of them.
 const HEAVY: f64 = 0.004;
 /// Reweighting settles in a handful of rounds.
 const ROUNDS: usize = 20;
@@ -54,8 +54,8 @@ pub fn robust(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Res
             break;
         }
     }
-    // The errors of an M-estimate are larger than those of a fit with these weights by the mean weight over the mean slope of the
-    // influence function (Huber 1981, §7.6).
+    // The errors of an M-estimate are larger than those of a fit with these weights. The factor is the mean weight over
+    // the mean slope of the influence function (Huber 1981, §7.6).
     let (weight, slope) = residuals
         .iter()
         .enumerate()

@@ -1,24 +1,25 @@
-//! What the user states beforehand: priors and bounds, from the sidecar or the command line.
+//! Prior knowledge that the user states: priors and bounds, from the sidecar or the command line.
 //!
-//! A known value holds exactly: a fit that has the parameter in its regression leaves it out there; every other takes it in here. A prior is a measurement that was made elsewhere: it joins the estimates by their covariance (Kalman's update), so that it also
-//! sharpens what could not be told from its parameter. A bound cuts the distribution off; mean and spread of what is left stand in
-//! the result (moment matching), and what goes together with the parameter follows.
+//! A known value holds exactly: a fit with the parameter in its regression leaves it out there; every other fit takes
+//! it in here. A prior is a measurement that was made elsewhere. It joins the estimates by their covariance (Kalman's
+//! update), so that it also sharpens parameters that were inseparable from its own. A bound cuts the distribution off;
+//! the result holds mean and spread of the remaining part (moment matching), and correlated parameters follow.
 
 use crate::estimate::{Correlated, Fit, Parameter};
 use haptics::recording::{Meta, Prior};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// A statement that lies so many standard errors off what the recording shows is pointed out.
+/// Distance of a statement from the recording's estimate, in standard errors, from which it is pointed out.
 const CONTRADICTION: f64 = 3.0;
-/// Beyond so many standard errors outside its bounds a value simply stands at the bound.
+/// Distance of a value outside its bounds, in standard errors, beyond which it simply stands at the bound.
 const FAR_OUTSIDE: f64 = 6.0;
 /// Bounds closer than this share of the standard error leave a uniform distribution.
 const NARROW: f64 = 0.02;
 /// A prior that loses less than this share of its spread has learnt nothing from the recording.
 const LEARNT: f64 = 0.9;
 
-/// Takes what `meta` states into a fit. Warnings say where it contradicts the recording, or names nothing.
+/// Takes the statements of `meta` into a fit. Warnings say where they contradict the recording, or name nothing.
 pub fn apply(fit: &mut Fit, meta: &Meta) {
     if meta.known.is_empty() && meta.prior.is_empty() && meta.bounds.is_empty() {
         return;
@@ -69,7 +70,7 @@ fn by_itself(parameter: &Parameter) -> Correlated {
     }
 }
 
-/// What was done with one parameter.
+/// Action taken on one parameter.
 struct Said {
     parameter: usize,
     how: String,
@@ -84,7 +85,7 @@ fn update(group: &mut Correlated, meta: &Meta) -> Vec<Said> {
     let mut covariance = DMatrix::from_fn(p, p, |i, j| group.covariance[i][j]);
     let mut said = Vec::new();
     for j in 0..p {
-        // What the fit itself took as known has no variance any more.
+        // Parameters that the fit itself took as known have no variance any more.
         if let Some(value) = stated(&meta.known, &group.parameters[j]).filter(|_| covariance[(j, j)] > 0.0) {
             said.push(take_known(&mut values, &mut covariance, j, &group.parameters[j], *value));
         }
@@ -199,7 +200,7 @@ fn condition(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize,
     }
     let mut gain = covariance.column(j) / own;
     for (i, g) in gain.iter_mut().enumerate() {
-        // Where nothing is known of the other, nothing is known of how it goes with this one.
+        // An unknown parameter has no known correlation with this one.
         if !covariance[(i, i)].is_finite() {
             *g = 0.0;
         }
@@ -287,7 +288,7 @@ mod tests {
         let other = fit.parameter("crank", "friction_mu").expect("there");
         assert!(other.std_error.is_some_and(|e| e < 0.02), "{other:?}");
         assert!(fit.warnings.is_empty(), "{:?}", fit.warnings);
-        // Far off what was measured: said.
+        // Far off the measured value: a warning.
         let mut fit = Fit {
             parameters: vec![Parameter::identified("block-1", "weight_N", 0.35, 0.01, 10, "")],
             ..Fit::default()

@@ -7,7 +7,7 @@ use super::{checks, facts, sidecar, units};
 use haptics::recording::{Channel, Meta, Recording, Warning};
 use std::path::Path;
 
-/// One recording for every group of the table. `said` is what the format's reader has to say.
+/// One recording for every group of the table. `said`: warnings of the format's reader.
 pub fn recordings(
     mut table: Table,
     plan: &Plan,
@@ -101,7 +101,7 @@ fn channels(group: &mut Group, plan: &Plan, left_out: &[usize]) -> Vec<Channel> 
     made
 }
 
-/// What the reader should know about the table itself.
+/// Notes for the reader about the table itself.
 fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) -> Vec<Warning> {
     let note = |kind: &str, column: Option<&str>, text: String| Warning {
         kind: kind.to_owned(),

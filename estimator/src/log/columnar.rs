@@ -1,4 +1,4 @@
-//! From the columns of a container to the table that every format ends in: selection, trials, labels, units.
+//! Conversion of a container's columns to the common table of all formats: selection, trials, labels, units.
 
 use super::errors::LogError;
 use super::plan::{Plan, Use};
@@ -9,7 +9,7 @@ use haptics::recording::Labels;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// At most so many values of a selected column are named when none fits.
+/// Largest number of values of a selected column that are named when none fits.
 const SHOWN_VALUES: usize = 6;
 
 /// Makes the table as `plan` says.

@@ -1,15 +1,15 @@
-//! Why a log could not be read: one sentence each, the problem first and the path last.
+//! Errors of reading a log: one sentence each, the problem first and the path last.
 
 use haptics::text_file::one_line as plain;
 use std::path::PathBuf;
 
-/// What kept a log from being loaded. Nothing is half-loaded: there is a recording or there is one of these.
+/// Error that kept a log from being loaded. Nothing is half-loaded: the result is a recording or one of these.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// The operating system refused.
     #[error("the file cannot be read ({reason}); check the path and its permissions: {path}", reason = plain(reason), path = path.display())]
     Io {
-        /// What the system said.
+        /// Reason that the operating system reports.
         reason: String,
         /// The file.
         path: PathBuf,
@@ -23,7 +23,7 @@ pub enum LogError {
     /// A pipe, a device, …
     #[error("this is not a regular file; save the log to a file first: {path}", path = path.display())]
     NotAFile {
-        /// What was given.
+        /// Path that was given.
         path: PathBuf,
     },
     /// Too large to hold.
@@ -39,7 +39,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// Somebody is still writing it.
+    /// The file is still being written.
     #[error(
         "the file changed from {before} to {after} bytes while it was read; wait until the recording has ended and read it again: {path}",
         path = path.display()
@@ -52,7 +52,7 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// Somebody ended the reading.
+    /// The reading was cancelled.
     #[error("reading was cancelled; nothing of the file is loaded: {path}", path = path.display())]
     Cancelled {
         /// The file.
@@ -73,7 +73,7 @@ pub enum LogError {
     /// Not a table at all.
     #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP or a Parquet file: {path}", why = plain(why), path = path.display())]
     NotATable {
-        /// What it looks like.
+        /// Signs of its real kind.
         why: String,
         /// The file.
         path: PathBuf,
@@ -83,7 +83,7 @@ pub enum LogError {
     Damaged {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
-        /// What is wrong, and where.
+        /// Fault and its place.
         why: String,
         /// The file.
         path: PathBuf,
@@ -93,7 +93,7 @@ pub enum LogError {
     CutOff {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
-        /// Where it ends.
+        /// Place of its end.
         why: String,
         /// The file.
         path: PathBuf,
@@ -103,7 +103,7 @@ pub enum LogError {
     NoColumns {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
-        /// What there is.
+        /// Contents of the container.
         why: String,
         /// The file.
         path: PathBuf,
@@ -111,7 +111,7 @@ pub enum LogError {
     /// Topics that cannot be put on one clock.
     #[error("the topics cannot be put on one clock ({why}); choose other columns in the sidecar, or record them together: {path}", why = plain(why), path = path.display())]
     Clocks {
-        /// What does not fit.
+        /// Conflict of the clocks.
         why: String,
         /// The file.
         path: PathBuf,
@@ -119,7 +119,7 @@ pub enum LogError {
     /// A recording cannot be kept in this format.
     #[error("the recording cannot be written ({why}): {path}", why = plain(why), path = path.display())]
     NotWritable {
-        /// What, and what to do.
+        /// Fault, and its remedy.
         why: String,
         /// The file.
         path: PathBuf,
@@ -150,9 +150,9 @@ pub enum LogError {
     MissingColumn {
         /// The program's or file's name of it.
         column: String,
-        /// Who needs it.
+        /// Task that needs the column.
         why: String,
-        /// What there is.
+        /// Columns of the file.
         present: String,
         /// The file.
         path: PathBuf,
@@ -164,12 +164,12 @@ pub enum LogError {
         column: String,
         /// The unit found.
         unit: String,
-        /// What can be used.
+        /// Units that can be used.
         accepted: &'static str,
         /// The file.
         path: PathBuf,
     },
-    /// A length mapped to a force, or the like.
+    /// A length mapped to a force, or a similar mistake.
     #[error("`{target}` is mapped to `{column}`, whose unit `{unit}` measures something else; map another column, or give its factor with \"scale\" in the sidecar: {path}", column = plain(column), unit = plain(unit), target = plain(target), path = path.display())]
     WrongDimension {
         /// The program's name.
@@ -190,7 +190,7 @@ pub enum LogError {
         line: u64,
         /// Column.
         column: String,
-        /// What stands there.
+        /// Content of the cell.
         what: String,
         /// The file.
         path: PathBuf,
@@ -239,10 +239,10 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// The sidecar is not what it should be.
+    /// The sidecar is faulty.
     #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", why = plain(why), path = path.display())]
     Sidecar {
-        /// What and where.
+        /// Fault and its place.
         why: String,
         /// The sidecar.
         path: PathBuf,
@@ -250,7 +250,7 @@ pub enum LogError {
     /// A file could not be written.
     #[error("the file cannot be written ({reason}); check the folder and its permissions: {path}", reason = plain(reason), path = path.display())]
     Write {
-        /// What the system said.
+        /// Reason that the operating system reports.
         reason: String,
         /// The file.
         path: PathBuf,

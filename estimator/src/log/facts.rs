@@ -1,4 +1,4 @@
-//! What a sidecar may say: refusals in plain words, and doubts that become warnings.
+//! Facts that a sidecar may state: refusals in plain words, and doubts that become warnings.
 
 use super::units;
 use haptics::recording::{Meta, Recording, Task, Warning};
@@ -22,7 +22,7 @@ const KEYS: [&str; 13] = [
 ];
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
-/// Known parameters that are above zero …
+/// Known parameters that are above zero.
 const POSITIVE: [&str; 14] = [
     "mass_kg",
     "inertia_kg_m2",
@@ -39,7 +39,7 @@ const POSITIVE: [&str; 14] = [
     "added_lever_m",
     "half_width_m",
 ];
-/// … not below it …
+/// Known parameters that are not below zero.
 const NOT_NEGATIVE: [&str; 9] = [
     "weight_N",
     "friction_mu",
@@ -51,7 +51,7 @@ const NOT_NEGATIVE: [&str; 9] = [
     "coulomb_Nm",
     "puncture_force_N",
 ];
-/// … or of either sign.
+/// Known parameters of either sign.
 const SIGNED: [&str; 8] = [
     "offset_N",
     "offset_Nm",
@@ -212,7 +212,7 @@ pub fn up_not_honoured(recording: &Recording) -> Option<String> {
     (!fine).then(|| format!("up is {up:?}, but {what}{flat}"))
 }
 
-/// What in the sidecar is doubtful for this recording.
+/// Doubtful statements of the sidecar about this recording.
 pub fn doubts(recording: &Recording) -> Vec<Warning> {
     let meta = &recording.meta;
     let warning = |text: String| Warning { kind: "sidecar".to_owned(), column: None, spans: Vec::new(), text };

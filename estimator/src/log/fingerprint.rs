@@ -4,7 +4,7 @@ use super::plan::Plan;
 use csv::ByteRecord;
 use std::collections::BTreeMap;
 
-/// A checkpoint is kept every so many rows.
+/// Number of rows from one checkpoint to the next.
 const STRIDE: usize = 32;
 
 /// Running hashes of one column in one trial.
@@ -48,10 +48,10 @@ fn fnv(mut hash: u64, bytes: &[u8]) -> u64 {
 /// Separates the parts of a trial's key.
 pub const SEPARATOR: &[u8] = b" / ";
 
-/// What rows in the order of the file leave for the comparison of trials.
+/// Keys and hashes of rows, in the order of the file, for the comparison of trials.
 #[derive(Debug, Default)]
 pub struct Marks {
-    /// Key of the trial, and how many rows it holds on for.
+    /// Key of the trial, and the number of rows with it.
     pub keys: Vec<(Vec<u8>, usize)>,
     /// One [`cell_hash`] a watched column and row, row after row.
     pub hashes: Vec<u64>,

@@ -1,4 +1,4 @@
-//! Which format a file has: told by what it contains, never by its name.
+//! Format of a file: told by its content, never by its name.
 
 use super::errors::LogError;
 use std::fs::File;
@@ -8,7 +8,7 @@ use std::path::Path;
 /// Formats that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A table of text; also what nothing else claims.
+    /// A table of text; also anything that no other format claims.
     Csv,
     /// Foxglove's container of messages.
     Mcap,
@@ -36,7 +36,7 @@ fn of_bytes(start: &[u8]) -> Format {
     Format::Csv
 }
 
-/// What a file that is not read is, by its first bytes, and how its owner gets a log out of it.
+/// Kind of a file that is not read, by its first bytes, with the way for its owner to get a log out of it.
 pub fn foreign(start: &[u8]) -> Option<&'static str> {
     const KNOWN: [(&[u8], &str); 9] = [
         (

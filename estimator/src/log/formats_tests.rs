@@ -1,4 +1,5 @@
-//! What must hold in every format: the same bits back, the same rules of the sidecar, the format told by the content.
+//! Properties that must hold in every format: the same bits back, the same rules of the sidecar, the format told by the
+//! content.
 
 use super::*;
 use haptics::recording::Channel;
@@ -11,7 +12,7 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
-/// What should come back, warnings and name aside.
+/// Expected content after a round trip, warnings and name aside.
 fn comparable(recordings: &[Recording]) -> Vec<Recording> {
     let mut all = recordings.to_vec();
     for recording in &mut all {
@@ -113,7 +114,7 @@ proptest! {
         }
     }
 
-    /// Whatever follows the first bytes of a format, the answer is a recording or a sentence.
+    /// The answer is a recording or a sentence, whatever follows the first bytes of a format.
     #[test]
     fn nothing_panics(start in 0..3_usize, bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
         let folder = folder();
@@ -223,7 +224,7 @@ fn a_broken_parquet_file_is_one_sentence() {
         broken[at] ^= 1 << (at % 8);
         std::fs::write(&path, &broken).expect("writes");
         match load(&path, None) {
-            // What is not read (statistics, places of pages) may be off; what is read is what was written.
+            // Unread parts (statistics, places of pages) may be off; the parts that are read are as written.
             Ok(read) => {
                 assert_eq!(bits(&read), bits(std::slice::from_ref(&sample("{}"))), "{at}");
                 assert_eq!(comparable(&read), comparable(std::slice::from_ref(&sample("{}"))), "{at}");
@@ -318,7 +319,7 @@ fn a_stream_with_labels_and_facts_that_come_last_reads_back() {
     assert!(McapStream::create_labelled(&path, &taken, &early, &[]).is_err(), "one column too many of that name");
 }
 
-/// Every reader shows what it has before it is done, and all of it in the end.
+/// Every reader shows its rows before it is done, and all of them in the end.
 #[test]
 fn a_preview_grows_while_a_log_is_read() {
     const ROWS: usize = 120_000;

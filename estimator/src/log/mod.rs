@@ -1,7 +1,8 @@
 //! Reading and writing logs: tables of samples with a sidecar of facts (`spec/logs.md`).
 //!
-//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that says what is wrong and where. The format
-//! is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every format.
+//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that names the fault and its place.
+//! The format is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every
+//! format.
 
 mod assemble;
 mod checks;
@@ -52,7 +53,7 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
     load_watched(path, meta, &Watch::none())
 }
 
-/// What looks wrong in the samples of a recording, and where: what [`load`] puts among its warnings.
+/// Faults in the samples of a recording, with their places: [`load`] adds them to its warnings.
 pub fn check(recording: &Recording) -> Vec<Warning> {
     checks::warnings(recording)
 }
@@ -92,7 +93,7 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     }
 }
 
-/// Where the facts about a log come from.
+/// Source of the facts about a log.
 enum Facts<'a> {
     /// The caller.
     Given(&'a Meta),

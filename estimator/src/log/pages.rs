@@ -1,5 +1,5 @@
-//! Room for long columns in pages of two megabytes, where the system has them: a million rows of twelve channels are 24 000 ordinary
-//! pages, and getting each of them from the system costs as long as parsing a thousand numbers.
+//! Room for long columns in pages of two megabytes, if the system has them. Twelve channels of a million rows take
+//! 24 000 ordinary pages, and getting each of them from the system costs as long as parsing a thousand numbers.
 
 /// Columns with room for less are left to ordinary pages: a large page that is half empty is wasted memory.
 #[cfg(target_os = "linux")]
@@ -21,14 +21,14 @@ fn ask_for_large_pages(column: &mut Vec<f64>) {
         return;
     }
     let start = spare.as_mut_ptr().cast::<u8>();
-    // Whole pages of the room alone: what shares a page with it is not ours.
+    // Whole pages of the room alone: anything that shares a page with it is not ours.
     let skipped = start.align_offset(PAGE_BYTES);
     if skipped > bytes {
         return;
     }
     let whole = (bytes - skipped) / PAGE_BYTES * PAGE_BYTES;
-    // SAFETY: the range lies within memory that the vector owns, and the advice changes neither its contents nor whether it can be
-    // read or written, only how large the pages behind it are.
+    // SAFETY: the range lies within memory that the vector owns. The advice changes neither its contents nor its access
+    // rights, only the size of the pages behind it.
     #[allow(unsafe_code, reason = "a system call without a safe wrapper among the dependencies")]
     unsafe {
         libc::madvise(start.add(skipped).cast(), whole, libc::MADV_HUGEPAGE)

@@ -1,4 +1,4 @@
-//! What each column of a file is: decided from its header and the sidecar before a single number is read.
+//! Use of each column of a file: decided from its header and the sidecar before a single number is read.
 
 use super::errors::LogError;
 use super::units::{self, Unit};
@@ -23,7 +23,7 @@ pub const PAIRS: [(&str, &str); 12] = [
     ("qb1_rad", "qb2_rad"),
 ];
 
-/// What is done with one column of the file.
+/// Use of one column of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Use {
     /// Parsed as numbers and multiplied by `factor`.
@@ -107,7 +107,7 @@ struct Planner<'a> {
     taken: HashMap<String, usize>,
 }
 
-/// Decides what each column is.
+/// Decides the use of each column.
 pub fn plan(headers: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
     let empty = Plan { uses: vec![Use::Ignore; headers.len()], ..Plan::default() };
     let mut planner = Planner { headers, meta, path, plan: empty, taken: HashMap::new() };
@@ -200,7 +200,7 @@ impl Planner<'_> {
                 let unit = foreign_unit(header).unwrap_or_default();
                 return Err(self.unknown_unit(header, unit, quantity));
             }
-            // Its own name says nothing usable, or a scale states how to get there: the program's name gives the unit.
+            // Its own name says nothing usable, or a scale states the conversion: the program's name sets the unit.
             _ => target,
         };
         let si = format!("{quantity}_{}", target.si);

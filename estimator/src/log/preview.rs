@@ -1,12 +1,13 @@
-//! What has been read so far of a long log, to be drawn while the rest is still coming.
+//! Preview of a long log, to be drawn while the rest is still being read.
 //!
-//! Readers hand in every column as it grows; it is kept as a pyramid of bands only. Names and order are those of the file, values in
-//! the units that the reader has (SI where the format or the header says so): a picture to look at, not a recording to fit.
+//! Readers hand in every column as it grows; it is kept as a pyramid of bands only. Names and order are those of the
+//! file. Values are in the units that the reader has (SI if the format or the header says so): a picture to look at,
+//! not a recording to fit.
 
 use super::pyramid::{Band, Pyramid};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// More columns than this are not previewed: nobody looks at so many curves.
+/// Largest number of columns that are previewed: more curves are unreadable.
 const MOST_TRACKS: usize = 64;
 
 /// Grows in the reader's thread, is looked at from another one.
@@ -33,13 +34,13 @@ pub struct Curve {
     pub samples: usize,
     /// True when `at` counts rows, because no column holds the time.
     pub by_row: bool,
-    /// Middle of each piece (s, or rows) and the band of its values.
+    /// Middle of each block of samples (s, or rows) and the band of its values.
     pub points: Vec<(f64, Band)>,
 }
 
 impl Preview {
-    /// Takes in what is new: `columns` are (name, all or the newest values), whose first value is sample `first`; `time_s` likewise,
-    /// empty without a clock. `group` tells clocks apart.
+    /// Takes in new values: `columns` are (name, all or the newest values), whose first value is sample `first`;
+    /// `time_s` likewise, empty without a clock. `group` tells clocks apart.
     pub fn grow<'a>(
         &self,
         group: &str,
@@ -68,7 +69,7 @@ impl Preview {
         }
     }
 
-    /// The picture of what is there, in at most `pieces` pieces a curve.
+    /// The picture of the rows so far, in at most `pieces` points a curve.
     pub fn curves(&self, pieces: usize) -> Vec<Curve> {
         let groups = self.lock();
         let several = groups.len() > 1;
@@ -128,7 +129,7 @@ mod tests {
         let time: Vec<f64> = (0..100_000).map(|i| f64::from(i) * 1e-3).collect();
         let wave: Vec<f64> = time.iter().map(|t| (0.3 * t).sin()).collect();
         for end in [7, 5_000, 60_123, 100_000] {
-            // All rows so far, or only the newest: what is known already is passed over.
+            // All rows so far, or only the newest: known values are passed over.
             let first = if end == 60_123 { 4_000 } else { 0 };
             preview.grow("", first, &time[first..end], [("wave", &wave[first..end])]);
             let curves = preview.curves(500);

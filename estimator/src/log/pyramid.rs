@@ -1,11 +1,11 @@
-//! Smallest and largest values of a long channel at every zoom: what a plot reads instead of the samples.
+//! Smallest and largest values of a long channel at every zoom: a plot reads them instead of the samples.
 
 use std::ops::Range;
 
 /// Samples in a block of the lowest level, and blocks in a block of the next.
 const FAN: usize = 16;
 
-/// Smallest and largest value of a stretch.
+/// Smallest and largest value of a range of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     /// Smallest.
@@ -35,7 +35,8 @@ impl Band {
     /// Of these values; of none, one that joins with anything.
     pub fn of(values: &[f64]) -> Self {
         const LANES: usize = 4;
-        // In lanes, so that the compiler can use wide registers; what is no number is neither smaller nor larger.
+        // In lanes, so that the compiler can use wide registers; a value that is not a number is neither smaller nor
+        // larger.
         let (mut lows, mut highs) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         let (blocks, rest) = values.as_chunks::<LANES>();
         for block in blocks {
@@ -49,7 +50,7 @@ impl Band {
     }
 }
 
-/// One column of pixels of a plot: where it starts and what the channel does in it.
+/// One column of pixels of a plot: its time, and the band of the channel in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Time in the middle of the pixel, s.
@@ -161,7 +162,7 @@ impl Pyramid {
         grain
     }
 
-    /// The smallest piece of at least `samples` samples that [`Pyramid::whole`] can answer for without the samples.
+    /// The smallest number of samples, at least `samples`, that [`Pyramid::whole`] can answer for without the samples.
     pub fn granule(&self, samples: usize) -> usize {
         samples.max(1).div_ceil(FAN) * FAN
     }
@@ -173,7 +174,7 @@ impl Pyramid {
         self.band(range, &|_| open)
     }
 
-    /// What a plot `pixels` wide shows of the samples between `from_s` and `to_s`, s: one band a pixel that has a sample in
+    /// Bands of the samples between `from_s` and `to_s`, s, for a plot `pixels` wide: one a pixel that has a sample in
     /// it. `time_s` and `values` are those the pyramid was made of. Work: O(pixels · log samples).
     pub fn query(&self, time_s: &[f64], values: &[f64], from_s: f64, to_s: f64, pixels: usize) -> Vec<Pixel> {
         let read = |range: Range<usize>| Band::of(&values[range]);

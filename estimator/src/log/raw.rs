@@ -1,4 +1,4 @@
-//! Columns as a container holds them: named numbers or text, before the sidecar has said what they mean.
+//! Columns as a container holds them: named numbers or text, before the sidecar has assigned their meanings.
 
 use haptics::recording::{Labels, Meta};
 

@@ -8,7 +8,7 @@ use haptics::recording::{Meta, Recording, Task};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Where the sidecar of a log is looked for.
+/// Path of the sidecar of a log.
 pub fn path_for(log: &Path) -> PathBuf {
     log.with_extension("meta.json")
 }
@@ -47,7 +47,7 @@ fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
     if name.as_ref().is_some_and(|name| Task::from_name(name).is_some()) {
         return Ok(());
     }
-    // What travels with the recording comes first: the file may have changed since.
+    // A definition that travels with the recording comes first: the file may have changed since.
     let of = |definition: &Value, key: &str| definition.get(key).and_then(Value::as_str).map(str::to_owned);
     let carried = entries.get(SIDECAR_KEY).filter(|d| name.is_none() || of(d, "name") == name);
     if let Some(like) = carried.and_then(|definition| of(definition, "like")) {
@@ -64,8 +64,8 @@ fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
 
 /// Writes the sidecar of `recording` beside `log` and returns its path.
 ///
-/// A written table is in the program's names and SI units already: what the sidecar said about the old file's columns is
-/// left out, everything else is kept.
+/// A written table is in the program's names and SI units already: statements about the old file's columns are left
+/// out, everything else is kept.
 pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
     let path = path_for(log);
     write_as_is(&super::write::portable_meta(&recording.meta), &path)?;
@@ -100,7 +100,7 @@ mod tests {
         let mut again = found.clone();
         again["task"] = "my-lifts".into();
         assert_eq!(named(&again.to_string(), None).expect("carried"), found);
-        // What is nowhere stays as it is and is refused by the next step; a broken file is said at once.
+        // An unknown name stays as it is and is refused by the next step; a broken file is reported at once.
         assert_eq!(named(r#"{"task": "juggling"}"#, Some(folder.path())).expect("unchanged")["task"], "juggling");
         std::fs::write(folder.path().join("broken.json"), "{").expect("written");
         let error = named(r#"{"task": "broken"}"#, Some(folder.path())).expect_err("no task");

@@ -21,7 +21,7 @@ pub struct Table {
     pub groups: Vec<(Option<String>, Group)>,
     /// Columns that hold text and were left out.
     pub text_columns: Vec<usize>,
-    /// Columns without a value in some rows that nobody asked for, left out too.
+    /// Columns without a use that lack a value in some rows, left out too.
     pub gappy_columns: Vec<usize>,
     /// Contents of every trial, also of those not selected.
     pub fingerprints: Fingerprints,

@@ -1,4 +1,4 @@
-//! Every bad input of `spec/logs.md`, and what must load.
+//! Every bad input of `spec/logs.md`, and inputs that must load.
 
 use super::*;
 use haptics::recording::Channel;
@@ -208,7 +208,7 @@ fn a_recording_is_written_and_reads_back_to_the_same_bits() {
 }
 
 proptest! {
-    /// Whatever the bytes are, the answer is a recording or a sentence.
+    /// The answer is a recording or a sentence, whatever the bytes are.
     #[test]
     fn nothing_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         let _ = Folder::new().load(bytes);

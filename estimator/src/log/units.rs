@@ -1,6 +1,6 @@
-//! Column names `<quantity>[finger]_<unit>` and what converts their units to SI.
+//! Column names `<quantity>[finger]_<unit>` and the conversion of their units to SI.
 
-/// What a unit measures.
+/// Dimension of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// m.
@@ -30,7 +30,7 @@ pub enum Dimension {
 pub struct Unit {
     /// As it stands in a column's name.
     pub symbol: &'static str,
-    /// What it measures.
+    /// Dimension of the unit.
     pub dimension: Dimension,
     /// The SI unit, as it stands in a column's name.
     pub si: &'static str,
@@ -82,7 +82,7 @@ pub const UNITS: [Unit; 31] = [
     unit("kg", Dimension::Other, "kg", 1.0),
 ];
 
-/// What can be used for a quantity, for people.
+/// Units that can be used for a quantity, for people.
 pub fn accepted(dimensions: &[Dimension]) -> &'static str {
     match dimensions {
         [Dimension::Time] => "s, ms, us",
@@ -109,7 +109,7 @@ pub fn split(name: &str) -> Option<(&str, Unit)> {
         .filter(|(quantity, _)| !quantity.is_empty())
 }
 
-/// What a quantity of the program measures; `None` for a name that the program does not know.
+/// Dimensions of a quantity of the program; `None` for a name that the program does not know.
 pub fn quantity_dimensions(quantity: &str) -> Option<&'static [Dimension]> {
     let stem = quantity.trim_end_matches(['1', '2']);
     if quantity.len() - stem.len() > 1 {

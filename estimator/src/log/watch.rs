@@ -3,14 +3,14 @@
 use super::preview::Preview;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a caller gives along to see how far a read has come and to end it.
+/// Watch of a caller over a long read: it learns the progress and can end it.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// Told the share that is done, 0 … 1, never less than before; from any thread, about once a megabyte.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Set by anybody to end the read; it then answers [`LogError::Cancelled`](super::LogError::Cancelled).
     pub cancelled: &'a AtomicBool,
-    /// Shown what has been read so far, where somebody wants to look at it.
+    /// Preview that is shown the rows read so far, if there is one.
     pub preview: Option<&'a Preview>,
 }
 
@@ -18,12 +18,12 @@ pub struct Watch<'a> {
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Watch<'_> {
-    /// Nobody looks and nobody ends it.
+    /// No watcher: the read is neither shown nor ended.
     pub fn none() -> Watch<'static> {
         Watch { progress: &|_| {}, cancelled: &NEVER, preview: None }
     }
 
-    /// True when somebody has ended it.
+    /// True after the caller has ended it.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

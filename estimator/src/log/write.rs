@@ -1,4 +1,4 @@
-//! Writing recordings so that they read back exactly: CSV, and what the writers of all formats share.
+//! Writing recordings so that they read back exactly: CSV, and the common part of the writers of all formats.
 
 use super::errors::LogError;
 use super::sidecar;
@@ -153,7 +153,7 @@ pub(super) fn not_finite(recordings: &[Recording]) -> Option<String> {
     })
 }
 
-/// What the sidecar says apart from the old file's columns: a written table is in the program's names and SI units already.
+/// Facts of the sidecar without the old file's columns: a written table is in the program's names and SI units already.
 pub(super) fn portable_meta(meta: &Meta) -> Meta {
     let mut meta = meta.clone();
     meta.columns.clear();

@@ -1,19 +1,21 @@
-//! When parameters change: a likelihood-ratio CUSUM on the innovations of a regression, two-sided, for every parameter.
+//! Detection of parameter changes: a likelihood-ratio CUSUM on the innovations of a regression, two-sided, for every
+//! parameter.
 //!
-//! The innovations are whitened by their own AR(1); a change of parameter j by δ adds δ x̃ⱼ to them. Each detector sums the logarithm of
-//! how much more probable that makes a row than no change, and starts again at zero whenever the sum is negative (Page 1954). A sum of
-//! likelihood ratios reaches h without a change at most once in eʰ rows on the average (Lorden 1971), whatever the rows x̃ are: that
-//! makes the false-alarm rate a statement, not a tuning. A single row says no more than [`MOST_A_ROW`], so that a knock is no change.
+//! The innovations are whitened by their own AR(1); a change of parameter j by δ adds δ x̃ⱼ to them. Each detector sums
+//! the log likelihood ratio of the change to no change over the rows, and starts again at zero whenever the sum is
+//! negative (Page 1954). A sum of likelihood ratios reaches h without a change at most once in eʰ rows on average
+//! (Lorden 1971), whatever the rows x̃ are: that makes the false-alarm rate a statement, not a tuning. A single row
+//! counts no more than [`MOST_A_ROW`], so that a knock is no change.
 //!
-//! No model is exact. Changes are looked for from a least size on that matters; half of it is overlooked for ever.
+//! No model is exact. Changes are looked for above a least size that matters; half of it is overlooked for ever.
 
 /// Sizes of changes that are looked for, in standard deviations of the noise by the typical row.
 const SIZES: [f64; 2] = [0.4, 1.5];
-/// One row adds no more than this to the logarithm of the likelihood ratio.
+/// Largest contribution of one row to the logarithm of the likelihood ratio.
 const MOST_A_ROW: f64 = 5.0;
 /// Innovations beyond this many standard deviations teach nothing about the noise.
 const CLIP: f64 = 7.0;
-/// Noise and correlation must be known from so many rows before anything is tested.
+/// Number of rows from which noise and correlation must be known before anything is tested.
 const WARM_UP: u32 = 24;
 /// Rows over which noise and correlation are remembered.
 const MEMORY: f64 = 1500.0;
@@ -25,13 +27,13 @@ fn caution(rows: u32) -> f64 {
 /// A change of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// Which one.
+    /// Index of the parameter.
     pub parameter: usize,
     /// Up or down.
     pub grows: bool,
-    /// When it was noticed, s.
+    /// Time of detection, s.
     pub noticed_s: f64,
-    /// When it began, as far as the sums tell, s.
+    /// Time of the beginning, as far as the sums tell, s.
     pub began_s: f64,
 }
 
@@ -137,7 +139,7 @@ impl<const P: usize> ChangeDetector<P> {
         found.map(|(_, change)| change)
     }
 
-    /// All sums at zero again; what is known of the noise stays.
+    /// All sums at zero again; the estimate of the noise stays.
     pub fn restart(&mut self, time_s: f64) {
         self.sums = [[[0.0; 2]; SIZES.len()]; P];
         self.since = [[[time_s; 2]; SIZES.len()]; P];

@@ -1,4 +1,4 @@
-//! Everything that is collected of one object that is carried.
+//! Data collected about one carried object.
 
 use super::block::pull::{Hold, Left};
 use super::change::ChangeDetector;
@@ -45,7 +45,7 @@ pub(super) struct Grasp {
     pub(super) width: Recursive<3>,
     pub(super) reading: Store<READING>,
     pub(super) bound: Option<(f64, f64)>,
-    /// What else holds it.
+    /// Anything else that holds it.
     pub(super) hold: Hold,
     /// Mean and mean square of the grip, N and N².
     pub(super) grip: [f64; 2],
@@ -81,7 +81,8 @@ impl Grasp {
         (self.bound, self.grip, self.held_rows, self.carried_rows, self.told) = (None, [0.0; 2], 0, 0, false);
     }
 
-    /// Takes in a row and, where it is known, what weight and inertia leave of its force; says when the weight jumped, with the weight before, bias in.
+    /// Takes in a row and, if it is known, the residual force after weight and inertia; reports a jump of the weight,
+    /// with the weight before, bias in.
     pub(super) fn take(&mut self, row: &Row, left: Option<&Left>) -> Option<(super::change::Change, f64)> {
         self.held_rows += 1;
         let share = 1.0 / self.held_rows as f64;

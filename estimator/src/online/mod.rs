@@ -1,8 +1,9 @@
-//! Estimates while it happens, and what is still missing for them.
+//! Estimates while it happens, and the motions still missing for them.
 //!
-//! [`Online`] takes one sample after the other, from the servo or from a log. Its signals are those of the batch fit, delayed by half a
-//! window instead of looking ahead ([`filter`]); states come from the task's own rules ([`sense`]); rows go into square-root
-//! recursions ([`recursive`]) that a detector watches ([`change`]). A sample allocates nothing; a [`Report`] does. `docs/online.md`.
+//! [`Online`] takes one sample after the other, from the servo or from a log. Its signals are those of the batch fit,
+//! delayed by half a window instead of looking ahead ([`filter`]). States come from the task's own rules ([`sense`]);
+//! rows go into square-root recursions ([`recursive`]) that a detector watches ([`change`]). A sample allocates
+//! nothing; a [`Report`] does. `docs/online.md`.
 
 pub mod block;
 pub mod change;
@@ -31,10 +32,10 @@ pub use replay::{enough_for, replay};
 use sense::Sense;
 use serde::Serialize;
 
-/// What may be chosen.
+/// Settings of the estimator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Time after which what is excited all the while is forgotten, s; infinite: never.
+    /// Time after which a direction that is excited all the while is forgotten, s; infinite: never.
     pub memory_s: f64,
     /// Most false alarms of the change detectors of one object, an hour.
     pub false_alarms_per_hour: f64,
@@ -53,21 +54,21 @@ impl Default for Settings {
 /// A change that was noticed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Event {
-    /// Which object, from 0.
+    /// Index of the object, from 0.
     pub object: usize,
     /// Name of the parameter.
     pub parameter: &'static str,
-    /// Whether it grew.
+    /// True if it grew.
     pub grows: bool,
-    /// When it was noticed, s.
+    /// Time of detection, s.
     pub noticed_s: f64,
-    /// When it began, s.
+    /// Time of the beginning, s.
     pub began_s: f64,
     /// Value before, in the parameter's unit.
     pub before: f64,
 }
 
-/// What is known now.
+/// Present estimates.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Time of the newest state, s.
@@ -76,7 +77,7 @@ pub struct Report {
     pub state: &'static str,
     /// Parameters of all objects, as a fit reports them.
     pub parameters: Vec<Parameter>,
-    /// What is still missing for them.
+    /// Information still missing for them.
     pub enough: Vec<Enough>,
     /// Changes, oldest first.
     pub events: Vec<Event>,
@@ -84,9 +85,9 @@ pub struct Report {
     pub leaks: Vec<(String, LeakAnswer)>,
     /// Share of the largest shear that surely held which is free now; below zero it may slip. Absent while nothing is held.
     pub slip_margin: Option<f64>,
-    /// What is held now.
+    /// Name of the held object.
     pub held: Option<String>,
-    /// What else holds an object.
+    /// Pulls of other things on an object.
     pub pulls: Vec<Pull>,
 }
 
@@ -132,8 +133,8 @@ impl Online {
         Ok(Self { filters, sense: Sense::new(task)?, body, settings, now: None })
     }
 
-    /// Takes a sample; allocates, locks and waits for nothing. A sample with a number that is not finite is left out, after a hole in
-    /// time the windows start anew.
+    /// Takes a sample; allocates, locks and waits for nothing. A sample with a number that is not finite is left out;
+    /// after a gap in time the windows start again.
     pub fn push(&mut self, time_s: f64, sample: &Sample) {
         if !(time_s.is_finite() && sample.iter().all(|v| v.is_finite())) {
             return;
@@ -163,7 +164,7 @@ impl Online {
         self.settings.wanted = wanted;
     }
 
-    /// What is known now. Allocates.
+    /// Present estimates. Allocates.
     pub fn report(&self) -> Report {
         let Some(now) = self.now else { return Report { state: "no-state", ..Report::default() } };
         let mut report = Report { time_s: now.time_s, state: now.state.name(), ..Report::default() };
@@ -175,12 +176,12 @@ impl Online {
         report
     }
 
-    /// What is missing for these parameters, by the information that was collected here.
+    /// Information still missing for these parameters, by the data collected here.
     pub fn enough(&self, parameters: &[Parameter]) -> Vec<Enough> {
         enough::judge(parameters, &self.problems(), &self.settings.wanted)
     }
 
-    /// Whether a crank's laws have rows; blocks are judged from the first sample on.
+    /// True if a crank's laws have rows; blocks are judged from the first sample on.
     fn knows_something(&self) -> bool {
         match &self.body {
             Body::Blocks(_) => true,

@@ -1,16 +1,16 @@
 //! Weighted least squares one row at a time, with true errors, for hours.
 //!
-//! Square-root information form: the triangular R with `RᵀR = Σ w x xᵀ` takes in every row by Givens rotations (Bierman 1977, ch. V), so
-//! that information can neither become negative nor lose digits to squaring.
+//! Square-root information form: the triangular R with `RᵀR = Σ w x xᵀ` takes in every row by Givens rotations (Bierman
+//! 1977, ch. V), so that information can neither become negative nor lose digits to squaring.
 //!
-//! **Forgetting** is directional (after Kulhavý 1987): before a row comes in, the precision of what *it* speaks of, xᵀθ, is lowered by
-//! the share 1/memory, never by more than the row brings back. Directions that are not excited are not forgotten at all, and the
-//! precision of one that is excited never falls through forgetting: nothing winds up.
+//! **Forgetting** is directional (after Kulhavý 1987). Before a row comes in, the precision of its combination xᵀθ is
+//! lowered by the share 1/memory, never by more than the row brings back. Directions that are not excited are not
+//! forgotten at all, and the precision of an excited one never falls through forgetting: nothing winds up.
 //!
-//! **Errors** are those of the estimate as it was made: Λ⁻¹ Γ Λ⁻¹ with Γ the sum of the squared scores x ε (ε the recursive residuals of
-//! Brown, Durbin & Evans 1975, which are independent where the noise is), forgotten along with Λ. Scores are summed over short blocks,
-//! and their correlation from block to block gives each parameter the long-run variance of its own influence (AR(1)), as in
-//! [`crate::identify::long_run`].
+//! **Errors** are those of the estimate as it was made: Λ⁻¹ Γ Λ⁻¹ with Γ the sum of the squared scores x ε (ε the
+//! recursive residuals of Brown, Durbin & Evans 1975, which are independent if the noise is), forgotten along with Λ.
+//! Scores are summed over short blocks, and their correlation from block to block leads to each parameter's long-run
+//! variance of its own influence (AR(1)), as in [`crate::identify::long_run`].
 //!
 //! A row costs about 10 P² operations (with forgetting 10 P³) and allocates nothing.
 
@@ -24,7 +24,7 @@ const LEAST_BLOCKS: f64 = 4.0;
 /// A parameter is known when the data have this many times the information that it was begun with.
 const SHOWN: f64 = 1e2;
 
-/// How a new row fits what was known before.
+/// Fit of a new row to the earlier estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Innovation {
     /// Prediction error over √(1 + leverage), in the unit of the right-hand side: as large as the noise.
@@ -57,8 +57,9 @@ pub struct Recursive<const P: usize> {
 }
 
 impl<const P: usize> Recursive<P> {
-    /// `sizes`: typical sizes of the columns. `memory_rows`: rows after which a direction that is excited all the time has forgotten;
-    /// infinite: never. `block_rows`: rows a block of scores; about the time in which residuals forget each other.
+    /// `sizes`: typical sizes of the regressors. `memory_rows`: rows after which a direction that is excited all the
+    /// time has forgotten; infinite: never. `block_rows`: rows a block of scores; about the time in which residuals
+    /// forget each other.
     pub fn new(sizes: [f64; P], memory_rows: f64, block_rows: u32) -> Self {
         let begin = sizes.map(|s| RIDGE * if s > 0.0 && s.is_finite() { s } else { 1.0 });
         let forgets = if memory_rows >= 1.0 { 1.0 / memory_rows } else { 0.0 };
@@ -133,7 +134,7 @@ impl<const P: usize> Recursive<P> {
             }
             z[i] -= cut * u[i] * value;
         }
-        // What scores summed up to belongs to the old information: v' = Λ' Λ⁻¹ v.
+        // The sum of the scores belongs to the old information: v' = Λ' Λ⁻¹ v.
         let gain = back(&self.root, u);
         let step = share / leverage;
         let passed = |v: &[f64; P]| -> [f64; P] {
@@ -171,7 +172,7 @@ impl<const P: usize> Recursive<P> {
         (self.filled, self.blocks) = (0, self.blocks + 1.0);
     }
 
-    /// The values; zero for what was never excited.
+    /// The values; zero for directions that were never excited.
     pub fn values(&self) -> [f64; P] {
         back(&self.root, &self.rotated)
     }
@@ -228,7 +229,8 @@ impl<const P: usize> Recursive<P> {
         let persistence = ((1.0 + rho) / (1.0 - rho)).max(1.0);
         let long_run = own * (1.0 + rho) / (1.0 - rho) * n / (n - 2.0).max(1.0);
         let correlated = long_run * inflation((n / (3.0 * persistence)).max(3.0));
-        // Never below what independent rows would give; forgetting halves that, because a long memory weighs its rows unevenly.
+        // Never below the errors of independent rows; forgetting halves that, because a long memory weighs its rows
+        // unevenly.
         let even = if self.forgets > 0.0 { 0.5 } else { 1.0 };
         let white = even * self.power / self.freedom * inverse[j][j] * inflation(self.freedom);
         correlated.max(white)

@@ -9,7 +9,7 @@ use crate::signal::task::task_signals;
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
-/// Time between two recordings, s: nothing goes on from one to the next.
+/// Time between two recordings, s: nothing continues from one to the next.
 const APART_S: f64 = 5.0;
 
 /// Feeds recordings of one object one after the other. Errors: channels that are missing, no clock, a task without on-line estimates.
@@ -47,8 +47,8 @@ pub fn replay(recordings: &[Recording], task: Task, settings: &Settings) -> Resu
     online.ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))
 }
 
-/// What recordings of one object show of every parameter of their fit, and which motion is missing. Tasks without on-line estimates
-/// get the motion that shows a parameter, and no seconds.
+/// Information that recordings of one object hold about every parameter of their fit, and the missing motion. Tasks
+/// without on-line estimates get the motion that shows a parameter, and no seconds.
 pub fn enough_for(recordings: &[Recording], task: Task, fit: &Fit, wanted: &Wanted) -> Vec<Enough> {
     let gravity_m_s2 = recordings.first().map_or(9.81, |r| r.meta.gravity());
     // A recording is judged as a whole: nothing of it is forgotten.

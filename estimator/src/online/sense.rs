@@ -1,4 +1,4 @@
-//! What the hand is doing now: the rules of the task on delayed signals, with biases and thresholds learned on the way.
+//! Present state of the hand: the rules of the task on delayed signals, with biases and thresholds learned on the way.
 
 use super::filter::{Filters, Sample};
 use super::recursive::Recursive;
@@ -10,14 +10,14 @@ use crate::segment::threshold::Usual;
 use haptics::Vec2;
 use haptics::recording::Task;
 
-/// Bias of the sensors is remembered for so many seconds of free motion.
+/// Memory of the sensors' bias, seconds of free motion.
 const BIAS_MEMORY_S: f64 = 20.0;
 /// A zero of a sensor moves no farther than this, N, and no faster than this, N/s, on top.
 const MOST_DRIFT_N: f64 = 0.1;
 const MOST_DRIFT_N_S: f64 = 0.02;
 /// Rows of free motion are so far apart, s.
 pub(super) const FREE_ROW_S: f64 = 0.06;
-/// Before anything was seen: the thesis's thresholds come out of these.
+/// Usual levels before anything was seen: they lead to the thesis's thresholds.
 const START: Usual = Usual { force_noise_n: 0.003, net_n: 0.3, grip_n: 1.5, velocity_noise_m_s: 0.0, speed_m_s: 0.15 };
 
 /// The state of the middle sample, and since when it holds.
@@ -47,7 +47,7 @@ pub(super) struct Sense {
     least: [f64; 4],
     most: [f64; 4],
     quiet_since_s: f64,
-    /// When the bias was seen last, s.
+    /// Time of the last update of the bias, s.
     learned_s: f64,
 }
 
@@ -130,8 +130,9 @@ impl Sense {
         now
     }
 
-    /// A bias that drifted while something was held would hide that the hand is free again. What is free is quiet: over a while no
-    /// force moves beyond the noise, and there is hardly any grip. Its mean is the bias then, wherever it is.
+    /// Finds free motion by its quiet, because a bias that drifted during a hold would hide that the hand is free
+    /// again. In free motion no force moves beyond the noise for a while, and there is hardly any grip. The mean is the
+    /// bias then, whatever its value.
     fn find_rest(&mut self, time_s: f64, raw: [f64; 4]) {
         const QUIET_S: f64 = 0.4;
         const NOISES: f64 = 8.0;
@@ -181,7 +182,7 @@ impl Sense {
         let follow = |usual: &mut f64, value: f64, share: f64, low: f64, high: f64| {
             *usual = (*usual * (1.0 + step * if value > *usual { share } else { share - 1.0 })).clamp(low, high);
         };
-        // Resting does not make what is usual smaller.
+        // Resting does not make the usual levels smaller.
         if force[0].norm() + force[1].norm() > 0.2 * self.usual.grip_n {
             follow(&mut self.usual.net_n, (force[0] + force[1]).y.abs(), 0.9, 0.02, 50.0);
             follow(&mut self.usual.grip_n, force[0].x.min(-force[1].x), 0.95, 0.2, 50.0);

@@ -1,6 +1,6 @@
-//! Small upper triangular matrices on the stack: what a square-root filter needs. Nothing here allocates.
+//! Small upper triangular matrices on the stack, for a square-root filter. Nothing here allocates.
 
-/// Rows of an upper triangular matrix; what is below the diagonal is zero.
+/// Rows of an upper triangular matrix; entries below the diagonal are zero.
 pub(super) type Square<const P: usize> = [[f64; P]; P];
 
 /// Solves R x = z.

@@ -8,7 +8,7 @@ use super::subtasks::{Run, Subtask};
 const MISSED_PENALTY: f64 = 0.01;
 /// Price of a failed attempt: an object was gripped, let go, and gripped again.
 const RETRY_PENALTY: f64 = 0.005;
-/// Price of what the places of two grasps speak against.
+/// Price of a step that the places of two grasps contradict.
 const CONTRADICTED_PENALTY: f64 = 0.05;
 
 /// Cost per unit of time of being in `seen` while `expected` should hold.
@@ -22,12 +22,12 @@ fn mismatch(seen: SystemState, expected: SystemState) -> f64 {
     }
 }
 
-/// The order, with what may follow what.
+/// The order, with the permitted transitions.
 struct Order<'a> {
     steps: &'a [Subtask],
     /// The step before the first one of the same object: where a failed attempt begins again.
     home: Vec<Option<usize>>,
-    /// Whether one may begin again from here or from an earlier step of the same object.
+    /// True if an attempt may begin again from here or from an earlier step of the same object.
     retry: Vec<bool>,
     total: f64,
 }
@@ -75,9 +75,9 @@ impl<'a> Order<'a> {
 /// Steps of one object at most.
 const MOST_BACK: usize = 32;
 
-/// Assigns every run to a step of the order: steps never go back, but for a failed attempt (to before the object's first step), and
-/// a step may be missed at a price. `next` says of free motion what the grasps around it tell. Returns the total mismatch (time) and
-/// the step of every run; `None` when there are too few runs.
+/// Assigns every run to a step of the order. Steps never go back, but for a failed attempt (to before the object's
+/// first step), and a step may be missed at a price. `next` states for free motion the evidence of the grasps around
+/// it. Returns the total mismatch (time) and the step of every run; `None` if there are too few runs.
 pub(super) fn align(runs: &[Run], order: &[Subtask], next: &[Option<Next>]) -> Option<(f64, Vec<usize>)> {
     let (n, k) = (runs.len(), order.len());
     if n == 0 || k == 0 {

@@ -3,8 +3,8 @@
 use super::{Interval, Segmentation, SystemState};
 use haptics::recording::{Recording, Segment};
 
-/// Puts the intervals of the recording's sidecar in the place of those that were found. Holes between them are no state. Without any,
-/// or where they make no sense, what was found stays, in the latter case with a warning.
+/// Puts the intervals of the recording's sidecar in the place of the found ones. Holes between them are no state.
+/// Without any, or with senseless ones, the found ones stay, in the latter case with a warning.
 pub fn put(mut found: Segmentation, recording: &Recording, time_s: &[f64]) -> Segmentation {
     let stated = &recording.meta.segments;
     if stated.is_empty() {
@@ -21,7 +21,7 @@ pub fn put(mut found: Segmentation, recording: &Recording, time_s: &[f64]) -> Se
     found
 }
 
-/// What a sidecar says about a segmentation as it is.
+/// Segments of a segmentation as a sidecar states them.
 pub fn stated(found: &Segmentation) -> Vec<Segment> {
     let of =
         |i: &Interval| Segment { t0: i.t0, t1: i.t1, state: i.state.name().to_owned(), subtask: i.subtask.clone() };

@@ -1,4 +1,4 @@
-//! What makes a task unusable, in words.
+//! Faults that make a task unusable, in words.
 
 use super::definition::{Definition, Step, Subtasks, signals};
 use super::shows;
@@ -6,7 +6,7 @@ use super::subtasks::MOST_CARRIES;
 use haptics::recording::Task;
 
 impl Definition {
-    /// What is wrong with it, and what to do.
+    /// Fault of the definition, and its remedy.
     pub fn fault(&self) -> Option<String> {
         if self.name.is_empty() || !self.name.chars().all(|c| c.is_alphanumeric() || "-_".contains(c)) {
             return Some(format!("the name `{}` must be of letters, digits, - and _", self.name));

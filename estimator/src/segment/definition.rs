@@ -1,5 +1,5 @@
-//! What a task is: its states with their rules, its subtasks, and how its thresholds are found. Tasks are JSON files; those that the
-//! program knows are in `assets/tasks`, users add their own (`docs/tasks.md`).
+//! Definition of a task: its states with their rules, its subtasks, and the choice of its thresholds. Tasks are JSON
+//! files; the built-in ones are in `assets/tasks`, users add their own (`docs/tasks.md`).
 
 use super::rules::Sign;
 use super::subtasks::Subtask;
@@ -23,7 +23,7 @@ pub struct Definition {
     pub title: String,
     /// The built-in task whose signals are looked at and whose fit applies.
     pub like: Task,
-    /// How thresholds are found.
+    /// Choice of the thresholds.
     pub thresholds: Policy,
     /// States with their rules; of several rules that hold, the first one names the state.
     pub states: Vec<StateRule>,
@@ -31,11 +31,11 @@ pub struct Definition {
     pub subtasks: Subtasks,
 }
 
-/// How the qualitative values +, 0, − are told apart.
+/// Distinction of the qualitative values +, 0, −.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Policy {
-    /// Where thresholds are learned.
+    /// Source of the learned thresholds.
     pub from: Learned,
     /// Share of its threshold (0 to 1) below which a signal counts as 0 again.
     pub leave: f64,
@@ -47,7 +47,7 @@ pub struct Policy {
     pub force_n: Option<f64>,
 }
 
-/// Where thresholds are learned.
+/// Source of the learned thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Learned {
@@ -55,7 +55,7 @@ pub enum Learned {
     FreeMotion,
 }
 
-/// When a state holds.
+/// Conditions under which a state holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateRule {
@@ -201,7 +201,7 @@ impl Definition {
         }
     }
 
-    /// The expected order for so many objects; nothing where no order is expected.
+    /// The expected order for a number of objects; nothing if no order is expected.
     pub fn order(&self, objects: usize) -> Vec<Subtask> {
         let Subtasks::Ordered(ordered) = &self.subtasks else { return Vec::new() };
         let first = ordered.first.iter().map(|step| Subtask { object: 0, ..step.numbered(1) });

@@ -1,4 +1,5 @@
-//! What the hidden Markov model sees of a recording: a few channels in units of the thresholds, and the rules' own answer.
+//! Input of the hidden Markov model: a few channels of a recording in units of the thresholds, and the rules' own
+//! answer.
 
 use super::definition::Definition;
 use super::rules::{self, Quality, Sign};
@@ -12,8 +13,8 @@ pub type Judge = Box<dyn Fn(&[f64], f64) -> SystemState>;
 
 /// Channels of a recording for [`super::markov`].
 ///
-/// Every channel is asinh(signal / threshold): straight where the signal is within its threshold and so shows the noise, a
-/// logarithm beyond, so that a firm grip and a firmer one look alike and an impact is no outlier.
+/// Every channel is asinh(signal / threshold): linear within the threshold, which shows the noise, and logarithmic
+/// beyond. A firm grip and a firmer one therefore look alike, and an impact is no outlier.
 pub struct Evidence {
     /// Channels of a sample.
     pub channels: usize,

@@ -1,5 +1,5 @@
-//! Where the hand gripped and where it let go: whether a grasp takes up again what the one before left lying. A dropped block
-//! lies below the place where it was lost and weighs what it weighed; the next block of the task lies elsewhere.
+//! Places of gripping and letting go: they tell whether a grasp takes up again an object left by the one before. A
+//! dropped block lies below the place of its loss and has the same weight; the next block of the task lies elsewhere.
 
 use super::SystemState;
 use super::subtasks::{LEAST_RUN_S, Run};
@@ -7,7 +7,7 @@ use super::threshold::percentile;
 use haptics::Vec2;
 use std::ops::Range;
 
-/// What the hand does, one entry a sample.
+/// Motion of the hand, one entry a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Hand<'a> {
     /// Middle between the fingers, m.
@@ -18,10 +18,10 @@ pub struct Hand<'a> {
     pub lift_n: &'a [f64],
 }
 
-/// What the places of two grasps say about their objects.
+/// Relation of the objects of two grasps, told by their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// The second one takes up what the first one lost.
+    /// The second one takes up the object that the first one lost.
     Again,
     /// The second one takes something else.
     Other,
@@ -29,22 +29,23 @@ pub(super) enum Next {
     Unknown,
 }
 
-/// Holding on the ground this long at the end is putting down, s …
+/// Time of a hold on the ground at the end that is putting down, s.
 const PUT_DOWN_S: f64 = 0.35;
-/// … and this long when the block did not fall afterwards; shorter is the passage of the forces when something is lost.
+/// The same time if the block did not fall afterwards; shorter is the passage of the forces when something is lost.
 const JUST_PUT_DOWN_S: f64 = 0.12;
 /// A block that was gripped but not lifted stays within this, m.
 const STAYS_M: f64 = 8e-3;
-/// A block that was lost in the air comes to rest within this sideways, m …
+/// Largest sideways distance at which a block lost in the air comes to rest, m.
 const FALLS_WITHIN_M: f64 = 20e-3;
-/// … and with a width that is the same within [`ALIKE_M`] within this.
+/// The same distance for a block with the same width within [`ALIKE_M`].
 const ROLLS_WITHIN_M: f64 = 40e-3;
 /// Widths of one block in two grasps differ by less, m: pads give with the pinch. A block that tumbled is held by another side.
 const ALIKE_M: f64 = 1.6e-3;
-/// Weights that differ by a smaller share are those of one block, by a larger one those of two …
+/// Relative difference of weights below which they are those of one block; `OTHER_WEIGHT`: above which they are those
+/// of two.
 const SAME_WEIGHT: f64 = 0.12;
 const OTHER_WEIGHT: f64 = 0.3;
-/// … when it was in the air for so long, s.
+/// Least time in the air for a weight, s.
 const WEIGHED_S: f64 = 0.3;
 /// A grasp that is lower by this is at another height, m.
 const LOWER_M: f64 = 3e-3;
@@ -59,10 +60,10 @@ pub(super) struct Grasp {
     from_m: Vec2,
     to_m: Vec2,
     width_m: f64,
-    /// Where it was in the air for long enough, N.
+    /// Weight, N, if it was in the air for long enough.
     weight_n: Option<f64>,
     lifted: bool,
-    /// How long it rested in the grip before it was let go, s.
+    /// Time for which it rested in the grip before it was let go, s.
     rested_s: f64,
 }
 
@@ -116,7 +117,7 @@ fn grasp(time_s: &[f64], runs: &[Run], hand: &Hand<'_>, span: Range<usize>) -> G
 }
 
 impl Grasp {
-    /// What the grasp after this one takes.
+    /// Relation of the object of the grasp after this one to that of this one.
     fn next(&self, next: &Self) -> Next {
         let beside_m = (next.from_m.x - self.to_m.x).abs();
         let below_m = self.to_m.y - next.from_m.y;
@@ -130,7 +131,7 @@ impl Grasp {
         if self.was_put_down() && !(fell && self.rested_s < PUT_DOWN_S) || below_m < -LOWER_M {
             return Next::Other;
         }
-        // What lay under it before it was taken.
+        // True for an object that lay under it before it was taken.
         let uncovered = (next.from_m.x - self.from_m.x).abs() < STAYS_M
             && next.from_m.y < self.from_m.y - LOWER_M
             && beside_m > STAYS_M;
@@ -150,25 +151,26 @@ impl Grasp {
         (other.width_m - self.width_m).abs() < ALIKE_M
     }
 
-    /// Whether both weigh the same; nothing where that is not clear.
+    /// True if both have the same weight; `None` if that is not clear.
     fn weighs_like(&self, other: &Self) -> Option<bool> {
         let (own, other) = (self.weight_n?, other.weight_n?);
         let differ = (own - other).abs() / own.abs().max(other.abs()).max(f64::MIN_POSITIVE);
         (!(SAME_WEIGHT..OTHER_WEIGHT).contains(&differ)).then_some(differ < SAME_WEIGHT)
     }
 
-    /// Whether a later grasp takes what this one lost and nobody has fetched since.
+    /// True if a later grasp takes the object that this one lost, not fetched since.
     pub(super) fn left_for(&self, later: &Self) -> bool {
         self.lifted && !self.was_put_down() && self.is_as_wide_as(later) && self.next(later) == Next::Again
     }
 
-    /// Whether a later grasp takes what this one put down.
+    /// True if a later grasp takes the object that this one put down.
     pub(super) fn is_where_it_was_put(&self, later: &Self) -> bool {
         self.lifted && self.was_put_down() && later.lifted && (later.from_m - self.to_m).norm() < LOWER_M
     }
 }
 
-/// For every run: what the free motion that it is part of lies between. Runs elsewhere: nothing.
+/// For every run: the relation of the grasps on both sides of the free motion that it is part of. Runs elsewhere:
+/// `None`.
 pub(super) fn between(runs: &[Run], grasps: &[Grasp]) -> Vec<Option<Next>> {
     let mut told = vec![None; runs.len()];
     for pair in grasps.windows(2) {

@@ -14,12 +14,12 @@ pub fn use_folder(folder: PathBuf) {
     let _ = FOLDER.set(folder);
 }
 
-/// Where the user's tasks are.
+/// Folder of the user's tasks.
 pub fn folder() -> Option<&'static Path> {
     FOLDER.get().map(PathBuf::as_path)
 }
 
-/// Whether a text can be the name of a task: it cannot leave the folder.
+/// True if a text can be the name of a task: it cannot leave the folder.
 pub fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "-_".contains(c))
 }

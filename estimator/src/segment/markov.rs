@@ -1,8 +1,8 @@
 //! Stage 2 by a hidden Markov model that starts from the rules' result (thesis, chapter 3.2, names it as the alternative).
 //!
-//! States are those that the rules saw for a while; their Gaussians start at what the rules called so and are refined by a few
-//! steps of Baum–Welch under a prior that keeps them near. The rules stay the meaning: a state whose mean no longer satisfies its
-//! own rule goes back to where it started, and a warning says so.
+//! States are those that the rules saw for a while. Their Gaussians start at the samples of the rules and are refined
+//! by a few steps of Baum–Welch under a prior that keeps them near. The rules stay the meaning: a state whose mean no
+//! longer satisfies its own rule goes back to its start, and a warning says so.
 
 use super::evidence::Evidence;
 use super::subtasks::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
@@ -20,7 +20,7 @@ const CORRELATION_S: f64 = 0.03;
 const DWELL_S: f64 = 0.5;
 /// In how many such stays the transitions of the prior were seen.
 const PRIOR_STAYS: f64 = 10.0;
-/// What the rules' samples weigh in the prior, against the same samples in training.
+/// Weight of the rules' samples in the prior, against the same samples in training.
 const PRIOR_SHARE: f64 = 0.5;
 /// Least effective samples of the prior of a state.
 const PRIOR_LEAST: f64 = 5.0;
@@ -38,7 +38,7 @@ const LEVELS: [f64; 2] = [0.7, 1.0];
 /// Rules and model that differ in more than this share of the samples are said to.
 const DISAGREEMENT: f64 = 0.05;
 
-/// The most probable path through a recording, and what is known of every sample.
+/// The most probable path through a recording, and the posterior of every sample.
 pub struct Decoded {
     /// State of every sample.
     pub path: Vec<SystemState>,
@@ -143,13 +143,13 @@ fn shown(time_s: &[f64], smooth: &[SystemState], channels: usize) -> Vec<SystemS
     states
 }
 
-/// Where a state starts, and in how many samples the rules saw it.
+/// Start of a state, and the number of samples in which the rules saw it.
 struct Start {
     emission: Gaussian,
     samples: usize,
 }
 
-/// Mean and covariance of what the rules called so, sample by sample and after smoothing.
+/// Mean and covariance of the samples of each state by the rules, sample by sample and after smoothing.
 fn starts(evidence: &Evidence, smooth: &[SystemState], states: &[SystemState]) -> Vec<Start> {
     let d = evidence.channels;
     let rows = |state: SystemState| {
@@ -204,7 +204,7 @@ impl Trainer<'_> {
         let transitions = chain.transition().iter().map(|p| p * self.dwell * PRIOR_STAYS).collect();
         let total: usize = self.starts.iter().map(|s| s.samples).sum();
         let effective = self.weight * (self.values.len() / self.channels) as f64 / total.max(1) as f64;
-        // No rule says what `no state` looks like: training would only let it take what belongs to others.
+        // No rule defines the look of `no state`: training would only let it take the samples of others.
         let believed = |(state, start): (&SystemState, &Start)| match state {
             SystemState::NoState => f64::INFINITY,
             _ => (PRIOR_SHARE * effective * start.samples as f64).max(PRIOR_LEAST),
@@ -240,18 +240,19 @@ impl Trainer<'_> {
         Ok((model, warnings.collect()))
     }
 
-    /// Whether a state's mean satisfied its rule at the start and no longer does.
+    /// True if a state's mean satisfied its rule at the start and no longer does.
     fn strayed(&self, state: usize, model: &Model) -> bool {
         let fits = |g: &Gaussian| LEVELS.iter().any(|level| (self.judge)(g.mean(), *level) == self.states[state]);
         fits(&self.starts[state].emission) && !fits(&model.emissions[state])
     }
 }
 
-/// How readily one state follows another: what contact does by itself is likely, the rest must be shown by the data.
+/// Affinity of one state to another: transitions by the nature of contact are likely, the rest must be shown by the
+/// data.
 fn affinity(states: &[SystemState]) -> Vec<f64> {
     use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, Penetration, SlidingOnGround};
     let likely = |a: SystemState, b: SystemState| match (a, b) {
-        // A needle goes through what it has pressed in, and is drawn out before it is free.
+        // A needle goes through a sheet that it has pressed in, and is drawn out before it is free.
         (FreeMotion, Penetration | HoldAboveGround | SlidingOnGround)
         | (Penetration, FreeMotion)
         | (HoldAboveGround, SlidingOnGround) => false,
@@ -291,7 +292,7 @@ mod tests {
         if mean[0].sinh() > level { Turning } else { Holding }
     }
 
-    /// A channel that is at each level for so many samples of 10 ms, with the states that the rules see there.
+    /// A channel that is at each level for a number of samples of 10 ms, with the states that the rules see there.
     fn evidence(parts: &[(f64, SystemState, usize)], spread: f64) -> (Vec<f64>, Evidence) {
         let mut rng = StdRng::seed_from_u64(21);
         let noise = Normal::new(0.0, spread).expect("a spread");
@@ -327,8 +328,8 @@ mod tests {
 
     #[test]
     fn a_state_that_training_moves_against_its_rule_is_put_back_and_said() {
-        // What the rules called turning was seen for a moment; a level that is nearer to it than to rest, but still below its
-        // threshold, is there for long and draws its Gaussian down.
+        // The rules' turning was seen for a moment. A level that is nearer to it than to rest, but still below its
+        // threshold, lasts for long and draws its Gaussian down.
         let at = |level: f64, samples| {
             let emission =
                 Gaussian::new(vec![level], Covariance::Full(nalgebra::DMatrix::identity(1, 1) * 0.04), &[0.04]);

@@ -1,7 +1,8 @@
-//! Segmentation: which state held when, and to which subtask it belongs.
+//! Segmentation: the states with their times, and the subtask to which each belongs.
 //!
-//! Stage 1 is [`crate::signal::task`]; [`threshold`] chooses thresholds above the noise, [`rules`] is stage 2 (the rules
-//! themselves are in the task's [`definition`]) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
+//! Stage 1 is [`crate::signal::task`]; [`threshold`] chooses thresholds above the noise, [`rules`] is stage 2 (the
+//! rules themselves are in the task's [`definition`]). [`markov`] is its refinement, [`subtasks`] is stage 3. The
+//! results are plain intervals, the same for every method.
 
 mod align;
 pub mod by_hand;
@@ -114,7 +115,7 @@ impl StatePosterior {
 }
 
 impl Segmentation {
-    /// What the rules made of a recording.
+    /// Segmentation of a recording by the rules.
     fn by_rules(task: &Definition, states: Vec<Interval>, thresholds: Thresholds, warnings: Vec<String>) -> Self {
         Self {
             method: Method::Threshold.name().to_owned(),

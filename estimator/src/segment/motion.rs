@@ -89,8 +89,8 @@ impl Motion {
     }
 }
 
-/// Takes out runs of a sign that are shorter than `least_s` and have others on both sides: those without load first, because a load
-/// passes through zero while a crank is turned.
+/// Takes out runs of a sign that are shorter than `least_s` and have others on both sides. Runs without load come
+/// first, because a load passes through zero while a crank is turned.
 fn without_short(time_s: &[f64], signs: &mut [Sign], least_s: f64) {
     for (short, other) in [(Sign::Zero, Sign::Plus), (Sign::Plus, Sign::Zero)] {
         let mut first = 0;
@@ -116,7 +116,8 @@ fn push_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
 
 /// Share of the usual load that a threshold keeps at least: leaning and friction are not noise, and not the event either.
 const LOAD_SHARE: f64 = 0.05;
-/// A load is told from noise of this standard deviation when it is so many times above it, and from nothing again below a share.
+/// Level of a load above noise of this standard deviation, in multiples of it, from which it is told; below a share of
+/// that it is none again.
 const NOISE_MULTIPLE: f64 = 4.0;
 const NOISY_LEAVE: f64 = 0.6;
 /// Noise and bias that stay below the threshold by this multiple of the noise change nothing.
@@ -124,7 +125,7 @@ const CLEAR_OF_NOISE: f64 = 4.0;
 /// Contact is not made and lost faster in a noisy recording, s.
 const LEAST_CHANGE_S: f64 = 0.15;
 
-/// Load of a single tool, and what tells it from nothing.
+/// Load of a single tool, and its threshold.
 struct Load {
     values: Vec<f64>,
     force_n: f64,

@@ -1,5 +1,5 @@
-//! Needles: free, pressing, through, drawn out. What happens when is told by the fit of the strokes
-//! ([`crate::identify::needle`]); here it becomes states, and the channels of a hidden Markov model.
+//! Needles: free, pressing, through, drawn out. The fit of the strokes tells the times ([`crate::identify::needle`]);
+//! here they become states, and the channels of a hidden Markov model.
 
 use super::SystemState;
 use super::definition::Definition;
@@ -9,7 +9,8 @@ use crate::estimate::{EstimateError, Phase, StrokePhase};
 use crate::identify::needle::{self, Channels};
 use haptics::recording::Recording;
 
-/// A threshold of the model's channels is this many times the noise, or this share of what the signal reaches, as for blocks.
+/// Threshold of the model's channels, in multiples of the noise, or as a share of the signal's usual size, as for
+/// blocks.
 const NOISES: f64 = 5.0;
 const SIGNAL_SHARE: f64 = 0.06;
 const SPEED_SHARE: f64 = 0.06;
@@ -44,8 +45,8 @@ pub fn states(time_s: &[f64], phases: &[StrokePhase], of: impl Fn(&str) -> Syste
     states
 }
 
-/// What a hidden Markov model sees of a needle: depth, force, speed inwards, and what an untouched sheet would press more. Also the
-/// thresholds that these are measured in; nothing where no push into a sheet is seen.
+/// Channels of a needle for a hidden Markov model: depth, force, speed inwards, and the additional force of an
+/// untouched sheet. The thresholds that these are measured in come with them; nothing if no push into a sheet is seen.
 pub fn evidence(
     recording: &Recording,
     time_s: &[f64],

@@ -1,4 +1,4 @@
-//! Which object a grasp belongs to, where the order alone cannot tell: one that was lost, left lying and fetched after another.
+//! Object of a grasp, if the order alone cannot tell: one that was lost, left lying and fetched after another.
 
 use super::grasps::Grasp;
 use super::subtasks::Subtask;

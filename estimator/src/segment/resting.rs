@@ -1,8 +1,8 @@
 //! The force of a single tool while nothing is touched: its sensor's bias, and its noise.
 //!
-//! A load close to zero is no sign of free motion where the sensor has a bias, or much noise. What a hand lets go of shows otherwise: for
-//! a while the force stands still but for its noise, at the same vector whenever that happens, and the tool is off the circle that it
-//! follows while it holds the crank.
+//! A load close to zero is no sign of free motion if the sensor has a bias, or much noise. A released tool shows
+//! otherwise. For a while the force is constant but for its noise, at the same vector each time, and the tool is off
+//! the circle that it follows while it holds the crank.
 
 use super::threshold::percentile;
 use crate::constraint::circle;
@@ -10,26 +10,26 @@ use crate::signal::noise::quantum;
 use haptics::Vec2;
 use std::ops::Range;
 
-/// Length of the pieces of a recording that are compared with each other, s and samples.
+/// Length of the blocks of a recording that are compared with each other, s and samples.
 const PIECE_S: f64 = 0.25;
 const PIECE_SAMPLES: usize = 8;
-/// As many pieces at the same force are free motion; one may be a moment of a turn.
+/// Least number of blocks at the same force for free motion; one may be a moment of a turn.
 const LEAST_PIECES: usize = 2;
-/// A piece stands still when its scatter is below this multiple of the noise, and belongs to others when its mean is within `NEAR`
-/// times the noise of theirs (noise with a memory does not average out within a piece).
+/// Largest scatter of a block at rest, in multiples of the noise. It belongs to others when its mean is within `NEAR`
+/// times the noise of theirs (noise with a memory does not average out within a block).
 const STILL: f64 = 1.6;
 const NEAR: f64 = 2.0;
 /// Levels that are tried, from the smallest force on: more stand still in contact only.
 const MOST_SEEDS: usize = 200;
-/// A bias is small against what the hand does otherwise.
+/// Largest bias, as a share of the usual forces of the hand.
 const LARGEST_BIAS: f64 = 0.35;
-/// Off the circle: by this share of the radius, and by this multiple of what the path misses it.
+/// Distance off the circle: as a share of the radius, and in multiples of the path's usual distance from it.
 const OFF_SHARE: f64 = 0.03;
 const OFF_MULTIPLE: f64 = 4.0;
 /// Points that a circle is fitted to are enough.
 const MOST_POINTS: usize = 4000;
 
-/// What the force is while nothing is touched.
+/// Force while nothing is touched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resting {
     /// Mean force, N: the sensor's bias.
@@ -38,11 +38,12 @@ pub struct Resting {
     pub noise_n: f64,
     /// Samples that were taken as free motion, in order.
     pub free: Vec<usize>,
-    /// When the force rested, s, and at what, N, one rest after the other: two and more where the sensor drifts, else none.
+    /// Times, s, and levels, N, of the force at rest, one rest after the other: two and more if the sensor drifts, else
+    /// none.
     drift: Vec<(f64, Vec2)>,
 }
 
-/// A piece of the recording.
+/// A block of the recording.
 struct Piece {
     first: usize,
     end: usize,
@@ -121,7 +122,7 @@ impl Resting {
         self
     }
 
-    /// The force at rest at a time, N: in between of what it was before and is afterwards where the sensor drifts.
+    /// The force at rest at a time, N: interpolated between the rests before and after if the sensor drifts.
     pub fn bias_at(&self, time_s: f64) -> Vec2 {
         let next = self.drift.partition_point(|(t, _)| *t < time_s);
         match (next.checked_sub(1).and_then(|k| self.drift.get(k)), self.drift.get(next)) {
@@ -131,12 +132,12 @@ impl Resting {
         }
     }
 
-    /// How far the force at rest is from zero at most, N.
+    /// Largest distance of the force at rest from zero, N.
     pub fn farthest_n(&self) -> f64 {
         self.drift.iter().map(|(_, level)| level.norm()).fold(self.bias_n.norm(), f64::max)
     }
 
-    /// Whether it is another one at other times.
+    /// True if it changes with time.
     pub fn drifts(&self) -> bool {
         !self.drift.is_empty()
     }
@@ -174,7 +175,7 @@ fn pieces(time_s: &[f64], force_n: &[Vec2]) -> Vec<Piece> {
     pieces
 }
 
-/// The pieces about a level, which is moved to their own middle once.
+/// The blocks about a level, which is moved to their own middle once.
 fn members<'a>(still: &[&'a Piece], level_n: Vec2, near_n: f64) -> Vec<&'a Piece> {
     let about = |level: Vec2| -> Vec<&'a Piece> {
         still.iter().copied().filter(|p| (p.mean_n - level).norm() <= near_n).collect()
@@ -186,7 +187,7 @@ fn members<'a>(still: &[&'a Piece], level_n: Vec2, near_n: f64) -> Vec<&'a Piece
     about(first.iter().map(|p| p.mean_n).sum::<Vec2>() / first.len() as f64)
 }
 
-/// Whether samples are off the circle that the tool follows under load.
+/// True if samples are off the circle that the tool follows under load.
 fn is_off_circle(free: &[usize], force_n: &[Vec2], bias_n: Vec2, position_m: &[Vec2]) -> bool {
     let mut is_free = vec![false; force_n.len()];
     for i in free {
@@ -194,7 +195,7 @@ fn is_off_circle(free: &[usize], force_n: &[Vec2], bias_n: Vec2, position_m: &[V
     }
     let mut loads: Vec<f64> = force_n.iter().map(|f| (f - bias_n).norm()).collect();
     let usual_n = percentile(&mut loads.clone(), 0.5);
-    // What is not free, and carries some load.
+    // Samples that are not free and carry some load.
     let held: Vec<usize> = (0..loads.len()).filter(|i| !is_free[*i] && loads[*i] >= 0.5 * usual_n).collect();
     loads.clear();
     let points: Vec<Vec2> =

@@ -88,7 +88,7 @@ impl Qualifier {
     }
 }
 
-/// Whether a size is beyond its limit, with hysteresis; for signals without a sign.
+/// Sign of a size relative to its limit, with hysteresis; for signals without a sign.
 pub fn beyond(before: Sign, value: f64, limit: f64, leave: f64) -> Sign {
     if value > limit * if before == Sign::Plus { leave } else { 1.0 } { Sign::Plus } else { Sign::Zero }
 }

@@ -1,5 +1,5 @@
-//! How well a segmentation agrees with the labels that a person or a generator gave a recording. Labels are compared here and
-//! nowhere else: nothing is ever estimated from them.
+//! Agreement of a segmentation with the labels that a person or a generator added to a recording. Labels are compared
+//! here and nowhere else: nothing is ever estimated from them.
 
 use super::{Segmentation, SystemState};
 use crate::signal::task::times;
@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A boundary within this of a labelled one was found, s …
+/// Largest distance of a boundary from the labelled one to be found, s.
 const TOLERANCE_S: f64 = 0.1;
-/// … or within so many samples of a slow log.
+/// The same distance in samples of a slow log.
 const TOLERANCE_SAMPLES: f64 = 1.5;
 
 /// The agreement of one recording.
@@ -75,7 +75,7 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
     if truth.iter().all(Option::is_none) {
         return None;
     }
-    // Who labels only whether a handle is held says nothing of turning and holding it still.
+    // Labels that only say whether a handle is held say nothing of turning and holding it still.
     let moved = matches!(found.like()?, Task::Crank | Task::Mechanism | Task::Switch);
     let apart = truth.contains(&Some(SystemState::Holding));
     let one = |state: SystemState| match state {
@@ -88,7 +88,7 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
     let step = recording.rate_hz().map_or(1.0, |rate| 1.0 / rate);
     let tolerance_s = TOLERANCE_S.max(TOLERANCE_SAMPLES * step);
     let known: Vec<SystemState> = truth.iter().map(|state| state.unwrap_or(SystemState::NoState)).collect();
-    // Where nothing is labelled, nothing is compared.
+    // Samples without a label are not compared.
     let labelled =
         |(label, claim): (&Option<SystemState>, &SystemState)| label.map_or(SystemState::NoState, |_| *claim);
     let compared: Vec<SystemState> = truth.iter().zip(&claims).map(labelled).collect();
@@ -130,7 +130,7 @@ fn by_state(truth: &[Option<SystemState>], claims: &[SystemState]) -> (BTreeMap<
     (scores, samples, all_right)
 }
 
-/// Where one state gives way to another, s, and to which. Stays that are shorter belong to the state before; samples without a state
+/// Changes of state, s, with the new state. Stays that are shorter belong to the state before; samples without a state
 /// are divided between their neighbours.
 fn boundaries(time_s: &[f64], states: &[SystemState], shortest_s: f64) -> Vec<(f64, SystemState)> {
     let end = |i: usize| time_s.get(i).copied().unwrap_or(time_s[time_s.len() - 1]);

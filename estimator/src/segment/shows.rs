@@ -1,4 +1,4 @@
-//! Which parameters a task's states show, and so where fits take their samples from.
+//! Parameters that a task's states show, and so the samples that fits take.
 
 use super::SystemState;
 use super::definition::{Definition, StateRule, Step, Subtasks};
@@ -58,23 +58,23 @@ pub fn parameters(like: Task) -> &'static [&'static str] {
 }
 
 impl Definition {
-    /// Whether the task says that a state shows a parameter.
+    /// True if the task says that a state shows a parameter.
     pub fn shows(&self, state: SystemState, parameter: &str) -> bool {
         self.states.iter().any(|rule| rule.state == state && rule.shows.iter().any(|name| name == parameter))
     }
 
-    /// Whether a state shows anything but the bias of the forces; every one does where the task says of none what it shows.
+    /// True if a state shows anything but the bias of the forces; every one does if the task states it for none.
     pub fn shows_something(&self, state: SystemState) -> bool {
         let of = |rule: &StateRule| rule.shows.iter().any(|name| name != "force_bias");
         !self.states.iter().any(of) || self.states.iter().any(|rule| rule.state == state && of(rule))
     }
 
-    /// Whether any state shows a parameter.
+    /// True if any state shows a parameter.
     pub fn is_shown(&self, parameter: &str) -> bool {
         self.states.iter().any(|rule| rule.shows.iter().any(|name| name == parameter))
     }
 
-    /// What every state shows, by its name; states that show nothing are left out.
+    /// Parameters that every state shows, by its name; states that show nothing are left out.
     pub fn shown_by_states(&self) -> BTreeMap<String, Vec<String>> {
         let mut shown: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for rule in self.states.iter().filter(|rule| !rule.shows.is_empty()) {

@@ -1,5 +1,5 @@
-//! Blocks that never leave the ground: while a finger drags one along, noise and friction lift a little of its weight, which looks
-//! like a carry to a threshold of a few hundredths of a newton.
+//! Blocks that never leave the ground. While a finger drags one along, noise and friction lift a little of its weight,
+//! which looks like a carry to a threshold of a few hundredths of a newton.
 
 use super::state::SystemState;
 use super::threshold::{Thresholds, percentile};
@@ -7,14 +7,14 @@ use crate::signal::task::TaskSignals;
 
 /// Tips so far above the lowest ones have lifted the block, m.
 pub const LIFTED_M: f64 = 2e-3;
-/// What is lifted for longer is carried, s.
+/// Time of a lift from which it is a carry, s.
 pub const LIFTED_S: f64 = 0.3;
-/// It is slid when the tips go so far to and fro while they hold it, m …
+/// Least travel of the tips back and forth, while they hold a block, for it to be slid, m.
 const SLID_M: f64 = 5e-3;
-/// … and stands on the ground at that very height for this share of the time.
+/// Least share of the time for which it stands on the ground at that very height.
 const GROUNDED_SHARE: f64 = 0.2;
 
-/// Puts back on the ground what was never lifted from it, in a recording in which a block is slid.
+/// Puts blocks that were never lifted back on the ground, in a recording in which a block is slid.
 pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [SystemState]) {
     use SystemState::{HoldAboveGround, HoldOnGround, SlidingOnGround};
     let held: Vec<usize> =
@@ -48,8 +48,8 @@ mod tests {
     use crate::segment::{Method, segment_by};
     use haptics::recording::{Channel, Recording, Task};
 
-    /// Two fingers hold a block and slide it to and fro, lifting a little of its weight now and then; `lift_m`: how high it is carried
-    /// in the middle of the recording.
+    /// Two fingers hold a block and slide it back and forth, lifting a little of its weight now and then. `lift_m`:
+    /// height to which it is carried in the middle of the recording.
     fn slid(lift_m: f64) -> Recording {
         let time: Vec<f64> = (0..3000).map(|i| f64::from(i) * 5e-3).collect();
         let held = |t: f64| if (1.0..14.0).contains(&t) { 1.0 } else { 0.0 };

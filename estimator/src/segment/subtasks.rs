@@ -18,7 +18,7 @@ const MAJORITY_S: f64 = 0.06;
 pub(super) const LEAST_RUN_S: f64 = 0.08;
 /// Most objects carried in one recording.
 pub const MOST_CARRIES: usize = 100;
-/// What one more carry must explain, as a share of the recording's length.
+/// Least share of the recording's length that one more carry must explain.
 const CARRY_PENALTY: f64 = 0.015;
 
 /// The recording may start as late as with the first placing; each step left out costs a little of its length.
@@ -104,7 +104,7 @@ fn best_order(
     }
 }
 
-/// Says what of the expected order is missing.
+/// Warns of missing steps of the expected order.
 fn missing(ordered: &Ordered, order: &[Subtask], states: &[Interval], warnings: &mut Vec<String>) {
     if ordered.first.first().is_some_and(|first| first.numbered(1).name != order[0].name) {
         warnings.push(format!(

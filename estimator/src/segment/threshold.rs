@@ -17,7 +17,7 @@ pub struct Thresholds {
 
 /// Multiple of the noise that a threshold keeps off it: one false crossing in 1.7 million white samples.
 const NOISE_MULTIPLE: f64 = 5.0;
-/// No threshold below this share of what the signal reaches while something happens: friction, tremor and leaning are not
+/// Least threshold, as a share of the signal's usual size while something happens: friction, tremor and leaning are not
 /// noise, and not the event either.
 const SIGNAL_SHARE: f64 = 0.06;
 
@@ -37,8 +37,8 @@ pub struct Levels {
 impl Levels {
     /// Finds the samples without contact (where the total force magnitude is lowest) and measures bias and noise there.
     ///
-    /// The bias is found in two passes: the least loaded tenth of the samples gives a first centre, everything within four
-    /// robust deviations of it the final one.
+    /// The bias is found in two passes: the first centre is that of the least loaded tenth of the samples, the final
+    /// one that of everything within four robust deviations of it.
     pub fn of(signals: &TaskSignals) -> Self {
         let forces: [&[Vec2]; 2] = [0, 1].map(|f| signals.tips[f].force.as_deref().unwrap_or(&[]));
         let n = signals.len();
@@ -59,7 +59,7 @@ impl Levels {
             for finger in 0..2 {
                 let middle = |pick: fn(&Vec2) -> f64| {
                     let mut values: Vec<f64> = free.iter().map(|i| pick(&forces[finger][*i])).collect();
-                    // A median of rounded forces is itself rounded: the last pass, rid of what does not belong, takes the mean.
+                    // A median of rounded forces is itself rounded: the last pass, free of outliers, takes the mean.
                     if pass < 2 { percentile(&mut values, 0.5) } else { mean(&values) }
                 };
                 bias[finger] = Vec2::new(middle(|f| f.x), middle(|f| f.y));
@@ -89,7 +89,7 @@ impl Levels {
         }
     }
 
-    /// What the reader should know about the forces at rest.
+    /// Warnings about the forces at rest.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.free.is_empty() {
@@ -113,8 +113,8 @@ impl Levels {
     }
 }
 
-/// Whether the least loaded samples are a phase without contact: they stay together for a while, and their mean is small
-/// against what the hand does otherwise.
+/// True if the least loaded samples are a phase without contact: they stay together for a while, and their mean is
+/// small against the other forces of the hand.
 fn is_free_phase(free: &[usize], signals: &TaskSignals, bias_n: [Vec2; 2], usual_load_n: f64) -> bool {
     const LEAST_S: f64 = 0.25;
     const LARGEST_BIAS: f64 = 0.35;
@@ -137,7 +137,7 @@ fn white_noises(forces: [&[Vec2]; 2]) -> [f64; 4] {
     [noise(0, |f| f.x), noise(0, |f| f.y), noise(1, |f| f.x), noise(1, |f| f.y)]
 }
 
-/// Thresholds above the noise and above what is not the event.
+/// Thresholds above the noise and above anything that is not the event.
 pub fn choose(signals: &TaskSignals, levels: &Levels) -> Thresholds {
     let usual_net = percentile(
         &mut (0..signals.len())
@@ -156,7 +156,7 @@ pub fn choose(signals: &TaskSignals, levels: &Levels) -> Thresholds {
     .thresholds()
 }
 
-/// What signals usually reach while something happens, and their noise.
+/// Usual size of signals while something happens, and their noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Usual {
     /// Standard deviation of a force channel in free motion, N.
@@ -172,7 +172,7 @@ pub struct Usual {
 }
 
 impl Usual {
-    /// Thresholds above the noise and above what is not the event.
+    /// Thresholds above the noise and above anything that is not the event.
     pub fn thresholds(&self) -> Thresholds {
         // Net force is the sum of two channels: its noise is √2 higher.
         let by_noise = NOISE_MULTIPLE * std::f64::consts::SQRT_2 * self.force_noise_n;

@@ -25,8 +25,8 @@ pub struct Derivatives {
 /// Local polynomial fit (Savitzky and Golay 1964) of `order` over 2·`half_width` + 1 samples, also for uneven `time_s`;
 /// one-sided at the ends.
 ///
-/// `time_s`, `values`: n samples each, time strictly increasing. Degenerate: a record shorter than the window uses what
-/// there is; fewer samples than the polynomial needs give a lower order.
+/// `time_s`, `values`: n samples each, time strictly increasing. Degenerate: a record shorter than the window uses all
+/// its samples; fewer samples than the polynomial needs give a lower order.
 pub fn savitzky_golay(time_s: &[f64], values: &[f64], half_width: usize, order: usize) -> Derivatives {
     let n = values.len().min(time_s.len());
     let mut out = Derivatives { value: vec![0.0; n], first: vec![0.0; n], second: vec![0.0; n] };
@@ -56,7 +56,8 @@ pub fn savitzky_golay(time_s: &[f64], values: &[f64], half_width: usize, order: 
     out
 }
 
-/// The same sample by sample: weights are made anew only where the steps around a sample are others than around the one before.
+/// The same sample by sample: weights are made again only if the steps around a sample differ from those around the one
+/// before.
 fn uneven(out: &mut Derivatives, (time_s, values): (&[f64], &[f64]), window: usize, order: usize) {
     let n = time_s.len();
     let mut known: Option<(usize, usize, [Vec<f64>; 3])> = None;
@@ -87,8 +88,9 @@ fn put(out: &mut Derivatives, i: usize, rows: &[Vec<f64>; 3], values: &[f64], pe
 /// Weights of value, slope and curvature, one a sample of the window.
 type Weights = Rc<[Vec<f64>; 3]>;
 
-/// [`local_weights`] at the sample of index `place` of `window` even ones, a period of 1 apart. Those of short windows are kept: a recording of
-/// many short stretches asks for the same ones at both ends of each, and making them takes longer than all the rest.
+/// [`local_weights`] at the sample of index `place` of `window` even ones, a period of 1 apart. Weights of short windows
+/// are kept: a recording of many short segments needs the same ones at both ends of each, and making them takes longer
+/// than all the rest.
 fn even_weights(window: usize, place: usize, order: usize) -> Weights {
     /// All places of all shorter windows are a few hundred kilobytes for each order.
     const KEPT: usize = 32;
@@ -105,8 +107,9 @@ fn even_weights(window: usize, place: usize, order: usize) -> Weights {
     KNOWN.with_borrow_mut(|known| known.entry([window, place, order.min(window)]).or_insert_with(make).clone())
 }
 
-/// Weights that give value, slope and curvature at `at` of the least-squares polynomial through samples at `time`, built of polynomials that
-/// are orthogonal on these samples (Forsythe 1957). Where times coincide the order is as high as the others allow.
+/// Weights for value, slope and curvature at `at` of the least-squares polynomial through samples at `time`, built of
+/// polynomials that are orthogonal on these samples (Forsythe 1957). With coincident times the order is as high as the
+/// others allow.
 fn local_weights(time: &[f64], at: f64, order: usize) -> [Vec<f64>; 3] {
     let n = time.len();
     // Scaled so that the powers stay near 1.
@@ -114,7 +117,7 @@ fn local_weights(time: &[f64], at: f64, order: usize) -> [Vec<f64>; 3] {
     let reach = if reach > 0.0 { reach } else { 1.0 };
     let x: Vec<f64> = time.iter().map(|t| (t - at) / reach).collect();
     let mut weights = [0; 3].map(|_| vec![0.0; n]);
-    // The polynomial of one order on the samples, and the one before; value, slope and curvature of both where they are asked for.
+    // The polynomial of one order on the samples, and the one before; value, slope and curvature of both at `at`.
     let (mut now, mut before) = (vec![1.0; n], vec![0.0; n]);
     let (mut here, mut behind) = ([1.0, 0.0, 0.0], [0.0; 3]);
     let mut square_before = f64::INFINITY;
@@ -179,7 +182,7 @@ pub fn central_differences(time_s: &[f64], values: &[f64]) -> Vec<f64> {
 
 /// Central weights of eighth order for offsets 1 … 4 (Fornberg 1988, table 1): first derivative.
 const FIRST: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-/// … and second derivative; the weight at offset 0 is −205/72.
+/// The same for the second derivative; the weight at offset 0 is −205/72.
 const SECOND: [f64; 4] = [8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0];
 
 /// First and second derivative of an evenly sampled, band-limited signal by nine-point stencils: within 1 % up to a fifth of

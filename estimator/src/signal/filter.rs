@@ -87,8 +87,9 @@ pub fn white_noise_gain(rate_hz: f64, cutoff_hz: f64) -> f64 {
 /// Points of the numerical integral in [`derivative_noise`]: exact to 1e-4.
 const NOISE_POINTS: u32 = 400;
 
-/// Variance of the `order`-th time derivative of unit white noise after [`low_pass`], in 1/s^(2 order): the power density
-/// 2/rate times the squared gains of the filter, 1/(1 + x⁸), and of the derivative, (2πf)^order, summed over all frequencies.
+/// Variance of the `order`-th time derivative of unit white noise after [`low_pass`], in 1/s^(2 order). It is the power
+/// density 2/rate times the squared gains of the filter, 1/(1 + x⁸), and of the derivative, (2πf)^order, summed over
+/// all frequencies.
 pub fn derivative_noise(rate_hz: f64, cutoff_hz: f64, order: i32) -> f64 {
     let usable = cutoff_hz > 0.0 && cutoff_hz < 0.45 * rate_hz;
     // Beyond four cut-offs the filter leaves 1e-9 of the power.

@@ -1,8 +1,8 @@
-//! How far two recordings of the same thing are apart in time, by the lag at which they are most alike.
+//! Time lag between two recordings of the same thing: the lag of their greatest correlation.
 
 /// Bins of the first look; every lag is tried there.
 const FIRST_BINS: f64 = 2048.0;
-/// How much finer every further look is; only lags about the best one are tried there.
+/// Refinement of every further look; only lags about the best one are tried there.
 const FINER: f64 = 8.0;
 /// Least share of the shorter signal that two must have in common: less is alike by chance.
 const LEAST_COMMON: f64 = 0.25;
@@ -11,10 +11,10 @@ const MOST_BINS: f64 = 1_048_576.0;
 /// Fewest bins in common.
 const LEAST_BINS: usize = 8;
 
-/// Where one signal lies on another.
+/// Position of one signal on another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
-    /// What must be added to the second signal's times, s.
+    /// Offset to be added to the second signal's times, s.
     pub offset_s: f64,
     /// Correlation of the two there, −1 … 1.
     pub likeness: f64,
@@ -64,7 +64,7 @@ fn mean_period(times: &[f64]) -> Option<f64> {
     (period.is_finite() && period > 0.0).then_some(period)
 }
 
-/// Means over even stretches of time, less their own mean, with running sums of them and of their squares.
+/// Means over even intervals of time, less their own mean, with running sums of them and of their squares.
 struct Bins {
     means: Vec<f64>,
     sums: Vec<f64>,

@@ -1,4 +1,4 @@
-//! How noisy a channel is, from its own high-frequency part.
+//! Noise of a channel, from its own high-frequency part.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ const FOURTH_POWER: f64 = 70.0;
 const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
 
 /// Standard deviation of the white part of the noise: median size of the fourth differences, robust against motion,
-/// impacts and outliers. Never below what the channel's quantum implies (q/√12).
+/// impacts and outliers. Never below the value that the channel's quantum implies (q/√12).
 ///
 /// `values`: n samples, evenly spaced. Fewer than 8 samples give 0.
 pub fn white_noise(values: &[f64]) -> f64 {
@@ -45,8 +45,8 @@ pub fn white_noise_under_fast_motion(values: &[f64]) -> f64 {
     if eighth < CLEARLY_LESS * fourth { eighth } else { fourth }
 }
 
-/// The same for samples at uneven times: each one against the cubic through its two neighbours on either side, in units of
-/// what unit noise would make of that difference.
+/// The same for samples at uneven times: each one against the cubic through its two neighbours on either side, in units
+/// of that difference for unit noise.
 pub fn white_noise_uneven(time_s: &[f64], values: &[f64]) -> f64 {
     let n = values.len().min(time_s.len());
     if n < 8 {
@@ -89,12 +89,13 @@ pub fn quantum(values: &[f64]) -> f64 {
     if 10 * on_grid >= values.len() { smallest } else { 0.0 }
 }
 
-/// What resolution alone leaves unknown of the mean of a channel at rest, as a standard deviation, in the channel's unit.
+/// Standard deviation of the mean of a channel at rest by resolution alone, in the channel's unit.
 ///
-/// The mean of a signal that is rounded to steps of `step` is off by at most half a step, unless noise carries it over several
-/// steps: dither of standard deviation σ leaves the variance Σₖ `step²`/(2π²k²) exp(−4π²k²σ²/`step²`), averaged over where in the
-/// step the signal lies (Widrow & Kollár 2008, ch. 4: the characteristic function at multiples of 2π/`step`). Without noise this
-/// is `step²`/12. `noise`: standard deviation of the channel as [`white_noise`] gives it, rounding included.
+/// The mean of a signal that is rounded to steps of `step` is off by at most half a step, unless noise carries it over
+/// several steps. Dither of standard deviation σ leaves the variance Σₖ `step²`/(2π²k²) exp(−4π²k²σ²/`step²`), averaged
+/// over the place of the signal in the step (Widrow & Kollár 2008, ch. 4: the characteristic function at multiples of
+/// 2π/`step`). Without noise this is `step²`/12. `noise`: standard deviation of the channel from [`white_noise`],
+/// rounding included.
 pub fn resolution_error(step: f64, noise: f64) -> f64 {
     const HARMONICS: u32 = 40;
     if step <= 0.0 {
@@ -170,7 +171,7 @@ mod tests {
             }
             let seen = (squares / 50.0).sqrt();
             let expected = resolution_error(step, step * (share * share + 1.0 / 12.0).sqrt());
-            // The mean of so many samples scatters by share · step / 200 itself.
+            // The mean of this number of samples scatters by share · step / 200 itself.
             assert!((seen - expected).abs() < 0.05 * expected + 0.004 * step, "{share}: {seen} against {expected}");
         }
     }

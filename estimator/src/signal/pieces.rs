@@ -1,8 +1,8 @@
-//! Uninterrupted pieces of a recording.
+//! Segments of a recording without a gap.
 
 use std::ops::Range;
 
-/// A longer step between two samples ends a piece, in usual steps.
+/// Step between two samples above which a segment ends, in usual steps.
 const GAP: f64 = 2.5;
 
 /// Samples that follow each other without a gap and are all usable, and the usual (median) step between two samples, s. Without two samples the step

@@ -28,7 +28,7 @@ pub struct TaskSignals {
     pub grip_width_m: Vec<f64>,
     /// Rigid-body velocity: mean of the tip velocities, m/s.
     pub velocity: Vec<Vec2>,
-    /// Net force on what is held: sum of the tip forces, N.
+    /// Net force on the held object: sum of the tip forces, N.
     pub net_force_n: Vec<Vec2>,
     /// Grip normal force: min(Fx1, −Fx2), N.
     pub grip_force_n: Vec<f64>,
@@ -36,7 +36,7 @@ pub struct TaskSignals {
     pub shear_n: Vec<f64>,
     /// The fingers themselves (left, right).
     pub tips: [TipSeries; 2],
-    /// How velocities were obtained: `measured` or the derivation in words.
+    /// Source of the velocities: `measured` or the derivation in words.
     pub velocity_from: String,
 }
 
@@ -96,7 +96,7 @@ pub fn times(recording: &Recording) -> Vec<f64> {
     recording.time_s.clone().unwrap_or_else(|| (0..recording.len()).map(|i| i as f64).collect())
 }
 
-/// Where one tip is, sample by sample: for those who need no series of it.
+/// Position of one tip, sample by sample: for callers that need no series of it.
 pub struct Tip<'a> {
     columns: [&'a [f64]; 2],
     /// The finger whose angles the columns are; `None` where they are the tip's own.
@@ -210,8 +210,8 @@ pub fn calmed(signals: &TaskSignals) -> TaskSignals {
 
 /// Mean with weights (h + ½)² − k² over `half` = h samples on each side, fewer at the ends.
 ///
-/// The sums over the window (of values, and of values times k and k²) move along with it, so that a wider window takes no longer. They
-/// are made anew every so many samples: rounding does not gather.
+/// The sums over the window (of values, and of values times k and k²) move along with it, so that a wider window takes
+/// no longer. They are made again every so many samples, so that rounding does not gather.
 fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
     /// Windows that are so short are summed up each.
     const SHORT: usize = 6;
@@ -227,7 +227,7 @@ fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
         }
         sum / total
     };
-    // What is not finite would stay in the sums.
+    // Values that are not finite would stay in the sums.
     if half <= SHORT || n <= 2 * half + 1 || values.iter().any(|v| !v.is_finite()) {
         return (0..n).map(by_itself).collect();
     }
@@ -236,7 +236,7 @@ fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
     let mut means: Vec<f64> = (0..half).map(by_itself).collect();
     for first in (half..n - half).step_by(2 * half) {
         let window = &values[first - half..=first + half];
-        // About a value of the window: what is common to all cancels nothing.
+        // About a value of the window: the common part cancels nothing.
         let level = values[first];
         let (mut plain, mut linear, mut square) = (0.0, 0.0, 0.0);
         for (k, value) in window.iter().enumerate() {
@@ -280,8 +280,9 @@ pub fn half_width(time_s: &[f64]) -> usize {
 /// Zero-phase smoothing over [`DERIVATIVE_WINDOW_S`] (at least three samples).
 ///
 /// The slope is that of a straight line fitted to the window (Savitzky & Golay 1964, first order). Such a slope is the
-/// derivative of the channel smoothed with parabolic weights h² − k²; the value is smoothed with just these. So a channel, its
-/// derivative and every other channel have seen the same filter, and none looks delayed or weakened against another.
+/// derivative of the channel smoothed with parabolic weights h² − k²; the value is smoothed with just these. A channel,
+/// its derivative and every other channel have thus passed the same filter, and none looks delayed or weakened against
+/// another.
 pub fn smooth(time_s: &[f64], values: &[f64]) -> Smoothed {
     let half = half_width(time_s);
     let slope = savitzky_golay(time_s, values, half, 1).first;

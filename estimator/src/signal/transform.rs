@@ -1,14 +1,16 @@
-//! What a plot can make of a sampled signal: derivatives, a zero-phase low-pass, the integral, the signal without its mean.
+//! Transforms of a sampled signal for plots: derivatives, a zero-phase low-pass, the integral, the signal without its
+//! mean.
 //!
-//! Everything here is linear in the values, so what is left of a model may be transformed instead of both sides. Values that are no
-//! numbers stay none and spoil nothing but their neighbours: every stretch between them is treated as a signal of its own.
+//! Everything here is linear in the values, so the residual of a model may be transformed instead of both sides.
+//! Not-a-number values stay so and spoil nothing but their neighbours: every segment between them is treated as a
+//! signal of its own.
 
 use super::derive::{central_differences, even_period, interpolate, interpolate_cubic};
 use super::filter::low_pass;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// What is made of a signal.
+/// Transform of a signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transform {
@@ -19,7 +21,7 @@ pub enum Transform {
     Derivative,
     /// The rate of change of that.
     SecondDerivative,
-    /// What is slower than a cut-off, Hz (turns per sample without a clock).
+    /// The part below a cut-off, Hz (turns per sample without a clock).
     LowPass(f64),
     /// The area under it since the beginning.
     Integral,
@@ -46,7 +48,7 @@ impl Transform {
         }
     }
 
-    /// How many times the signal is differentiated with respect to time; −1 for an integral.
+    /// Order of differentiation with respect to time; −1 for an integral.
     pub fn order(self) -> i32 {
         match self {
             Self::Derivative => 1,
@@ -64,7 +66,7 @@ pub fn mean(values: &[f64]) -> f64 {
     if count == 0 { 0.0 } else { sum / count as f64 }
 }
 
-/// Treats every stretch of numbers apart.
+/// Treats every segment of finite values apart.
 fn by_stretches(times: &[f64], values: &[f64], of: impl Fn(&[f64], &[f64]) -> Vec<f64>) -> Vec<f64> {
     let mut out = vec![f64::NAN; values.len()];
     for stretch in stretches(values) {
@@ -73,7 +75,7 @@ fn by_stretches(times: &[f64], values: &[f64], of: impl Fn(&[f64], &[f64]) -> Ve
     out
 }
 
-/// Where the values are numbers.
+/// Segments of finite values.
 fn stretches(values: &[f64]) -> Vec<Range<usize>> {
     let mut at = 0;
     let parts = values.chunk_by(|a, b| a.is_finite() == b.is_finite());
@@ -110,7 +112,7 @@ fn smoothed(times: &[f64], values: &[f64], cutoff_hz: f64) -> Vec<f64> {
     interpolate_cubic(&grid, &even, times)
 }
 
-/// Sum of trapezia from the first sample on; nothing is added across what is no number.
+/// Sum of trapezia from the first sample on; nothing is added across values that are not numbers.
 fn integral(times: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     (0..values.len())

@@ -1,5 +1,5 @@
-//! Over a gap in a log a world's clock stands: nobody saw what the fingers did, and a straight line between their places would
-//! drag a crank's handle through its bearing.
+//! The world's clock stands over a gap in a log. The motion of the fingers there is unknown, and a straight line
+//! between their places would drag a crank's handle through its bearing.
 
 use haptics::Vec2;
 use haptics::world::{Contact, Crank, Input, State, Surface, World};
@@ -14,8 +14,8 @@ fn grasp(tips: &[Vec2; 2]) -> (Vec2, f64) {
     (0.5 * (tips[0] + tips[1]), apart.y.atan2(apart.x))
 }
 
-/// Puts the fingers where they are found again after `gap_s`: what both held came along with them, what nobody held has had the time
-/// to come to rest. What both hold goes on being held as it was; what else they press, they press as at the start of a recording.
+/// Puts the fingers at their places after `gap_s`. Objects held by both came along with them, others have had the time
+/// to come to rest. A grip of both fingers stays as it was; anything else is pressed as at the start of a recording.
 pub(super) fn bridge(world: &World, state: &mut State, input: &Input, gap_s: f64) {
     let ((from, angle), (to, new_angle)) = (grasp(&state.input.tip_in_world), grasp(&input.tip_in_world));
     let (sin, cos) = (new_angle - angle).sin_cos();
@@ -65,7 +65,7 @@ fn take_handle(world: &World, crank: &Crank, state: &mut State, input: &Input) {
         let angle = |v: Vec2| v.y.atan2(v.x);
         let from = if is_held(&tips) { angle(grasp(&tips).0 - crank.center_m) } else { handle.angle_rad };
         let turned = angle(outward) - from;
-        // The nearest turn: how many were gone in between nobody saw.
+        // The nearest turn: the number of turns in between is unknown.
         handle.angle_rad += turned - TAU * (turned / TAU).round();
         let velocity = 0.5 * (input.tip_velocity[0] + input.tip_velocity[1]);
         handle.rate_rad_s = outward.perp(&velocity) / (outward.norm() * crank.radius_m);

@@ -1,4 +1,4 @@
-//! What became of the objects: the recorded fingers are moved through the world that was touched.
+//! Results for the objects: the recorded fingers are moved through the world that was touched.
 
 mod blocks;
 mod crank;
@@ -34,7 +34,7 @@ pub struct Course {
     pub switch: Option<SwitchMeasures>,
 }
 
-/// Watches the things of a world from tick to tick, whoever moves them.
+/// Watches the things of a world from tick to tick.
 pub struct Watch {
     blocks: Option<blocks::Watch>,
     crank: Option<crank::Watch>,

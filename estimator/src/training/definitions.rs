@@ -1,4 +1,4 @@
-//! What the measures mean: shown on demand beside every number.
+//! Definitions of the measures: shown on demand beside every number.
 
 /// A measure, for people.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,13 +9,13 @@ pub struct Definition {
     pub name: &'static str,
     /// Its unit in JSON; empty without one.
     pub unit: &'static str,
-    /// How it is computed.
+    /// Method of its computation.
     pub text: &'static str,
-    /// Whether less of it is better; `None` where that depends on the task.
+    /// True if less of it is better; `None` if that depends on the task.
     pub less_is_better: Option<bool>,
-    /// A difference that matters to nobody, in its unit: smaller spreads of experts count as this much.
+    /// A difference that does not matter, in its unit: smaller spreads of experts count as this much.
     pub grain: f64,
-    /// What to do better, in the imperative, without a full stop; empty where nothing can be said in general.
+    /// Advice for improvement, in the imperative, without a full stop; empty if nothing can be said in general.
     pub advice: &'static str,
 }
 

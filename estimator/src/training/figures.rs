@@ -3,7 +3,7 @@
 use super::Measures;
 use std::collections::BTreeMap;
 
-/// The figures of an attempt by key of its definition. What was not measured is absent.
+/// The figures of an attempt by key of its definition. A quantity that was not measured is absent.
 pub fn figures(measures: &Measures) -> BTreeMap<&'static str, f64> {
     let hand = &measures.hand;
     let mut figures = BTreeMap::from([

@@ -10,9 +10,9 @@ use haptics::recording::Recording;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Motion is looked at up to here, Hz: above is tremor of sensors, which would lengthen every path.
+/// Cut-off of the motion, Hz: above is tremor of sensors, which would lengthen every path.
 pub const CUTOFF_HZ: f64 = 10.0;
-/// … on an even grid of this rate, Hz.
+/// Rate of the even grid of the motion, Hz.
 const RATE_HZ: f64 = 100.0;
 /// A finger that presses more than this touches something, N.
 const TOUCH_N: f64 = 0.05;

@@ -1,8 +1,9 @@
-//! How well a task was done: measures of training, from the recording alone.
+//! Measures of training, from the recording alone.
 //!
-//! The hand's measures ([`hand`]) need positions and forces; what became of the objects ([`course`]) is found by moving the recorded
-//! fingers through the world that was touched. Nothing here is an opinion: every measure has a unit and a definition, and the same
-//! recording gives the same numbers, to the bit. Definitions that people are shown are in [`definitions`].
+//! The hand's measures ([`hand`]) need positions and forces. The results for the objects ([`course`]) are found by
+//! moving the recorded fingers through the world that was touched. Nothing here is an opinion: every measure has a unit
+//! and a definition, and the same recording gives the same numbers, to the bit. Definitions that people are shown are
+//! in [`definitions`].
 
 pub mod course;
 pub mod definitions;
@@ -35,8 +36,8 @@ pub struct Measures {
     pub course: Option<Course>,
 }
 
-/// Measures a recording of two fingers, or of one tool; with the world that was touched also what became of its objects. Forces above
-/// `limit_n` count as too large, N.
+/// Measures a recording of two fingers, or of one tool; with the world that was touched also the results for its
+/// objects. Forces above `limit_n` count as too large, N.
 ///
 /// The recording must begin where the world does: objects at rest in their places.
 ///

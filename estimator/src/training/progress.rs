@@ -1,10 +1,10 @@
-//! How a trainee gets better: means of sessions, the power law of practice, proficiency.
+//! Progress of a trainee: means of sessions, the power law of practice, proficiency.
 //!
-//! Pure numbers: what is given are attempts at one lesson under the same conditions, in the order in which they were made.
+//! Pure numbers: the input is attempts at one lesson under the same conditions, in the order in which they were made.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-/// A session is over after so long without an attempt, s.
+/// Time without an attempt after which a session is over, s.
 const PAUSE_S: f64 = 3_600.0;
 /// Fewer attempts show no curve: it has three parameters.
 const LEAST_ATTEMPTS: usize = 6;
@@ -12,17 +12,17 @@ const LEAST_ATTEMPTS: usize = 6;
 const EXPONENTS: (f64, f64, usize) = (0.05, 3.0, 120);
 /// Share that an interval is to hold.
 const CONFIDENCE: f64 = 0.95;
-/// So many attempts in a row must meet the criterion.
+/// Number of attempts in a row that must meet the criterion.
 const IN_A_ROW: usize = 2;
 
 /// One attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Try {
-    /// When it began, s on any clock; one that was set back between two attempts puts no pause between them.
+    /// Start, s on any clock; one that was set back between two attempts puts no pause between them.
     pub began_s: f64,
-    /// What is followed: a score, or a measure.
+    /// Quantity that is followed: a score, or a measure.
     pub value: f64,
-    /// Whether it met the lesson's criterion.
+    /// True if it met the lesson's criterion.
     pub meets_criterion: bool,
 }
 
@@ -81,24 +81,25 @@ pub struct CurvePoint {
     pub interval: [f64; 2],
 }
 
-/// The power law of practice (Newell and Rosenbloom 1981) with a level that it goes to: y(n) = level + gain · n^−exponent.
+/// The power law of practice (Newell and Rosenbloom 1981) with an asymptote: y(n) = level + gain · n^−exponent.
 ///
-/// Method: for every exponent of a grid level and gain are a linear regression; the best exponent is that of least squares. The interval of
-/// the exponent holds all whose squares an F test with one degree of freedom does not refuse at 5 % (profile likelihood), that of the curve
-/// everything within the regression's t interval for any of them. Attempts count alike and are taken for independent.
+/// Method: for every exponent of a grid, level and gain are a linear regression; the best exponent is that of least
+/// squares. The interval of the exponent holds all whose squares an F test with one degree of freedom does not refuse
+/// at 5 % (profile likelihood). The interval of the curve holds everything within the regression's t interval for any
+/// of them. Attempts count alike and are taken for independent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearningCurve {
-    /// What it goes to after endless practice.
+    /// Asymptote after endless practice.
     pub level: f64,
-    /// What the first attempt was off that; negative where values rise.
+    /// Difference of the first attempt from the asymptote; negative if values rise.
     pub gain: f64,
-    /// How fast.
+    /// Exponent of the decay.
     pub exponent: f64,
-    /// 95 % interval of the exponent, within what is tried.
+    /// 95 % interval of the exponent, within the grid.
     pub exponent_interval: [f64; 2],
     /// Scatter of single attempts about it, a standard deviation.
     pub scatter: f64,
-    /// Whether the values changed at all: an F test against a constant, at 5 %.
+    /// True if the values changed at all: an F test against a constant, at 5 %.
     pub is_seen: bool,
     accepted: Vec<Line>,
     t: f64,

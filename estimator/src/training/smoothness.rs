@@ -10,8 +10,9 @@ pub const SPARC_PAD_LEVEL: u32 = 4;
 /// Upper end of the band, Hz.
 pub const SPARC_CUTOFF_HZ: f64 = 10.0;
 
-/// Spectral arc length of a speed profile (Balasubramanian et al. 2015, *On the analysis of movement smoothness*): the negative
-/// length of the normalised amplitude spectrum up to [`SPARC_CUTOFF_HZ`]; without unit, below zero, nearer zero: smoother.
+/// Spectral arc length of a speed profile (Balasubramanian et al. 2015, *On the analysis of movement smoothness*). It
+/// is the negative length of the normalised amplitude spectrum up to [`SPARC_CUTOFF_HZ`]; without unit, below zero,
+/// nearer zero: smoother.
 ///
 /// `speed`: n samples at `rate_hz`, ≥ 0. `None` without motion.
 pub fn sparc(speed: &[f64], rate_hz: f64) -> Option<f64> {

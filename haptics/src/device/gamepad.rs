@@ -29,7 +29,7 @@ const DEAD: f64 = 0.12;
 /// Without a word from the reading thread for this long the sticks count as let go, s.
 const SILENCE_S: f64 = 0.1;
 
-/// What the sticks do.
+/// Assignment of the sticks to motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GamepadMode {
     /// The left stick moves the hand, the triggers close (right) and open (left) the fingers.
@@ -64,7 +64,7 @@ impl GamepadHandle {
         self.pad.write(pad);
     }
 
-    /// How strongly the pad should rumble.
+    /// Rumble that the pad should make now.
     pub fn rumble(&mut self) -> Rumble {
         *self.rumble.read()
     }
@@ -103,7 +103,7 @@ pub fn gamepad(start_in_world: [Vec2; 2], workspace: Workspace, mode: GamepadMod
     (GamepadHandle { pad: pad_in, rumble: rumble_out }, device)
 }
 
-/// Stick position without its dead zone, with fine control near the middle; 0 for what is no number.
+/// Stick position without its dead zone, with fine control near the middle; 0 for values that are not numbers.
 fn shaped(stick: Vec2) -> Vec2 {
     let size = stick.norm().min(1.0);
     if size.is_finite() && size > DEAD {

@@ -1,7 +1,7 @@
 //! A hand as the operator's arm makes it: a mass on a spring and damper that follows where the operator wants to be.
 //!
-//! Position-only devices (mouse, script) go through it, so that squeezing an object gives a bounded force and touching the
-//! table pushes back, as it does with a real arm.
+//! Position-only devices (mouse, script) go through it, so that squeezing an object makes a bounded force and touching
+//! the table pushes back, as it does with a real arm.
 
 use crate::Vec2;
 

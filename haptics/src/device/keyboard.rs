@@ -1,7 +1,7 @@
-//! The keyboard, for those who can use no mouse: keys that are held move the hand, close it and open it.
+//! The keyboard, for people who cannot use a mouse: keys that are held move the hand, close it and open it.
 //!
-//! Only what is held counts, never how often the system repeats a key. Speeds come up and go down with a bounded acceleration, and
-//! the fine mode makes everything five times slower.
+//! Only held keys count, never how often the system repeats a key. Speeds come up and go down with a bounded
+//! acceleration, and the fine mode makes everything five times slower.
 
 use super::pointer::Pointer;
 use super::steering::Steering;
@@ -16,7 +16,7 @@ const HAND_M_S: f64 = 0.06;
 const APERTURE_M_S: f64 = 0.03;
 /// Speeds in fine mode.
 const FINE: f64 = 0.2;
-/// The keys that are held down now. Which keys they are is the window's business.
+/// The keys that are held down now. Their assignment to physical keys is the window's business.
 #[allow(clippy::struct_excessive_bools)] // seven keys
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeysHeld {

@@ -1,4 +1,4 @@
-//! Where finger positions come from and forces go to: one trait, one backend a file.
+//! Sources of finger positions and sinks of forces: one trait, one backend a file.
 
 pub mod channel;
 pub mod gamepad;
@@ -24,12 +24,12 @@ pub use touch::{TouchDevice, TouchHandle, touch};
 use crate::Vec2;
 use crate::world::{State, World};
 
-/// What a device can do: everything that limits are computed from.
+/// Capabilities of a device, from which all limits are computed.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DeviceSpec {
     /// For people.
     pub name: String,
-    /// Whether the operator feels a force (false: it is only shown).
+    /// True if the operator feels a force; false if it is only shown.
     pub force_feedback: bool,
     /// Largest force per finger, N.
     pub max_force_n: f64,
@@ -41,14 +41,14 @@ pub struct DeviceSpec {
     pub resolution_m: f64,
 }
 
-/// What the servo sends to the device at every tick.
+/// Message from the servo to the device at every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// Force on the operator's fingers, N, after ramp, clamp and slew limit.
     pub force_n: [Vec2; 2],
 }
 
-/// What the device answers.
+/// Answer of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Tip positions in the world, m; of a finger that is not fresh, the last that is known.
@@ -61,12 +61,12 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Whether there is anything new.
+    /// True if at least one finger has a new sample.
     pub fn is_any_fresh(&self) -> bool {
         self.fresh.contains(&true)
     }
 
-    /// Whether both fingers are new.
+    /// True if both fingers have new samples.
     pub fn is_fresh(&self) -> bool {
         self.fresh == [true; 2]
     }
@@ -75,7 +75,7 @@ impl Sample {
 /// A two-fingered input device. Everything but construction is called on the servo thread and must neither allocate, lock,
 /// print, wait nor panic.
 pub trait Device: Send {
-    /// What it can do.
+    /// Capabilities of the device.
     fn spec(&self) -> &DeviceSpec;
 
     /// Sends a force and takes the newest positions; `dt_s` is the time since the call before.
@@ -110,7 +110,7 @@ pub trait Device: Send {
     /// devices that can make it felt beside the force.
     fn strike(&mut self, _speed_m_s: f64) {}
 
-    /// What the operator sees. Only simulated operators look.
+    /// Shows the world to the operator. Only simulated operators look.
     fn see(&mut self, _world: &World, _state: &State) {}
 
     /// True once a device that performs something (a script, a replay) is done.

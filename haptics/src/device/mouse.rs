@@ -6,12 +6,12 @@ use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};
 
-/// Where the pointer wants the fingers to be.
+/// Goal of the fingers that the pointer sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MouseTarget {
     /// Middle between the tips, m in the world.
     pub center_in_world: Vec2,
-    /// Wanted distance between the tips, m; the pads stop at what is between them, the rest is pinch force.
+    /// Wanted distance between the tips, m; the pads stop at the object between them, the rest is pinch force.
     pub aperture_m: f64,
 }
 
@@ -86,7 +86,8 @@ mod tests {
         assert!((right.x - left.x - (0.01 + 2.0 / 400.0)).abs() < 1e-6, "opened by force over stiffness");
     }
 
-    /// The largest acceleration of a hand whose pointer goes at 50 mm/s, m/s², where the window tells it so many times a second.
+    /// The largest acceleration of a hand whose pointer goes at 50 mm/s, m/s², with `pictures_hz` pointer events a
+    /// second.
     fn jolt_m_s2(pictures_hz: f64) -> f64 {
         let workspace = Hand::default().workspace;
         let start = MouseTarget { center_in_world: workspace.center_m, aperture_m: 0.03 };
@@ -108,7 +109,7 @@ mod tests {
         most
     }
 
-    /// A window on a slow driver moves the fingers in large steps: what they carry must not be thrown off by that.
+    /// A window on a slow driver moves the fingers in large steps: carried objects must not be thrown off by that.
     #[test]
     fn a_slow_window_does_not_jolt_the_hand() {
         let (fast, slow) = (jolt_m_s2(60.0), jolt_m_s2(8.0));

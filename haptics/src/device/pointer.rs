@@ -1,4 +1,5 @@
-//! What mouse, touch screen, keyboard and gamepad share: two fingertips that follow two goals through the arm's impedance.
+//! Common part of mouse, touch screen, keyboard and gamepad: two fingertips that follow two goals through the arm's
+//! impedance.
 
 use super::{DeviceSpec, HandImpedance, Sample};
 use crate::Vec2;
@@ -37,7 +38,7 @@ impl Pointer {
         }
     }
 
-    /// What a device that only gives positions can do; the force is shown, not felt.
+    /// Specification of a device that only gives positions; the force is shown, not felt.
     pub fn spec(name: &str) -> DeviceSpec {
         DeviceSpec {
             name: name.to_owned(),
@@ -49,7 +50,7 @@ impl Pointer {
         }
     }
 
-    /// Its goals come in steps of so many seconds. Windows that are drawn rarely move the fingers far at once.
+    /// Sets the time between two goals, s. Windows that are drawn rarely move the fingers far at once.
     pub fn smooth_steps_of(&mut self, step_s: f64) {
         self.smoothing_s = (SMOOTHING_STEPS * step_s).clamp(SMOOTHING_S, MOST_SMOOTHING_S);
     }
@@ -71,17 +72,17 @@ impl Pointer {
         Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: [true; 2] }
     }
 
-    /// Where the tips are, m in the world.
+    /// Positions of the tips, m in the world.
     pub fn tips(&self) -> [Vec2; 2] {
         self.position
     }
 
-    /// Where the tips may go.
+    /// Region that the tips may reach.
     pub fn workspace(&self) -> Workspace {
         self.workspace
     }
 
-    /// How far a goal may be ahead of its tip for a force of `force_n`, m.
+    /// Distance of a goal ahead of its tip for a force of `force_n`, m.
     pub fn reach_m(&self, force_n: f64) -> f64 {
         force_n / self.impedance.stiffness_n_m
     }
@@ -93,7 +94,7 @@ pub(super) fn tips(center_in_world: Vec2, aperture_m: f64) -> [Vec2; 2] {
     [center_in_world - half, center_in_world + half]
 }
 
-/// Goes from `from` towards `to` by `most_m` at the most.
+/// Point on the way from `from` to `to`, at most `most_m` away from `from`.
 pub(super) fn towards(from: Vec2, to: Vec2, most_m: f64) -> Vec2 {
     let way = to - from;
     let distance = way.norm();

@@ -1,7 +1,7 @@
 //! Replay of a recording: the fingers go where they went.
 //!
-//! A servo that ticks at the recording's own times gets the recorded samples themselves, so that the same world gives the same
-//! forces to the bit. At any other rate positions and velocities are interpolated linearly.
+//! A servo that ticks at the recording's own times gets the recorded samples themselves, so that the same world
+//! computes the same forces to the bit. At any other rate positions and velocities are interpolated linearly.
 
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
@@ -45,7 +45,7 @@ pub enum ReplayError {
     NotANumber {
         /// The recording.
         name: String,
-        /// What is broken.
+        /// Name of the broken column.
         column: String,
         /// Counted from 1.
         sample: usize,
@@ -116,7 +116,7 @@ impl ReplayDevice {
         Self::new(&recording.name, time_s, [one.0, two.0], [one.1, two.1])
     }
 
-    /// Where the tips are at the beginning, m in the world: a state to start from.
+    /// Positions of the tips at the beginning, m in the world: a state to start from.
     pub fn start_in_world(&self) -> [Vec2; 2] {
         [self.tips[0][0], self.tips[1][0]]
     }

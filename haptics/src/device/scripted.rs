@@ -30,9 +30,9 @@ use plan::{Goal, Plan};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
-/// Where a performance comes from.
+/// Source of a performance.
 enum Way {
-    /// Made for what stands in the world, and made anew when something is lost.
+    /// Made for the objects in the world, and made again after something is lost.
     Planned(Box<Plan>),
     /// Told from outside.
     Told(Route),
@@ -61,13 +61,13 @@ pub struct ScriptedOperator {
     position: [Vec2; 2],
     velocity: [Vec2; 2],
     now_s: f64,
-    /// How far the plan is, s: behind the clock by what was waited.
+    /// Time reached in the plan, s: behind the clock by the waiting time.
     plan_s: f64,
 }
 
 impl ScriptedOperator {
-    /// An operator for whatever stands in `world` (a crank is turned, blocks are unstacked and restacked), whose hand starts
-    /// where `state` has it. The same seed gives the same motion to the bit.
+    /// An operator for the objects of `world` (a crank is turned, blocks are unstacked and restacked), whose hand
+    /// starts as in `state`. The same seed makes the same motion to the bit.
     pub fn new(world: &World, state: &State, skill: Skill, seed: u64) -> Self {
         Self::with_mistakes(world, state, skill, &[], seed)
     }
@@ -75,14 +75,14 @@ impl ScriptedOperator {
     /// The same, with deliberate mistakes.
     pub fn with_mistakes(world: &World, state: &State, skill: Skill, mistakes: &[Mistake], seed: u64) -> Self {
         let mut rng = StdRng::seed_from_u64(seed);
-        // Drawn apart, so that the steady operator's motion does not depend on what the others draw.
+        // Drawn apart, so that the steady operator's motion does not depend on the draws of the others.
         let habits = [0x0b5e_55ed, 0x51ee_b1e5].map(|salt: u64| StdRng::seed_from_u64(seed ^ salt));
         let start = Goal::from_tips(state.input.tip_in_world);
         let plan = Plan::for_world(world, state, start, skill, mistakes, &mut rng, habits);
         Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng)
     }
 
-    /// An operator that does what it is told, act by act; acts that the world has nothing for are left out.
+    /// An operator that does a list of acts, one by one; acts that are impossible in the world are left out.
     pub fn doing(world: &World, state: &State, acts: &[Act], skill: Skill, seed: u64) -> Self {
         let mut rng = StdRng::seed_from_u64(seed);
         let habits = [0x0b5e_55ed, 0x51ee_b1e5].map(|salt: u64| StdRng::seed_from_u64(seed ^ salt));
@@ -91,7 +91,7 @@ impl ScriptedOperator {
         Self { acts_begin_s: begin_s, ..Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng) }
     }
 
-    /// When each act begins, s, as planned at first; empty for an operator that was not told any.
+    /// Start times of the acts, s, as planned at first; empty for an operator without acts.
     pub fn acts_begin_s(&self) -> &[f64] {
         &self.acts_begin_s
     }

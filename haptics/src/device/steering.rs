@@ -1,4 +1,4 @@
-//! Where keys and sticks want the hand to be: wanted speeds become a goal, with bounded acceleration and without wind-up.
+//! Goal of the hand set by keys and sticks: wanted speeds become a goal, with bounded acceleration and without wind-up.
 
 use super::pointer::{Pointer, tips, towards};
 use crate::Vec2;
@@ -51,7 +51,8 @@ impl Steering {
         let workspace = pointer.workspace();
         self.center_m = workspace.clamp(towards(0.5 * (left + right), self.center_m, reach));
         let apart = right.x - left.x;
-        // With nothing between them the tips meet and stay; on an object the goal goes on inwards, which is the squeeze.
+        // With nothing between them the tips meet and stay; on an object the goal moves further inwards, which is the
+        // squeeze.
         let least = if apart > CLOSED_M { apart - 2.0 * reach } else { 0.0 };
         let most = (apart + 2.0 * reach).min(2.0 * workspace.radius_m).max(least);
         self.aperture_m = self.aperture_m.clamp(least, most);

@@ -1,8 +1,9 @@
 //! The touch screen: two real fingers, each touch point is one fingertip. Bring them together to pinch.
 //!
-//! The left-most of two touches is finger 1. One touch alone moves the tip that it came nearest to; the other tip stays. A finger
-//! that is lifted while the other stays down opens gently, after a moment: fingers never leave the glass at the same instant, and
-//! lifting both must not let the object go. When both are up, both tips stay where they are wanted, with the force they have.
+//! The left-most of two touches is finger 1. One touch alone moves the tip that it came nearest to; the other tip
+//! stays. A finger that is lifted while the other stays down opens gently, after a moment. Fingers never leave the
+//! glass at the same instant, and lifting both must not release the object. With both up, both tips keep their goals
+//! and forces.
 
 use super::pointer::{Pointer, towards};
 use super::{Command, Device, DeviceSpec, Sample};
@@ -14,12 +15,12 @@ use triple_buffer::{Input, Output, triple_buffer};
 const REACH_M_S: f64 = 0.4;
 /// Speed at which a lifted finger opens, m/s.
 const OPENING_M_S: f64 = 0.04;
-/// How far it opens, m: enough to come clear of a squeezed object.
+/// Opening distance, m: enough to come clear of a squeezed object.
 const OPENING_M: f64 = 0.012;
 /// Fingers that leave the glass within this time leave it together, s.
 const TOGETHER_S: f64 = 0.15;
 
-/// Where the touches want the tips to be, m in the world; `None`: that finger is lifted.
+/// Goals of the tips set by the touches, m in the world; `None` for a lifted finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Touches {
     tip_in_world: [Option<Vec2>; 2],

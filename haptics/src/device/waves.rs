@@ -1,4 +1,4 @@
-//! Wave variables: what goes over a slow line instead of position and force, so that the line itself can never give energy out.
+//! Wave variables: they replace position and force on a slow line, so that the line itself can never generate energy.
 //!
 //! u = (b v + F)/√(2b) goes to the world, w = (b v − F)/√(2b) comes back; the power is (u² − w²)/2 at either end (Anderson &
 //! Spong 1989; Niemeyer & Slotine 1991). A constant delay then stores energy and nothing else. Delay that varies, loss and drift of
@@ -7,8 +7,9 @@
 //! energy never exceeds what has arrived. A lost packet costs nothing, because the next one contains it; and as
 //! ∫u + ∫w = √(2b) x at both ends, positions agree again whenever the hand comes to rest in the air.
 //!
-//! What a delay d costs is felt all the same, as in every line: moving the hand moves a mass of b d, and pressing presses a spring
-//! of b/d in series with the world (9 N s/m over 250 ms one way: 2.2 kg and 36 N/m). Stable is not the same as crisp.
+//! The effect of a delay d is still felt, as on every line: moving the hand moves a mass of b d, and pressing presses a
+//! spring of b/d in series with the world (9 N s/m over 250 ms one way: 2.2 kg and 36 N/m). Stable is not the same as
+//! crisp.
 
 use super::pointer::towards;
 use crate::Vec2;
@@ -16,13 +17,13 @@ use crate::device::DeviceSpec;
 use crate::servo::passivity::required_damping;
 use crate::world::World;
 
-/// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
+/// Time constant with which the receiver of waves follows the arrivals, beside the jitter, s.
 pub(super) const SMOOTHING_S: f64 = 0.005;
-/// The receiver's time constant is at least so many times the longest gap between packets.
+/// Least ratio of the receiver's time constant to the longest gap between packets.
 const SMOOTH_GAPS: f64 = 4.0;
 /// A longer gap is a break, s: it is not smoothed over.
 const LONGEST_GAP_S: f64 = 0.05;
-/// How long gaps are remembered, s.
+/// Memory of gaps, s.
 const GAP_MEMORY_S: f64 = 2.0;
 /// Time constant of the velocity of a device with a resolution, s.
 const VELOCITY_SMOOTHING_S: f64 = 0.004;
@@ -38,7 +39,7 @@ const PURSE_J: f64 = 1e-4;
 pub struct Waves {
     /// Wave impedance b, N s/m.
     pub impedance_n_s_m: f64,
-    /// A damper beside the world, N s/m, that takes up what the sampled world gives out.
+    /// A damper beside the world, N s/m, that takes up the energy that the sampled world generates.
     pub damper_n_s_m: f64,
 }
 
@@ -53,9 +54,10 @@ impl Waves {
         self.impedance_n_s_m * delay_s
     }
 
-    /// For a device that touches a world at a period (s): the damper is what makes the sampled pads passive (K T/2 + |B|,
-    /// Colgate & Schenkel 1997); b is the device's own damping, which is the impedance that least of a wave is thrown back from,
-    /// and no less than the damper. The pads count as stiff as they are at the device's largest force: beyond it is held.
+    /// Wave settings for a device that touches a world at a period (s). The damper makes the sampled pads passive (K
+    /// T/2 + |B|, Colgate & Schenkel 1997). The impedance b is the device's own damping, which reflects least of a
+    /// wave, and no less than the damper. The pads count with their stiffness at the device's largest force: beyond it
+    /// the force is held.
     pub fn new(spec: &DeviceSpec, world: &World, period_s: f64) -> Self {
         let stiffness = world.pad.elastic().stiffness_at_n_m(spec.max_force_n) + world.pad.shear_stiffness_n_m;
         let damping = world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m;
@@ -86,7 +88,7 @@ impl Waves {
     }
 }
 
-/// What a packet carries for one finger: integral of the wave, √W s, and its energy, J, since the start.
+/// Content of a packet for one finger: integral of the wave, √W s, and its energy, J, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Account {
     /// Integral, √W s.
@@ -103,8 +105,8 @@ struct Sender {
 }
 
 impl Sender {
-    /// Sends a wave for `dt_s`. `income_j` is what this end took in meanwhile (from its port and from the wave that arrived): the
-    /// wave may not carry more, whatever sampling, filters and limits do.
+    /// Sends a wave for `dt_s`. `income_j` is the energy that this end took in meanwhile (from its port and from the
+    /// wave that arrived): the wave may not carry more, whatever sampling, filters and limits do.
     fn send(&mut self, wave: Vec2, income_j: f64, dt_s: f64) {
         self.account.integral += wave * dt_s;
         self.purse_j += income_j;
@@ -133,10 +135,11 @@ impl Receiver {
         self.since_s = Some(0.0);
     }
 
-    /// The wave for the next `dt_s`: follows the integral with the time constant `smoothing_s`, or a longer one that covers the
-    /// gaps between packets, within the energy that arrived. After a last packet it fades out.
+    /// The wave for the next `dt_s`, within the energy that arrived. It follows the integral with the time constant
+    /// `smoothing_s`, or a longer one that covers the gaps between packets. After a last packet it fades out.
     ///
-    /// A wave that jumps with every packet spends more energy than the even one that was sent: what is held would bleed away.
+    /// A wave that jumps with every packet spends more energy than the even one that was sent: a held force would bleed
+    /// away.
     fn draw(&mut self, smoothing_s: f64, dt_s: f64) -> Vec2 {
         self.since_s = self.since_s.map(|since_s| since_s + dt_s);
         self.gap_s -= self.gap_s * (dt_s / GAP_MEMORY_S).min(1.0);
@@ -172,7 +175,7 @@ impl WorldEnd {
         let mut velocities = [Vec2::zeros(); 2];
         for finger in 0..2 {
             let u = self.arriving[finger].draw(smoothing_s, dt_s);
-            // The force of the tips on the world is the reaction to what the operator is to feel.
+            // The force of the tips on the world is the reaction to the operator's force.
             let (velocity, w) = waves.at_world(u, -force_on_operator_n[finger]);
             // The port takes F v, the damper beside it the rest: the balance is exact here.
             self.leaving[finger].send(w, 0.5 * w.norm_squared() * dt_s, dt_s);
@@ -181,7 +184,7 @@ impl WorldEnd {
         velocities
     }
 
-    /// What the next packet to the operator carries.
+    /// Content of the next packet to the operator.
     pub fn accounts(&self) -> [Account; 2] {
         self.leaving.map(|sender| sender.account)
     }
@@ -194,7 +197,7 @@ pub struct OperatorEnd {
     leaving: [Sender; 2],
     /// The waves that are felt in this tick.
     incoming: [Vec2; 2],
-    /// Where the fingers are known to be, m; velocities come from it. `None` before the hand is known.
+    /// Last known positions of the fingers, m; velocities come from them. `None` before the hand is known.
     tracked: Option<[Vec2; 2]>,
     velocity: [Vec2; 2],
     /// Time since the fingers were last seen, s.
@@ -251,7 +254,7 @@ impl OperatorEnd {
         }
     }
 
-    /// What the next packet to the world carries.
+    /// Content of the next packet to the world.
     pub fn accounts(&self) -> [Account; 2] {
         self.leaving.map(|sender| sender.account)
     }

@@ -1,6 +1,6 @@
-//! Added constraint: a spring that acts on one side of a place (side = +1: above it, −1: below it) or on both (0): a wall, a stop, a
-//! cable: k max(q − place, 0), −k max(place − q, 0), or k (q − place). k ≥ 0; k = 0 adds nothing. Taken implicitly by the
-//! integrator: a hard wall loses some energy at each impact and never makes any.
+//! Added constraint: a spring that acts on one side of a place (side = +1: above it, −1: below it) or on both (0): a
+//! wall, a stop, a cable. Its force is k max(q − place, 0), −k max(place − q, 0), or k (q − place). k ≥ 0; k = 0 adds
+//! nothing. Taken implicitly by the integrator: a hard wall loses some energy at each impact and never makes any.
 
 use super::entry::{ANY, POSITIVE};
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
@@ -26,7 +26,7 @@ static ENTRY: Entry = Entry {
     ],
 };
 
-/// How far the coordinate is beyond the place, with its sign; zero on the free side.
+/// Signed distance of the coordinate beyond the place; zero on the free side.
 fn beyond(motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
     let past = motion.position - parameters[1];
     match parameters[2] {

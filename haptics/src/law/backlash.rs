@@ -1,7 +1,7 @@
-//! Backlash: within a gap of 2δ after each reversal nothing behind the gap is felt: the friction, drag and presliding of the list
-//! are multiplied by e = 0, then by e = 1 (play operator, Krasnosel’skii & Pokrovskii 1983). δ ≥ 0; δ = 0 is no gap. Inertia,
-//! gravity and springs stay on the handle's side, so that a gap can only take less energy, never give any.
-//! The memory is the place within the gap, −δ … δ; it starts in the middle.
+//! Backlash: nothing behind the gap is felt within a gap of 2δ after each reversal. The friction, drag and presliding
+//! of the list are multiplied by e = 0, then by e = 1 (play operator, Krasnosel’skii & Pokrovskii 1983). δ ≥ 0; δ = 0
+//! is no gap. Inertia, gravity and springs stay on the handle's side, so that a gap can only take less energy, never
+//! make any. The memory is the place within the gap, −δ … δ; it starts in the middle.
 
 use super::entry::POSITIVE;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};

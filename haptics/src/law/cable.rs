@@ -1,6 +1,7 @@
-//! Cable: k max(L − L0, 0) dL/dq, L² = R² + A² − 2 R A cos(q/R − φ): an elastic cable between a crank's handle, on a circle of radius R
-//! about the axis, and an anchor at the distance A from the axis in the direction φ. It pulls when it is longer than L0 and never pushes.
-//! The coordinate is the handle's path. The `added-constraint` of worlds with a crank that is not one of a place along the path.
+//! Cable: k max(L − L0, 0) dL/dq, L² = R² + A² − 2 R A cos(q/R − φ). It is an elastic cable between a crank's handle,
+//! on a circle of radius R about the axis, and an anchor at the distance A from the axis in the direction φ. It pulls
+//! when it is longer than L0 and never pushes. The coordinate is the handle's path. The `added-constraint` of worlds
+//! with a crank that is not one of a place along the path.
 
 use super::entry::{ANY, POSITIVE};
 use super::{AddedConstraint, Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
@@ -34,7 +35,7 @@ fn length_m(motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> [f64; 3] {
         return [0.0; 3];
     }
     let (sin, cos) = (motion.position / radius - direction).sin_cos();
-    // Where handle and anchor meet there is no direction to pull in.
+    // No direction to pull in exists at the point where handle and anchor meet.
     let length = (radius * radius + distance * distance - 2.0 * radius * distance * cos).max(0.0).sqrt().max(1e-12);
     let slope = distance * sin / length;
     [length, slope, (distance * cos / radius - slope * slope) / length]

@@ -1,4 +1,4 @@
-//! One coordinate under a list of effects: their sum, what a given motion needs, and the integrator.
+//! One coordinate under a list of effects: their sum, the force for a given motion, and the integrator.
 
 use super::{Effect, Memories, Motion, Role, tame};
 
@@ -26,13 +26,13 @@ pub fn resistance(effects: &[Effect], motion: &Motion) -> Resistance {
     sum(effects, motion, None, true)
 }
 
-/// Sums `effects` with what they remember.
+/// Sums `effects` with their memories.
 pub fn resistance_with(effects: &[Effect], motion: &Motion, memories: &Memories) -> Resistance {
     sum(effects, motion, Some(memories), true)
 }
 
-/// Steepest slope over the position of what the integrator does not take implicitly, N/m or N m/rad, over positions from −`reach`
-/// to `reach`: the step must be able to follow it.
+/// Steepest slope over the position of the explicitly integrated laws, N/m or N m/rad, over positions from −`reach` to
+/// `reach`: the step must be able to follow it.
 pub fn explicit_stiffness(effects: &[Effect], reach: f64) -> f64 {
     const PLACES: i32 = 8;
     let step = 1e-4 * reach;
@@ -60,7 +60,7 @@ pub fn inertia(effects: &[Effect]) -> f64 {
 #[inline]
 fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth: bool) -> Resistance {
     let mut total = Resistance::default();
-    // Terms behind a gap: what resists motion, apart from what acts anyway.
+    // Terms behind a gap: resistance to motion, apart from forces that act anyway.
     let (mut viscous, mut damping, mut gate) = (0.0, 0.0, 1.0_f64);
     for (index, effect) in effects.iter().enumerate().filter(|(_, e)| e.enabled) {
         match effect.role() {
@@ -69,7 +69,7 @@ fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth:
             Role::Viscous if smooth => {
                 let force = effect.force(motion);
                 viscous += force;
-                // The slope from rest to here: exact for c v, and the safe one for what rises faster.
+                // The slope from rest to here: exact for c v, and the safe one for a law that rises faster.
                 damping += if motion.velocity == 0.0 { 0.0 } else { (force / motion.velocity).max(0.0) };
             }
             Role::Gravity | Role::Smooth | Role::Viscous => {}
@@ -77,7 +77,7 @@ fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth:
                 total.smooth += effect.force(motion);
                 total.stiffness += tame(effect.law().stiffness(motion, &effect.values, &super::memory::BLANK)).max(0.0);
             }
-            // The term is along the direction of motion; its level is what opposes it.
+            // The term is along the direction of motion; its level opposes it.
             Role::Dry => {
                 total.dry += match memories {
                     Some(memories) => effect.force_with(motion, memories.get(index)),
@@ -105,13 +105,13 @@ fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth:
     total
 }
 
-/// Total drive force for a motion that is given, N or N m: what the replay predicts. Laws with memory count as developed;
-/// see [`drive_force_with`].
+/// Total drive force for a given motion, N or N m: the prediction of a replay. Laws with memory count as developed; see
+/// [`drive_force_with`].
 pub fn drive_force(effects: &[Effect], motion: &Motion) -> f64 {
     effects.iter().map(|effect| effect.force(motion)).sum()
 }
 
-/// Total drive force for a motion that is given, N or N m, with what the laws remember. Call [`advance`] between samples.
+/// Total drive force for a given motion, N or N m, with the laws' memories. Call [`advance`] between samples.
 pub fn drive_force_with(effects: &[Effect], motion: &Motion, memories: &Memories) -> f64 {
     let (mut free, mut behind, mut gate) = (0.0, 0.0, 1.0_f64);
     for (index, effect) in effects.iter().enumerate().filter(|(_, e)| e.enabled) {
@@ -125,7 +125,7 @@ pub fn drive_force_with(effects: &[Effect], motion: &Motion, memories: &Memories
     free + gate * behind
 }
 
-/// Moves what the laws remember over `dt_s` of a motion at `motion.velocity`.
+/// Moves the laws' memories over `dt_s` of a motion at `motion.velocity`.
 pub fn advance(effects: &[Effect], motion: &Motion, memories: &mut Memories, dt_s: f64) {
     for (index, effect) in effects.iter().enumerate().filter(|(_, e)| e.enabled) {
         if let (true, Some(memory)) = (effect.remembers(), memories.get_mut(index)) {
@@ -134,8 +134,8 @@ pub fn advance(effects: &[Effect], motion: &Motion, memories: &mut Memories, dt_
     }
 }
 
-/// Total drive force along a motion that is given sample by sample, N or N m, with what the laws remember of the samples
-/// before: what a replay predicts. The first sample finds every law at rest.
+/// Total drive force along a motion that is given sample by sample, N or N m, with the laws' memories of the samples
+/// before: the prediction of a replay. The first sample finds every law at rest.
 pub fn drive_forces(effects: &[Effect], motions: &[Motion]) -> Vec<f64> {
     let mut memories = Memories::default();
     let mut before: Option<&Motion> = None;

@@ -1,4 +1,4 @@
-//! A law with its values: what a world file stores and the servo runs.
+//! A law with its values: a world file stores it and the servo runs it.
 
 use super::{Enters, Law, MAX_PARAMETERS, Memory, Motion, Role, law, tame};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ pub struct Effect {
     law: &'static dyn Law,
     /// The law's role, kept here because the servo asks for it several times a tick.
     role: Role,
-    /// Whether the law has a memory.
+    /// True if the law has a memory.
     remembers: bool,
     /// Values, in the order of [`Law::parameters`]; unused places are zero.
     pub values: [f64; MAX_PARAMETERS],
@@ -38,17 +38,17 @@ impl Effect {
         self.role
     }
 
-    /// Whether the law has a memory that must be moved along.
+    /// True if the law has a memory that must be moved along.
     pub fn remembers(&self) -> bool {
         self.remembers
     }
 
-    /// Force of this effect, N or N m; zero when switched off. A law with memory gives its developed force.
+    /// Force of this effect, N or N m; zero when switched off. A law with memory returns its developed force.
     pub fn force(&self, motion: &Motion) -> f64 {
         if self.enabled { tame(self.law.force(motion, &self.values)) } else { 0.0 }
     }
 
-    /// Force of this effect with what it remembers, N or N m; zero when switched off.
+    /// Force of this effect with its memory, N or N m; zero when switched off.
     pub fn force_with(&self, motion: &Motion, memory: &Memory) -> f64 {
         if self.enabled { tame(self.law.force_with(motion, &self.values, memory)) } else { 0.0 }
     }

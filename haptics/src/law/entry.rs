@@ -1,4 +1,4 @@
-//! What stands in the catalogue about a law or a fault: for files, the app and the pages `docs/causes/<id>.md`
+//! Entry of the catalogue about a law or a fault: for files, the app and the pages `docs/causes/<id>.md`
 //! ([`super::page`]).
 
 use schemars::JsonSchema;
@@ -14,7 +14,7 @@ pub enum Kind {
     Instrument,
 }
 
-/// Whether the coordinate is a length or an angle: decides the units of a law's parameters.
+/// Kind of the coordinate, a length or an angle: decides the units of a law's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinate {
@@ -24,7 +24,7 @@ pub enum Coordinate {
     Angular,
 }
 
-/// How a parameter enters its law: what a fit may do with it.
+/// Role of a parameter in its law, linear or not: limits the methods of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enters {
     /// The force is linear and homogeneous in all such parameters together.
@@ -98,13 +98,13 @@ pub struct Entry {
     pub title: &'static str,
     /// The added term.
     pub equation: &'static str,
-    /// What it is.
+    /// Description of the effect.
     pub what: &'static str,
-    /// How it shows: "As …" or "In …".
+    /// Signs of the effect in a recording: "As …" or "In …".
     pub shows: &'static str,
-    /// What mimics it, and when.
+    /// Effects that mimic it, and under which conditions.
     pub mimics: &'static str,
-    /// Which motion reveals it, as one sentence.
+    /// Motion that reveals the effect, as one sentence.
     pub reveals: &'static str,
     /// The parameters, in the order of the regressor's columns.
     pub parameters: &'static [ParameterSpec],

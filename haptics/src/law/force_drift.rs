@@ -1,5 +1,5 @@
-//! Force drift: F + r t, or F + r τ (1 − exp(−t/τ)) where the sensor settles: a slow error of the force channel along the coordinate.
-//! r = 0 is none, τ = 0 goes on for ever.
+//! Force drift: F + r t, or F + r τ (1 − exp(−t/τ)) if the sensor settles: a slow error of the force channel along the
+//! coordinate. r = 0 is none, τ = 0 never settles.
 
 use super::entry::{ANY, POSITIVE};
 use super::mass_change::settling;

@@ -1,6 +1,6 @@
-//! Changing friction: Fc(p) sgn(v), Fc(p) = from + (to − from) p, p = 1 − exp(−(t − t0)/tau) with time (warm-up), or, when `length` is
-//! positive, p = 1 − exp(−travel/length) with the way gone (running in, wear). from ≥ 0, to ≥ 0. tau = 0 is a step at t0;
-//! from = to is Coulomb friction. The memory is the way gone. It adds to the friction beside it.
+//! Changing friction: Fc(p) sgn(v), Fc(p) = from + (to − from) p. With time (warm-up) p = 1 − exp(−(t − t0)/tau); with
+//! a positive `length`, p = 1 − exp(−travel/length) with the travel (running in, wear). from ≥ 0, to ≥ 0. tau = 0 is a
+//! step at t0; from = to is Coulomb friction. The memory is the travel. It adds to the friction beside it.
 
 use super::entry::{ANY, POSITIVE};
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};

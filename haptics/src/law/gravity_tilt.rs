@@ -1,5 +1,5 @@
-//! Tilt of the plane by δ: the vertical is not where it was thought: W (cos(φ − δ) − cos φ), with cos φ = up · t of the path
-//! and W the weight that is carried. φ = q/R on a circle (R: path of one radian; 1 when the coordinate is the angle from the
+//! Tilt of the plane by δ, an error of the assumed vertical: W (cos(φ − δ) − cos φ), with cos φ = up · t of the path
+//! and W the carried weight. φ = q/R on a circle (R: path of one radian; 1 if the coordinate is the angle from the
 //! horizontal); R = 0 is a straight path. δ counter-clockwise; δ = 0 adds nothing.
 
 use super::entry::POSITIVE;

@@ -1,7 +1,8 @@
 //! Presliding friction: F = Fc z, Fc dz/ds = σ (1 − z sgn(v)/g(v)) (Dahl 1968). With Fs > Fc and vs, g(v) = 1 + (Fs/Fc − 1)
 //! exp(−(v/vs)²): LuGre with σ1 = 0 (Canudas de Wit et al. 1995; σ2 is the viscous law). With a shape β below 1 the way back
 //! is stiffer by (2β − 1)|z|, not |z|: Bouc–Wen with n = 1 (Wen 1976); β = ½ unloads at σ, β = 1 (or 0, unset) is Dahl.
-//! Fc ≥ 0, σ ≥ 0, ½ ≤ β ≤ 1: never gives energy. σ → ∞ is Coulomb friction. The memory is z, solved exactly over each step.
+//! Fc ≥ 0, σ ≥ 0, ½ ≤ β ≤ 1: never generates energy. σ → ∞ is Coulomb friction. The memory is z, solved exactly over
+//! each step.
 
 use super::entry::POSITIVE;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};

@@ -1,5 +1,5 @@
-//! Faults of the measurement that are no force along a coordinate: their pages of the catalogue. What corrects a recording by
-//! them is the diagnosis's; `force-bias` and `force-drift` are laws of their own.
+//! Faults of the measurement that are no force along a coordinate: their pages of the catalogue. Correcting a recording
+//! by them is the diagnosis's task; `force-bias` and `force-drift` are laws of their own.
 
 use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
 

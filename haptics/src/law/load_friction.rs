@@ -1,7 +1,7 @@
 //! Load friction: mu |Fn| sgn(v): friction in proportion to the normal force (thesis, eq. 5.2). mu ≥ 0.
-//! Fn is what is measured: the pull of the fingers across the path (eq. 5.2 and `docs/causes/README.md`), as it stands in a log. It is
-//! not the force in the bearing: the weight across the path and the centrifugal force are left to the other laws of friction,
-//! and a crank that was let go feels none of this one.
+//! Fn is a measured quantity: the pull of the fingers across the path (eq. 5.2 and `docs/causes/README.md`), as it
+//! stands in a log. It is not the force in the bearing: the weight across the path and the centrifugal force are left
+//! to the other laws of friction, and a released crank feels none of this one.
 //! The coordinate is a length; for an angle the caller passes the normal force times its arm.
 
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};

@@ -1,6 +1,6 @@
-//! Changing friction under a load: mu(p) |Fn| sgn(v), with the course p of [`FrictionChange`]: friction in proportion to the normal force whose
-//! coefficient changes with time or travel. from ≥ 0, to ≥ 0; it adds to the friction beside it. The `friction-change` of worlds whose friction
-//! goes with the load.
+//! Changing friction under a load: mu(p) |Fn| sgn(v), with the course p of [`FrictionChange`]. It is friction in
+//! proportion to the normal force whose coefficient changes with time or travel. from ≥ 0, to ≥ 0; it adds to the
+//! friction beside it. The `friction-change` of worlds with load friction.
 
 use super::entry::{ANY, POSITIVE};
 use super::{Entry, FrictionChange, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};

@@ -1,6 +1,6 @@
-//! Presliding friction under a load: F = mu |Fn| z, way dz/ds = 1 − z sgn(v) (Dahl 1968), with the shapes of [`Hysteresis`]: friction in
-//! proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is what it bends over. The memory is z. The `hysteresis` of worlds
-//! whose friction goes with the load.
+//! Presliding friction under a load: F = mu |Fn| z, way dz/ds = 1 − z sgn(v) (Dahl 1968), with the shapes of
+//! [`Hysteresis`]. It is friction in proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is the
+//! presliding distance. The memory is z. The `hysteresis` of worlds with load friction.
 
 use super::entry::POSITIVE;
 use super::{Entry, Hysteresis, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn one_effect() {
-        // Bent by one way the friction is 1 − 1/e of what slides, and goes with the load at once.
+        // Bent by one way the friction is 1 − 1/e of that of sliding, and follows the load at once.
         let values = [0.2, 1e-3, 0.0, 0.0, 0.0];
         let at = |load_n: f64| Motion { velocity: 1e-3, direction: 1.0, normal_force_n: load_n, ..Motion::default() };
         let mut memory = [0.0; 2];

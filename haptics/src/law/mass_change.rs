@@ -44,7 +44,7 @@ impl Law for MassChange {
     }
 }
 
-/// What has come after a time at a rate of one that dies away with `tau_s` (0: never), s.
+/// Time integral of a rate that decays with `tau_s` (0: never), s, at a time after its start.
 pub(super) fn settling(since_s: f64, tau_s: f64) -> f64 {
     if tau_s > 0.0 { -tau_s * (-since_s / tau_s).exp_m1() } else { since_s }
 }

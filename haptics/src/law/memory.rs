@@ -1,9 +1,9 @@
-//! What laws remember from tick to tick: fixed in size, owned by the integrator, never allocated.
+//! Memories of laws from tick to tick: fixed in size, owned by the integrator, never allocated.
 
 /// Most effects on one coordinate; the memory of the state is sized for them.
 pub const MAX_EFFECTS: usize = 16;
 
-/// The memory of one effect. What the places mean is the law's own affair; zero is the rest state of every law.
+/// Memory of one effect. The meaning of its places is the law's own affair; zero is the rest state of every law.
 pub type Memory = [f64; 2];
 
 /// The memories of a list of effects, by index.

@@ -115,7 +115,7 @@ pub struct Motion {
 pub enum Role {
     /// The inertia of the coordinate itself: m is read, not the force.
     Inertia,
-    /// Gravity on what is carried: acts across the motion, too, and is not behind a gap.
+    /// Gravity on a carried mass: acts across the motion, too, and is not behind a gap.
     Gravity,
     /// A force that acts whether or not the coordinate moves.
     Smooth,
@@ -178,13 +178,13 @@ pub trait Law: Sync {
     /// Regressor row: `columns[i]` = d(force)/d(parameter i), of the linear parameters, with nonlinear and fixed ones unset.
     /// A law that means nothing without those leaves its columns as they are: [`Effect::columns`] gives them at its values.
     fn regressor(&self, _motion: &Motion, _columns: &mut [f64; MAX_PARAMETERS]) {}
-    /// The law's force, N or N m. A law with memory gives its developed force: what it tends to in a long motion.
+    /// The law's force, N or N m. A law with memory returns its developed force, the limit in a long motion.
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
         let mut columns = [0.0; MAX_PARAMETERS];
         self.regressor(motion, &mut columns);
         columns.iter().zip(parameters).map(|(c, p)| c * p).sum()
     }
-    /// The law's force with what it remembers, N or N m.
+    /// The law's force with its memory, N or N m.
     fn force_with(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS], _memory: &Memory) -> f64 {
         self.force(motion, parameters)
     }
@@ -192,7 +192,7 @@ pub trait Law: Sync {
     fn stiffness(&self, _motion: &Motion, _parameters: &[f64; MAX_PARAMETERS], _memory: &Memory) -> f64 {
         0.0
     }
-    /// Of a gap: 1 where what is behind it is felt, 0 within it.
+    /// Engagement of a gap: 1 where the parts behind it are felt, 0 within it.
     fn engaged(&self, _motion: &Motion, _parameters: &[f64; MAX_PARAMETERS], _memory: &Memory) -> f64 {
         1.0
     }
@@ -238,8 +238,8 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
     CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
 }
 
-/// The pages of everything that a diagnosis can name; what only models are made of (the weight, the push that goes by the name of
-/// `local-resistance`, the cable by that of `added-constraint`, and what goes with a load by that of what does not) is left out.
+/// The pages of everything that a diagnosis can name. Laws that only models are made of are left out: the weight, the
+/// push under the name of `local-resistance`, the cable under that of `added-constraint`, and the variants under load.
 pub fn causes() -> impl Iterator<Item = &'static Entry> {
     let models: [&dyn Law; 5] = [&Weight, &LocalPush, &Cable, &LoadHysteresis, &LoadFrictionChange];
     entries().filter(move |entry| models.iter().all(|law| law.id() != entry.id))

@@ -1,10 +1,10 @@
-//! The page of a cause for `docs/causes/`, made of what the catalogue says about it. `cargo run -p haptics --example causes` writes
-//! all of them; `haptics/tests/causes.rs` fails when the written ones say something else.
+//! The page of a cause for `docs/causes/`, made from the catalogue. `cargo run -p haptics --example causes` writes all
+//! of them; `haptics/tests/causes.rs` fails if the written ones differ.
 
 use super::{Enters, Entry, Kind, ParameterSpec};
 use std::fmt::Write as _;
 
-/// First line of every page, so that nobody mends the copy.
+/// First line of every page, so that the copy is not edited by hand.
 const MADE: &str =
     "<!-- Made by `cargo run -p haptics --example causes` from the laws in haptics/src/law. Change it there. -->";
 
@@ -72,7 +72,7 @@ fn enters(enters: Enters) -> &'static str {
     }
 }
 
-/// The page of what has no name (`other:<expression>`).
+/// The page of a term without a name (`other:<expression>`).
 pub fn nameless() -> String {
     format!(
         "{MADE}\n\n# Something that no law explains\n\n`other:<expression>` · unnamed\n\n{}\n\n[All causes](README.md)\n",

@@ -1,7 +1,6 @@
-//! Stribeck friction: (Fs − Fc) exp(−(|v|/vs)^α) sgn(v) (Stribeck 1902, in the form of Bo & Pavelescu 1982). dFs = Fs − Fc ≥ 0 is
-//! what the static level is above the Coulomb level of the effect beside it. α = 2 (or 0, unset) is the Gaussian, α = 1 Tustin's
-//! exponential (1947); measured ones lie between 0.5 and 2 (Armstrong-Hélouvry et al. 1994). vs = 0: friction of rest alone.
-//! Holds at rest.
+//! Stribeck friction: (Fs − Fc) exp(−(|v|/vs)^α) sgn(v) (Stribeck 1902, in the form of Bo & Pavelescu 1982). dFs = Fs −
+//! Fc ≥ 0 is the excess of the static level over the Coulomb level of the effect beside it. exponential (1947);
+//! measured ones lie between 0.5 and 2 (Armstrong-Hélouvry et al. 1994). vs = 0: friction of rest alone. Holds at rest.
 
 use super::entry::POSITIVE;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};

@@ -1,4 +1,4 @@
-//! What must hold for every law.
+//! Properties that must hold for every law.
 
 use super::*;
 use proptest::prelude::*;
@@ -131,7 +131,7 @@ fn stribeck_holds_at_rest_without_creep_and_breaks_away() {
         motion
     };
     assert_eq!(run(0.7999).position, 0.0);
-    // Away, it meets Fc alone: v = (0.81 − 0.3)/0.1 t, less what the start costs.
+    // Away, it meets Fc alone: v = (0.81 − 0.3)/0.1 t, less the loss of the start.
     assert!(run(0.81).velocity > 3.0);
 }
 
@@ -147,7 +147,7 @@ fn energy_never_rises_without_work_in_any_dissipative_list() {
         let mut effects = vec![Effect::new(&Inertia, &[0.05])];
         effects.extend_from_slice(list);
         let (mut motion, mut memories) = (Motion { velocity: 0.5, ..Motion::default() }, Memories::default());
-        // Presliding may give back what it stored: at most ½ Fs²/σ = 1.1e-5 J, 0.02 m/s here.
+        // Presliding may return its stored energy: at most ½ Fs²/σ = 1.1e-5 J, 0.02 m/s here.
         let mut fastest = 0.5_f64;
         for tick in 0..5000 {
             motion.time_s = f64::from(tick) * 1e-3;

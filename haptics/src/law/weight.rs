@@ -1,5 +1,5 @@
-//! Weight of the handle: mg (up · t): the weight of what is carried along the coordinate (thesis, eq. 5.2, the (mg)t term).
-//! mg ≥ 0. Zero along a horizontal path.
+//! Weight of the handle: mg (up · t): the weight carried along the coordinate (thesis, eq. 5.2, the (mg)t term). mg
+//! ≥ 0. Zero along a horizontal path.
 
 use super::entry::POSITIVE;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};

@@ -4,7 +4,7 @@ use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::ops::{Index, Range};
 
-/// From so many distinct texts on it is asked whether texts repeat at all.
+/// Number of distinct texts from which it is checked whether texts repeat at all.
 const MANY: usize = 1 << 15;
 
 /// A column of text: labels, names of trials or frames. Rows repeat each other, so a row takes four bytes and a text is kept once. Texts
@@ -13,9 +13,9 @@ const MANY: usize = 1 << 15;
 pub struct Labels {
     /// Number of the text of every row.
     codes: Vec<u32>,
-    /// All texts, one after the other …
+    /// All texts, one after the other.
     texts: String,
-    /// … and where each ends.
+    /// End of each text in `texts`, bytes.
     ends: Vec<u32>,
     /// Places by hash: the number of a text plus one, or 0. A power of two of them, or none.
     places: Vec<u32>,

@@ -18,8 +18,8 @@ impl Deadlines {
         Self { period, next: Instant::now() + period }
     }
 
-    /// Waits for the next deadline. Returns how late it woke, s, and whether a deadline was missed by more than a period; then
-    /// the schedule is anchored anew at the present: no burst of ticks follows.
+    /// Waits for the next deadline. Returns the lateness of waking, s, and whether a deadline was missed by more than a
+    /// period. The schedule then starts again at the present: no burst of ticks follows.
     pub fn wait(&mut self) -> (f64, bool) {
         let now = Instant::now();
         if let Some(left) = self.next.checked_duration_since(now) {

@@ -1,4 +1,4 @@
-//! Virtual coupling: what stands between the device and a world that is stiffer than the device can render.
+//! Virtual coupling between the device and a world that is stiffer than the device can render.
 //!
 //! The operator's device hangs on a spring and damper whose other end is the fingertip in the world, the *proxy* (Colgate et
 //! al. 1995; Adams & Hannaford 1999; the god object of Zilles & Salisbury 1995 is its limit for a rigid world). Spring and
@@ -6,8 +6,8 @@
 //! extra delay, so that the sampled coupling alone is passive on this device, whatever the world does at the other end:
 //! K (T/2 + `t_d`) + B ≤ b and K/2 + B/T ≤ `f_c`/Δ. The operator then feels the pad and the coupling in series.
 //!
-//! The proxy has no mass: every tick it goes to where coupling and contact balance, with the stiffness and damping of its
-//! present contacts taken implicitly. So it neither rings nor drags, and it is stable for any pad.
+//! The proxy has no mass: every tick it goes to the balance of coupling and contact, with the stiffness and damping of
+//! its present contacts taken implicitly. It therefore neither rings nor drags, and it is stable for any pad.
 
 use super::passivity::{friction_per_step_n_m, passive_damping, passive_stiffness};
 use crate::Vec2;
@@ -15,14 +15,14 @@ use crate::device::{DeviceSpec, Sample};
 use crate::world::{Contact, Input, State, Surface, World};
 use nalgebra::Matrix2;
 
-/// Share of what is passive that the coupling uses.
+/// Share of the passive range that the coupling uses.
 pub const MARGIN: f64 = 0.9;
-/// Share of what is passive as a damper that the coupling's own damper uses up.
+/// Share of the passive damping that the coupling's own damper uses up.
 pub const DAMPER_SHARE: f64 = 0.1;
 /// A device that states neither damping nor friction renders nothing that is provably passive. It gets this spring, N/m, or a
 /// softer one where there is delay: one that [`HAND_DAMPING_N_S_M`] makes passive.
 pub const SOFTEST_N_M: f64 = 40.0;
-/// Damping that any hand gives which holds a device, N s/m (a tenth of what a relaxed finger has).
+/// Damping of any hand that holds a device, N s/m (a tenth of that of a relaxed finger).
 pub const HAND_DAMPING_N_S_M: f64 = 0.5;
 
 /// The spring and damper between device and proxy.
@@ -61,7 +61,7 @@ impl Coupling {
         (!direct).then(|| Self::passive(spec, period_s, delay_s))
     }
 
-    /// Stiffness of the coupling and a stiffness in series, N/m: what the operator feels of an object.
+    /// Stiffness of the coupling and a stiffness in series, N/m: the operator's feel of an object.
     pub fn felt_n_m(&self, stiffness_n_m: f64) -> f64 {
         self.stiffness_n_m * stiffness_n_m / (self.stiffness_n_m + stiffness_n_m)
     }
@@ -106,13 +106,14 @@ impl Proxy {
         self.tips
     }
 
-    /// The balance of coupling and contact, both linear in the displacement Δp of this tick:
-    /// K (x − p − Δp) + B (v − Δp/T) + F − `K_c` (Δp − `v_o` T) − `B_c` (Δp/T − `v_p`) = 0, where F, `K_c`, `B_c` are the
-    /// contacts' force, stiffness and damping after the tick before, and `v_o` is the speed of what is touched.
+    /// The balance of coupling and contact, both linear in the displacement Δp of this tick: K (x − p − Δp) + B (v −
+    /// Δp/T) + F − `K_c` (Δp − `v_o` T) − `B_c` (Δp/T − `v_p`) = 0. F, `K_c`, `B_c` are the contacts' force, stiffness
+    /// and damping after the tick before, and `v_o` is the speed of the touched object.
     fn advance(&self, finger: usize, device: &Sample, world: &World, state: &State, dt_s: f64) -> Vec2 {
         let sliding_on = self.balance(finger, device, world, state, dt_s, false);
-        // A contact that slides has no stiffness along the surface as long as it slides on. Where the tip would turn round it
-        // sticks, with the pad's shear stiffness: without that the friction would throw a softly coupled tip to and fro.
+        // A contact that slides has no stiffness along the surface as long as it slides on. At a reversal of the tip it
+        // sticks, with the pad's shear stiffness: otherwise the friction would throw a softly coupled tip back and
+        // forth.
         let turns = state.contacts.iter().any(|c| {
             c.on == Surface::Finger(finger as u8)
                 && c.sliding
@@ -154,7 +155,7 @@ impl Proxy {
     }
 }
 
-/// How a contact's force changes with the tip's place and speed, N/m and N s/m.
+/// Stiffness and damping of a contact, N/m and N s/m: change of its force with the tip's position and velocity.
 fn stiffness_of(contact: &Contact, world: &World, sticks: bool) -> (Matrix2<f64>, Matrix2<f64>) {
     let along = contact.normal * contact.normal.transpose();
     let (mut spring, mut damper) = (Matrix2::zeros(), Matrix2::zeros());
@@ -171,7 +172,7 @@ fn stiffness_of(contact: &Contact, world: &World, sticks: bool) -> (Matrix2<f64>
     (spring, damper)
 }
 
-/// Velocity of what a finger touches, at the contact, m/s.
+/// Velocity of the surface that a finger touches, at the contact, m/s.
 fn surface_velocity(state: &State, contact: &Contact) -> Vec2 {
     match contact.by {
         Surface::Block(index) => state.bodies.get(usize::from(index)).map_or_else(Vec2::zeros, |body| {

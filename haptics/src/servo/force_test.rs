@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// No test pushes harder, N a finger.
 pub const MOST_N: f64 = 2.0;
-/// How fast a test force comes up, N/s.
+/// Rate at which a test force rises, N/s.
 pub const UP_N_S: f64 = 0.75;
-/// How fast it goes when the test ends, N/s.
+/// Rate at which it falls at the end of the test, N/s.
 const DOWN_N_S: f64 = 6.0;
 
-/// What a test does at a tick.
+/// Effect of a test on the force at a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// No test: the world's force counts.
@@ -56,7 +56,7 @@ impl ForceTest {
     }
 }
 
-/// What the window asks for, read by the servo at every tick. Torn reads are harmless: the ramp smooths them.
+/// Force that the window asks for, read by the servo at every tick. Torn reads are harmless: the ramp smooths them.
 #[derive(Debug, Default)]
 pub(super) struct Request {
     on: AtomicBool,
@@ -73,7 +73,7 @@ impl Request {
         self.on.store(wanted_n.is_some(), Ordering::Release);
     }
 
-    /// The servo: what is asked for.
+    /// The servo's side: the force that the window asks for.
     pub fn get(&self) -> Option<[Vec2; 2]> {
         if !self.on.load(Ordering::Acquire) {
             return None;

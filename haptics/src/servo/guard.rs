@@ -1,9 +1,9 @@
 //! A second thread that watches the servo: when a tick does not come back, it makes the device safe.
 //!
-//! A driver that blocks inside `exchange`, or a machine that takes the processor away, leaves the device with the last force.
-//! The servo cannot help itself then. The guard can, through [`crate::device::Device::guard`]: within half of the watchdog's
-//! time it orders zero force by a way of its own, as long as the servo stands still. Devices that run a thread of their own
-//! (the Haply boards) guard themselves and give none.
+//! A driver that blocks inside `exchange`, or a machine that takes the processor away, leaves the device with the last
+//! force. The servo cannot help itself then. The guard can, through [`crate::device::Device::guard`]: within half of
+//! the watchdog's time it orders zero force by a way of its own, as long as the servo stands still. Devices that run a
+//! thread of their own (the Haply boards) guard themselves and provide none.
 
 use super::realtime::raise_guard;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,7 +22,7 @@ pub(super) struct Beat {
     ticks: AtomicU64,
     fired: AtomicBool,
     finished: AtomicBool,
-    /// How long it has stood still, ns; zero while it runs.
+    /// Time for which the servo has stood still, ns; zero while it runs.
     still_ns: AtomicU64,
     guarded: AtomicU64,
 }
@@ -39,12 +39,12 @@ impl Beat {
         self.finished.store(true, Ordering::Release);
     }
 
-    /// How long the servo has stood still, s.
+    /// Time for which the servo has stood still, s.
     pub fn standing_still_s(&self) -> f64 {
         self.still_ns.load(Ordering::Relaxed) as f64 * 1e-9
     }
 
-    /// How often the guard acted.
+    /// Number of times that the guard acted.
     pub fn guarded(&self) -> u64 {
         self.guarded.load(Ordering::Relaxed)
     }

@@ -11,26 +11,26 @@ use crate::Vec2;
 use crate::device::{Command, Device};
 use crate::world::{Input, State, Stored, World, step};
 
-/// What the recorder keeps of every tick.
+/// Record of one tick for the recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickRecord {
     /// Simulated time, s.
     pub time_s: f64,
-    /// Where the fingertips are in the world. On a virtual coupling they are the proxies.
+    /// Positions of the fingertips in the world. On a virtual coupling they are the proxies.
     pub input: Input,
-    /// Where the device has the fingers, m in the world; the same as the tips without a virtual coupling.
+    /// Positions of the fingers at the device, m in the world; the same as the tips without a virtual coupling.
     pub device_in_world: [Vec2; 2],
     /// Force of the tips on the environment, N.
     pub tip_force_n: [Vec2; 2],
     /// Force sent to the device, N on the operator's fingers.
     pub sent_force_n: [Vec2; 2],
-    /// What the safety stage did.
+    /// Actions of the safety stage.
     pub flags: SafetyFlags,
     /// Energy that the virtual environment has taken from the hand since the start, J; below zero it has given some out.
     pub energy_j: f64,
     /// Largest speed at which something struck something during this tick, m/s; zero without an impact.
     pub impact_m_s: f64,
-    /// Where that was, m in the world.
+    /// Position of that impact, m in the world.
     pub impact_in_world: Vec2,
     /// The true contact state (generators write it as the label).
     pub label: &'static str,
@@ -41,7 +41,7 @@ pub struct TickRecord {
 pub struct Snapshot {
     /// The world's state.
     pub state: State,
-    /// Which world it belongs to: counts the swaps.
+    /// Generation of the world it belongs to: counts the swaps.
     pub generation: u64,
     /// The last tick.
     pub tick: TickRecord,
@@ -49,7 +49,7 @@ pub struct Snapshot {
     pub timing: Timing,
     /// The virtual coupling that the device needs in this world at this rate; `None`: it renders the world directly.
     pub coupling: Option<Coupling>,
-    /// Delay that the device states of itself, s ([`Device::delay_s`]): what can be rendered passively counts with it.
+    /// Delay that the device states of itself, s ([`Device::delay_s`]): the passive rendering limits count with it.
     pub delay_s: f64,
     /// Stiffness of a line with waves between device and world, N/m ([`Device::line_stiffness_n_m`]); `None` without one.
     pub line_n_m: Option<f64>,
@@ -125,7 +125,7 @@ impl Loop {
         }
     }
 
-    /// Lets the passivity controller add up to so much damping (N s/m) while energy has been given out; off by default.
+    /// Lets the passivity controller add up to this damping (N s/m) while energy has been generated; off by default.
     #[must_use]
     pub fn with_passivity_control(mut self, most_n_s_m: Option<f64>) -> Self {
         self.passivity_control_n_s_m = most_n_s_m;
@@ -155,7 +155,7 @@ impl Loop {
             None => Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity },
         };
         step(world, state, &input, dt_s);
-        // The operator feels the reaction to what the tips exert, or the coupling that they hang on.
+        // The operator feels the reaction to the tips' force, or the coupling that they hang on.
         let mut wanted = match &self.proxy {
             Some(proxy) => proxy.force_n(&sample),
             None => state.tip_force_n.map(|f| -f),
@@ -232,8 +232,9 @@ impl Loop {
         });
     }
 
-    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and so does
-    /// everything else in a world that goes on ([`Swap::going_on`]); the old force fades and a new one that presses much harder comes up with the start ramp.
+    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and
+    /// so does everything else in a world that continues the old one ([`Swap::going_on`]). The old force fades, and a
+    /// new one that presses much harder rises with the start ramp.
     pub fn swap(&mut self, mut next: Box<Swap>) -> Box<Swap> {
         next.follow(&self.current);
         self.generation += 1;
@@ -266,7 +267,7 @@ impl Loop {
         self.held = held;
     }
 
-    /// Whether the world is held still.
+    /// True while the world is held still.
     pub fn is_held(&self) -> bool {
         self.held
     }
@@ -292,7 +293,7 @@ impl Loop {
         self.sent_force_n = [Vec2::zeros(); 2];
     }
 
-    /// World and state, for what keeps a model true.
+    /// World and state, for the corrections of a model.
     pub(crate) fn model_mut(&mut self) -> (&mut World, &mut State) {
         let Swap { world, state, .. } = &mut *self.current;
         (world, state)
@@ -323,7 +324,7 @@ impl Loop {
         self.safety.sample_age_s()
     }
 
-    /// Whether both fingers were ever seen.
+    /// True after both fingers have been seen.
     pub fn has_met_both(&self) -> bool {
         self.safety.has_met_both()
     }

@@ -5,8 +5,9 @@
 //! * [`rate`] chooses how often, [`timing`] measures, [`safety`] limits, [`recorder`] keeps every tick.
 //! * [`force_test`] tries a device; [`coupling`] keeps a force device passive in worlds that are stiffer than it can render; [`passivity`] has the limits.
 //!
-//! Newest state out by triple buffer, every tick out by ring (a second one, [`tap`], while somebody records), commands in by ring. Worlds are built elsewhere, swapped in, and
-//! dropped elsewhere. Nothing in the tick allocates, locks, prints, waits or panics.
+//! Newest state out by triple buffer, every tick out by ring (a second one, [`tap`], during a recording), commands in
+//! by ring. Worlds are built elsewhere, swapped in, and dropped elsewhere. Nothing in the tick allocates, locks,
+//! prints, waits or panics.
 
 mod clock;
 pub mod coupling;

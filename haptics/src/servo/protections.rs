@@ -1,4 +1,4 @@
-//! What keeps the operator safe or the account honest, and would not be missed by anything else if it were taken out.
+//! Tests of protections of the operator and of the energy account that no other test would miss.
 
 use super::coupling::{Coupling, Proxy};
 use super::safety::Limits;

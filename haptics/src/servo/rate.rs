@@ -1,4 +1,4 @@
-//! Which rate the servo runs at: measured at the start, watched while it runs, said in one sentence.
+//! Rate of the servo: measured at the start, watched while it runs, said in one sentence.
 //!
 //! Before the first tick the servo keeps the deadlines of the fast rate for [`TEST_S`], with the world's own step as the load
 //! and no device. The machine holds the rate when 99 of 100 ticks start within [`LATE_SHARE`] of a period after their
@@ -23,7 +23,7 @@ pub const COMPUTE_SHARE: f64 = 0.5;
 /// Share of the deadlines that may be missed.
 pub const MISSED_SHARE: f64 = 0.005;
 
-/// How long a window of the watch at run time is, s.
+/// Length of a window of the watch at run time, s.
 const WINDOW_S: f64 = 1.0;
 /// Share of missed deadlines that makes a window bad.
 const BAD_SHARE: f64 = 0.05;
@@ -32,7 +32,7 @@ const BAD_WINDOWS: u32 = 3;
 /// Good windows in a row after which an overload is over.
 const GOOD_WINDOWS: u32 = 10;
 
-/// How the rate is chosen.
+/// Choice of the rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RateChoice {
     /// [`FAST_HZ`] where a self-test at the start shows that the machine holds it, else [`SAFE_HZ`].
@@ -74,7 +74,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Whether the machine holds the rate.
+    /// True if the machine holds the rate.
     pub fn holds(&self) -> bool {
         self.late_p99_s <= LATE_SHARE / self.rate_hz
             && self.compute_p99_s <= COMPUTE_SHARE / self.rate_hz
@@ -188,7 +188,7 @@ pub struct Watch {
     good: u32,
 }
 
-/// What the watch has seen.
+/// Verdict of the watch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// Too many deadlines were missed for three windows of a second in a row; the share in the last one.
@@ -229,7 +229,8 @@ pub(super) fn judge(choice: RateChoice, report: RateReport, verdict: Verdict) ->
     }
 }
 
-/// What follows from too many misses: down to [`SAFE_HZ`] where the rate was the servo's own choice, else only said.
+/// Report after too many missed deadlines: down to [`SAFE_HZ`] if the rate was the servo's own choice, else only marked
+/// as overloaded.
 fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateReport {
     if choice == RateChoice::Auto && report.rate_hz > SAFE_HZ {
         let reason = RateReason::FellBack { from_hz: report.rate_hz, missed_share };
@@ -238,7 +239,7 @@ fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateRep
     RateReport { overloaded: true, ..report }
 }
 
-/// Whether the timing so far is what the rate needs: for verdicts after a run.
+/// True if the timing so far meets the needs of the rate: for verdicts after a run.
 pub fn held(timing: &Timing) -> bool {
     let period_s = timing.period_s;
     timing.lateness.p99_s <= LATE_SHARE * period_s

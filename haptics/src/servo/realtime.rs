@@ -40,7 +40,7 @@ impl Privileges {
     }
 }
 
-/// The system that is asked: the real one, or in tests one that grants what it is told to.
+/// The system that is asked: the real one, or in tests one with set answers.
 trait System {
     /// First-in-first-out scheduling for the calling thread, priority 1 to 99.
     fn fifo(&self, priority: u8) -> bool;
@@ -91,7 +91,7 @@ fn lock_memory_and_sharpen_timers() -> bool {
     // SAFETY: prctl(PR_SET_TIMERSLACK) takes plain integers and affects the calling thread only. A normal thread's default
     // slack of 50 µs would be half of the spin time.
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1_u64) };
-    // SAFETY: mlockall takes plain flags; it fails harmlessly without the privilege. Only what is mapped now is locked:
+    // SAFETY: mlockall takes plain flags; it fails harmlessly without the privilege. Only present mappings are locked:
     // locking the future would make every later allocation of the window count against the limit.
     unsafe { libc::mlockall(libc::MCL_CURRENT) == 0 }
 }
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
     use std::cell::RefCell;
 
-    /// Grants what it is told to and writes down what it is asked for.
+    /// Grants as told and writes the requests down.
     struct Granting(bool, bool, RefCell<Vec<u8>>);
 
     impl System for Granting {

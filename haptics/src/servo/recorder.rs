@@ -76,7 +76,7 @@ impl Rows {
         Self { sensor, rng: StdRng::seed_from_u64(seed) }
     }
 
-    /// What the sensors say of the next tick, in the order of [`COLUMNS`], SI units.
+    /// Sensor readings of the next tick, in the order of [`COLUMNS`], SI units.
     pub fn row(&mut self, tick: &TickRecord) -> [f64; 12] {
         let Self { sensor, rng } = self;
         let mut sense = |v: Vec2, noise: f64, step: f64| {
@@ -139,7 +139,7 @@ fn unit(column: &str) -> &'static str {
     }
 }
 
-/// What the sidecar of a recording says about the world that it was made in.
+/// Facts about a world for the sidecar of a recording made in it.
 pub fn facts(world: &World) -> Meta {
     let base = |i: usize| Some([world.hand.fingers[i].base_m.x, world.hand.fingers[i].base_m.y]);
     Meta {

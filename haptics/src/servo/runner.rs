@@ -1,4 +1,4 @@
-//! What runs on the servo's thread.
+//! Body of the servo's thread.
 
 use super::clock::Deadlines;
 use super::force_test::Request;
@@ -89,7 +89,7 @@ impl Runner {
             let tick = self.body.tick(period_s);
             // A world that is held still has no time to be recorded.
             if !self.body.is_held() {
-                // A full ring means that no picture is drawn: the newest ticks are dropped, the servo goes on.
+                // A full ring means that no picture is drawn: the newest ticks are dropped, the servo continues.
                 let _ = self.ticks.push(tick);
                 self.tap.offer(tick);
             }

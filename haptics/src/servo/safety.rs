@@ -1,4 +1,4 @@
-//! What stands between the world and the operator's fingers: start ramp, clamp, slew limit, watchdog.
+//! Safety stage between the world and the operator's fingers: start ramp, clamp, slew limit, watchdog.
 
 use crate::Vec2;
 use crate::device::Sample;
@@ -32,7 +32,7 @@ const COASTING_S: f64 = 0.005;
 const FARTHEST_M: f64 = 10.0;
 const FASTEST_M_S: f64 = 100.0;
 
-/// Why the force is not what the world says.
+/// Reasons why the force differs from that of the world.
 #[allow(clippy::struct_excessive_bools)] // four independent lights, shown as such
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SafetyFlags {
@@ -46,7 +46,7 @@ pub struct SafetyFlags {
     pub not_finite: bool,
 }
 
-/// How the force of a new world comes in.
+/// Transition of the force to a new world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Swapping {
     /// No swap under way.
@@ -102,7 +102,7 @@ impl Safety {
     /// The sample to simulate with: of each finger the given one when it is fresh, else the last good one, which comes to rest
     /// after [`COASTING_S`]. A sample with anything impossible in it is refused as a whole, and both fingers rest.
     pub fn admit(&mut self, sample: &Sample, dt_s: f64, flags: &mut SafetyFlags) -> Sample {
-        // Written so that what is not a number is impossible too.
+        // Written so that not-a-number is impossible too.
         let possible = sample.tip_in_world.iter().all(|v| v.norm() <= FARTHEST_M)
             && sample.tip_velocity.iter().all(|v| v.norm() <= FASTEST_M_S);
         flags.not_finite |= !possible;
@@ -167,7 +167,7 @@ impl Safety {
         self.last_force_n
     }
 
-    /// The ramped force of the world, with what is left of the one before.
+    /// Ramped force of the world, with the fading share of the previous one.
     fn blend(&mut self, wanted_n: [Vec2; 2], dt_s: f64) -> [Vec2; 2] {
         if self.swapping == Swapping::Asked {
             let old_n = self.last_force_n;
@@ -193,7 +193,7 @@ impl Safety {
         self.sample_age_s[0].max(self.sample_age_s[1])
     }
 
-    /// Whether both fingers were ever seen.
+    /// True after both fingers have been seen.
     pub fn has_met_both(&self) -> bool {
         self.met == [true; 2]
     }
@@ -305,7 +305,7 @@ mod tests {
         let seen: Vec<Vec2> = (0..10).map(|_| safety.admit(&lost, DT, &mut flags).tip_velocity[1]).collect();
         assert!(seen[..4].iter().all(|v| *v == velocity), "between two answers it moves on: {seen:?}");
         assert!(seen[6..].iter().all(|v| *v == Vec2::zeros()), "a damper must not push it for ever: {seen:?}");
-        // What is impossible is no answer that may still come.
+        // An impossible sample is no answer that may still come.
         safety.admit(&Sample { tip_velocity: [velocity; 2], ..fresh() }, DT, &mut flags);
         let broken = Sample { tip_in_world: [Vec2::repeat(f64::NAN); 2], ..fresh() };
         assert_eq!(safety.admit(&broken, DT, &mut flags).tip_velocity, [Vec2::zeros(); 2]);

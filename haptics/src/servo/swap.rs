@@ -10,7 +10,7 @@ pub struct Swap {
     pub world: World,
     /// Its state; the fingers are taken over from the running one.
     pub state: State,
-    /// The running state goes on in the new world: see [`Swap::going_on`].
+    /// True if the running state continues in the new world: see [`Swap::going_on`].
     goes_on: bool,
 }
 
@@ -26,15 +26,16 @@ impl Swap {
         Box::new(Self { world, state, goes_on: false })
     }
 
-    /// A world with the same things in it and other laws: everything stays where it is and goes on moving as it does, so that fingers
-    /// that touch something feel the laws change and nothing else. A world with other things in it starts as with [`Swap::new`].
+    /// A world with the same things in it and other laws. Everything stays in place and keeps its motion, so that
+    /// fingers that touch something feel the laws change and nothing else. A world with other things in it starts as
+    /// with [`Swap::new`].
     pub fn going_on(world: World) -> Box<Self> {
         let mut swap = Self::new(world);
         swap.goes_on = true;
         swap
     }
 
-    /// Takes the fingers over from the running world, and its whole state where that goes on here. Allocates nothing.
+    /// Takes the fingers over from the running world, and its whole state if that continues here. Allocates nothing.
     pub(super) fn follow(&mut self, running: &Self) {
         if !self.goes_on || !same_things(&self.world, &running.world) {
             self.state.input = running.state.input;
@@ -43,7 +44,7 @@ impl Swap {
         self.state.copy_from(&running.state);
         let law = |swap: &Self, k: usize| swap.world.crank.as_ref()?.effects.get(k).map(|effect| effect.law().id());
         for k in 0..MAX_EFFECTS {
-            // Another law knows nothing of what the one in its place remembers.
+            // Another law cannot use the memory of the one in its place.
             if law(self, k) != law(running, k)
                 && let Some(memory) = self.state.crank.memories.get_mut(k)
             {

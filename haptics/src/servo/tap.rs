@@ -1,4 +1,4 @@
-//! A second way out for ticks: a ring that the servo fills only while somebody records.
+//! A second way out for ticks: a ring that the servo fills only during a recording.
 //!
 //! The ring that the window empties once a frame may overflow when no frame is drawn. A recording must not lose ticks to that, so a
 //! thread of its own empties this one. The servo's side never waits: a tick that finds the ring full is counted and dropped.
@@ -8,18 +8,19 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What both ends have in common.
+/// State shared by both ends.
 #[derive(Debug)]
 struct Shared {
-    /// True while somebody records.
+    /// True during a recording.
     open: AtomicBool,
     /// Ticks that found the ring full since it was opened.
     dropped: AtomicU64,
-    /// The way out while nobody has it. The servo's side never touches it.
+    /// The consumer while no recorder has it. The servo's side never touches it.
     home: Mutex<Option<Consumer<TickRecord>>>,
 }
 
-/// A closed tap: what a tick fills, and where it is opened. Room for `capacity` ticks is allocated here.
+/// A closed tap: the end that a tick fills, and the one where it is opened. Room for `capacity` ticks is allocated
+/// here.
 pub fn tap(capacity: usize) -> (TapFiller, TapSource) {
     let (ticks, out) = RingBuffer::new(capacity);
     let shared = Shared { open: AtomicBool::new(false), dropped: AtomicU64::new(0), home: Mutex::new(Some(out)) };
@@ -35,7 +36,7 @@ pub struct TapFiller {
 }
 
 impl TapFiller {
-    /// Gives a tick to whoever records. Allocates, locks and waits for nothing.
+    /// Hands a tick to the recorder, if there is one. Allocates, locks and waits for nothing.
     pub fn offer(&mut self, tick: TickRecord) {
         // Relaxed is enough: a world that is swapped in after the tap was closed comes through a ring that orders the two.
         if self.shared.open.load(Ordering::Relaxed) && self.ticks.push(tick).is_err() {
@@ -49,7 +50,7 @@ impl TapFiller {
     }
 }
 
-/// Where a tap is opened.
+/// Handle by which a tap is opened.
 #[derive(Clone, Debug)]
 pub struct TapSource {
     shared: Arc<Shared>,
@@ -59,14 +60,15 @@ impl TapSource {
     /// Every tick from now on; `None` while another one has it.
     pub fn open(&self) -> Option<Tap> {
         let mut ticks = self.shared.home.lock().unwrap_or_else(PoisonError::into_inner).take()?;
-        // What came in while the last one closed it.
+        // Drops the ticks that came in while the last recorder closed it.
         while ticks.pop().is_ok() {}
         self.shared.dropped.store(0, Ordering::Relaxed);
         self.shared.open.store(true, Ordering::Relaxed);
         Some(Tap { ticks: Some(ticks), shared: Arc::clone(&self.shared) })
     }
 
-    /// Lets no further tick in; what is in the ring stays there for its reader. A world that is swapped in afterwards is never seen.
+    /// Lets no further tick in; ticks in the ring stay there for their reader. A world that is swapped in afterwards is
+    /// never seen.
     pub fn close(&self) {
         self.shared.open.store(false, Ordering::Release);
     }
@@ -90,8 +92,8 @@ impl Tap {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// True when no further tick will come: it was closed or the servo is gone. What is in the ring can still be read. What was done
-    /// before [`TapSource::close`] is seen from then on.
+    /// True when no further tick will come: the tap was closed or the servo is gone. Ticks in the ring can still be
+    /// read. All that was done before [`TapSource::close`] is seen from then on.
     pub fn is_over(&self) -> bool {
         !self.shared.open.load(Ordering::Acquire) || self.ticks.as_ref().is_none_or(Consumer::is_abandoned)
     }

@@ -1,4 +1,4 @@
-//! The handle of a running servo: what the window keeps.
+//! The handle of a running servo, for the window.
 
 use super::force_test::Request;
 use super::guard::{Beat, FAULT_AFTER_S, watch};
@@ -27,10 +27,10 @@ const FAREWELL: Duration = Duration::from_millis(500);
 const STANDSTILL: &str = "The servo stands still: the device does not answer or the machine is overloaded. The force was set \
                           to zero; check the cable, or choose the device again.";
 
-/// How the servo runs.
+/// Settings of the servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoConfig {
-    /// How the rate is chosen.
+    /// Choice of the rate.
     pub rate: RateChoice,
     /// Safety limits.
     pub limits: Limits,
@@ -119,13 +119,13 @@ impl Servo {
             rate: nominal,
         };
         let (watched, watchdog_s, real_time) = (Arc::clone(&beat), config.limits.watchdog_s, config.real_time);
-        // The guard first: there is no moment in which a device is driven and nobody watches.
+        // The guard first: a device is never driven without a guard.
         let threads = vec![
             std::thread::Builder::new()
                 .name("servo-guard".to_owned())
                 .spawn(move || watch(&watched, guard, watchdog_s, real_time))?,
             std::thread::Builder::new().name("servo".to_owned()).spawn(move || runner.run(scratch)).inspect_err(
-                // Nobody else would tell the guard.
+                // Nothing else would tell the guard.
                 |_| beat.finish(),
             )?,
         ];
@@ -150,7 +150,7 @@ impl Servo {
         while self.retired.pop().is_ok() {}
     }
 
-    /// Where a recorder on a thread of its own gets every tick, however rarely [`Self::drain`] is called.
+    /// Source of every tick for a recorder on a thread of its own, however rarely [`Self::drain`] is called.
     pub fn tap(&self) -> &TapSource {
         &self.tap
     }
@@ -170,18 +170,18 @@ impl Servo {
         self.hold.store(held, Ordering::Relaxed);
     }
 
-    /// What the system granted.
+    /// Privileges that the system granted.
     pub fn privileges(&self) -> Privileges {
         let bits = self.granted.load(Ordering::Relaxed);
         Privileges { asked: bits & 4 != 0, fifo: bits & 1 != 0, memory_locked: bits & 2 != 0 }
     }
 
-    /// How it was started.
+    /// Settings with which it was started.
     pub fn config(&self) -> ServoConfig {
         self.config
     }
 
-    /// How often the guard made the device safe because the servo stood still.
+    /// Number of times that the guard made the device safe because the servo stood still.
     pub fn guarded(&self) -> u64 {
         self.beat.guarded()
     }

@@ -1,7 +1,7 @@
 //! Timing statistics without allocation: since the start, and of the last seconds.
 //!
-//! A figure since the start never forgets: one stall while the window opens stays its maximum for hours. So each figure is told
-//! twice, since the start and for the last [`RECENT_S`].
+//! A figure since the start never forgets: one stall while the window opens stays its maximum for hours. Each figure is
+//! therefore told twice, since the start and for the last [`RECENT_S`].
 
 mod collector;
 mod histogram;
@@ -99,7 +99,7 @@ impl Timing {
     }
 }
 
-/// What one tick took.
+/// Timing of one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickTiming {
     /// Start after the deadline, s.
@@ -108,11 +108,11 @@ pub struct TickTiming {
     pub interval_s: Option<f64>,
     /// Reading, stepping, writing, s.
     pub compute_s: f64,
-    /// Whether the deadline was missed by more than a period.
+    /// True if the deadline was missed by more than a period.
     pub missed: bool,
     /// Age of the newest sample when the force was computed, s; before the first the time since the start.
     pub sample_age_s: f64,
-    /// Whether a force was computed from that sample. Not before the first sample, and not while the force is zero because the
-    /// samples are stale: who waits for a device has no old force.
+    /// True if a force was computed from that sample. False before the first sample, and while the force is zero
+    /// because the samples are stale: an operator who waits for a device has no old force.
     pub has_force: bool,
 }

@@ -1,4 +1,5 @@
-//! The hand at the far end: two fingertips on springs and dampers that go where the near hand was, and press as it pressed.
+//! The hand at the far end: two fingertips on springs and dampers that follow the near hand's earlier positions and
+//! forces.
 
 use super::Delay;
 use crate::Vec2;
@@ -8,14 +9,14 @@ use crate::world::Input;
 /// Without a word for this long beside the jitter the near hand counts as at rest, s: its last velocity must not push for ever.
 const SILENCE_S: f64 = 0.05;
 
-/// What the near end says every tick.
+/// Message of the near end at every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Goal {
-    /// When it was said, s on the near end's clock.
+    /// Time of the message, s on the near end's clock.
     pub said_s: f64,
-    /// Where the fingers are in the model.
+    /// Positions and velocities of the fingers in the model.
     pub input: Input,
-    /// What they exert there, N.
+    /// Forces that the fingers exert in the model, N.
     pub force_n: [Vec2; 2],
 }
 
@@ -57,10 +58,10 @@ impl FarHand {
         self.goal.said_s
     }
 
-    /// Moves by `dt_s` under the far world's forces. When the line is silent it stays and goes on holding what it holds.
+    /// Moves by `dt_s` under the far world's forces. On a silent line it stays and keeps holding.
     ///
-    /// The force of the model is exerted as it was told, and the spring makes up for what the model has wrong: pressed as hard, but
-    /// never harder than the hand's own stiffness makes of a wrong place.
+    /// The force of the model is exerted as it was told, and the spring makes up for the errors of the model. It
+    /// presses as hard as the model, but never harder than the hand's own stiffness makes of a wrong position.
     pub fn advance(&mut self, command: &Command, dt_s: f64) -> Sample {
         self.silent_s += dt_s;
         let told = self.silent_s < self.patience_s;

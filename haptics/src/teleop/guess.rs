@@ -1,19 +1,20 @@
-//! A first model of a world that nobody has measured: things are seen, so that their shapes and places are right; what they weigh and
-//! how they resist is guessed.
+//! A first model of an unmeasured world: things are seen, so that their shapes and places are right; their weights and
+//! resistances are guessed.
 
 use crate::law::Enters;
 use crate::world::World;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// How far a guess is off at the most, relative to the truth: what people make of the look of a thing is of this order.
+/// Largest relative error of a guess: people's estimates from the look of a thing are of this order.
 pub const GUESS_OFF: f64 = 0.4;
 
-/// Salt of the guesses of walls: what was guessed before there were any stays as it was.
+/// Salt of the guesses of walls: earlier guesses stay as they were before walls were guessed.
 const WALLS: u64 = 0x3c6e_f372_fe94_f82b;
 
-/// A guess of a world: masses, friction under the fingers, stiffness of walls and laws of the crank, each by a factor of its own between 1 − [`GUESS_OFF`]
-/// and 1 + [`GUESS_OFF`], drawn by the seed. A guess that could not be run is given up for the truth.
+/// Guess of a world: masses, friction under the fingers, stiffness of walls and laws of the crank. Each gets a factor
+/// of its own between 1 − [`GUESS_OFF`] and 1 + [`GUESS_OFF`], drawn by the seed. A guess that cannot be run is
+/// replaced by the truth.
 pub fn guess(world: &World, seed: u64) -> World {
     let mut rng = StdRng::seed_from_u64(seed);
     let mut off = || rng.random_range(1.0 - GUESS_OFF..1.0 + GUESS_OFF);

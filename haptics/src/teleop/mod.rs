@@ -1,13 +1,13 @@
 //! Teleoperation: the operator here, the world far away, a slow line between them.
 //!
-//! The servo's world stays the far one: what is recorded and scored is what happened there. Everything at the operator's end is a
+//! The servo's world stays the far one: recordings and scores are of its events. Everything at the operator's end is a
 //! device of that servo, in one of two ways (`docs/delay.md`):
 //!
 //! * [`waved`]: force and motion go over the line in wave variables, which cannot give energy out, and the operator sees a
 //!   picture that is late. Honest, and slow: move, wait, look.
-//! * [`modelled`]: the operator touches a model of the far world that answers at once (predictive display and model-mediated
-//!   control; Sheridan 1993, Mitra & Niemeyer 2008). What the hand does is sent there and done by a hand of its own; what comes
-//!   back corrects the model, slowly enough that no force jumps.
+//! * [`modelled`]: the operator touches a model of the far world that answers at once (predictive display and
+//!   model-mediated control; Sheridan 1993, Mitra & Niemeyer 2008). The motion of the hand is sent there and done by a
+//!   hand of its own. The pictures that come back correct the model, slowly enough that no force jumps.
 //!
 //! Force reaches the operator through the safety stage in both: that of the servo, which sends it over the line, or that of a
 //! second [`crate::servo::Loop`] at the operator's end, on the model.
@@ -33,7 +33,7 @@ use crate::servo::safety::Limits;
 use crate::world::{State, World};
 use serde::{Deserialize, Serialize};
 
-/// A slow line to the world, and what is done about it.
+/// A slow line to the world, and the method against its delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Delay {
@@ -43,7 +43,7 @@ pub struct Delay {
     pub jitter_s: f64,
     /// Share of the packets that is lost, 0 to 1.
     pub loss: f64,
-    /// Whether a model of the far world answers at once.
+    /// True if a model of the far world answers at once.
     pub predicted: bool,
 }
 
@@ -58,7 +58,7 @@ impl Delay {
         self.round_trip_s == 0.0 && self.jitter_s == 0.0 && self.loss == 0.0
     }
 
-    /// Says what makes the line impossible, if anything does.
+    /// Fault of the line's settings, if there is one, in one sentence.
     pub fn check(&self) -> Result<(), ChannelError> {
         self.channel(0).check()
     }
@@ -75,16 +75,16 @@ impl Delay {
     }
 }
 
-/// What the two ends must agree on before anything moves.
+/// Settings that the two ends must agree on before anything moves.
 #[derive(Clone, Copy, Debug)]
 pub struct Ends<'a> {
     /// The far world.
     pub world: &'a World,
     /// Its state.
     pub state: &'a State,
-    /// What the operator's end believes of the far world at first; `None`: the truth.
+    /// First model of the far world at the operator's end; `None`: the truth.
     pub guess: Option<&'a World>,
-    /// What may reach the operator.
+    /// Limits of the force that may reach the operator.
     pub limits: Limits,
     /// The servo's slowest period, s.
     pub period_s: f64,
@@ -92,7 +92,7 @@ pub struct Ends<'a> {
     pub seed: u64,
 }
 
-/// Puts a line between `operator` and the world that the servo runs. The view is what the operator is to be shown.
+/// Puts a line between `operator` and the world that the servo runs. The view is for the operator's display.
 pub fn connect(
     operator: Box<dyn Device>,
     ends: &Ends<'_>,

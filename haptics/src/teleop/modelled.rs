@@ -1,8 +1,9 @@
-//! With a model: the operator touches a world of the same kind that answers at once; the far hand does what was done in it.
+//! With a model: the operator touches a world of the same kind that answers at once; the far hand repeats the motion.
 //!
-//! The model runs in a servo's loop of its own, so that the operator's end has everything that a servo has: coupling, safety stage,
-//! watchdog. No force of the far world reaches the operator; the only way back through the line is the correction of the model,
-//! which moves things slowly and has no loop gain at the frequencies of a contact. That is what keeps it stable over any delay.
+//! The model runs in a servo's loop of its own, so that the operator's end has everything that a servo has: coupling,
+//! safety stage, watchdog. No force of the far world reaches the operator. The only way back through the line is the
+//! correction of the model, which moves things slowly and has no loop gain at the frequencies of a contact. The system
+//! is therefore stable over any delay.
 
 use super::album::Album;
 use super::far_hand::{FarHand, Goal};
@@ -17,10 +18,10 @@ use crate::servo::safety::Limits;
 use crate::servo::{ForceGuard, Loop, Swap};
 use crate::world::{State, World};
 
-/// Salt of the fate of what the hand says.
+/// Salt of the fate of the hand's messages.
 const SALT: u64 = 0x9b05_688c_2b3e_6c1f;
 
-/// What goes with a picture: what the far hand followed, and when it was taken, s on the near clock.
+/// Stamp of a picture: near-clock time of the message that the far hand followed, and of the picture itself, s.
 type Stamp = (f64, f64);
 
 /// An operator on a model, and the hand at the far end.
@@ -52,7 +53,7 @@ impl ModelledHand {
         delay.check()?;
         let own = operator.spec();
         let limits = Limits { max_force_n: ends.limits.max_force_n.min(own.max_force_n), ..ends.limits };
-        // What the far servo drives is the far hand.
+        // The far servo drives the far hand.
         let spec = DeviceSpec {
             name: format!("{} over {:.0} ms and back, on a model", own.name, 1e3 * delay.round_trip_s),
             force_feedback: own.force_feedback,
@@ -144,7 +145,7 @@ impl Device for ModelledHand {
     }
 
     fn finished(&self) -> bool {
-        // What is under way is done yet, and seen to be done.
+        // Actions under way are completed yet, and seen to be completed.
         self.done_s.is_some_and(|done_s| self.now_s > done_s + self.round_trip_s)
     }
 }

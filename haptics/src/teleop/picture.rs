@@ -1,4 +1,4 @@
-//! What cameras and sensors say of a world at one instant: everything that moves, sized once.
+//! Picture of a world at one instant by cameras and sensors: everything that moves, sized once.
 
 use crate::Vec2;
 use crate::world::{BodyState, CrankState, Input, MembraneState, State, Surface, SwitchState};
@@ -6,11 +6,11 @@ use crate::world::{BodyState, CrankState, Input, MembraneState, State, Surface, 
 /// One instant of a world.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
-    /// When it was, s on the clock of that world.
+    /// Time of the picture, s on the clock of that world.
     pub time_s: f64,
     /// The fingers.
     pub input: Input,
-    /// What they exert, N.
+    /// Forces that the fingers exert, N.
     pub tip_force_n: [Vec2; 2],
     /// The bodies.
     pub bodies: Vec<BodyState>,
@@ -20,11 +20,11 @@ pub(super) struct Picture {
     pub membrane: MembraneState,
     /// The switch.
     pub switch: SwitchState,
-    /// What the fingers hold.
+    /// Objects that the fingers hold.
     pub grasp: Grasp,
 }
 
-/// What both fingers hold.
+/// Objects that both fingers hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Grasp {
     /// The body between them.
@@ -38,7 +38,7 @@ pub(super) struct Grasp {
 }
 
 impl Grasp {
-    /// What is held in a state.
+    /// Objects held in a state.
     pub fn of(state: &State) -> Self {
         let by = |finger: u8| {
             state

@@ -1,4 +1,4 @@
-//! What the operator is shown: here at once, there late. By triple buffer from the servo's thread to the window.
+//! View of the operator: here at once, there late. By triple buffer from the servo's thread to the window.
 
 use super::model::Weighed;
 use crate::Vec2;
@@ -8,17 +8,17 @@ use triple_buffer::{Output, triple_buffer};
 /// Both ends as the operator can know them now.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// What is under the hand: the model; without one the late picture of the far world.
+    /// World under the hand: the model; without one the late picture of the far world.
     pub here: State,
     /// The newest picture of the far world.
     pub there: State,
     /// Age of that picture, s.
     pub age_s: f64,
-    /// Whether a model answers.
+    /// True if a model answers.
     pub predicted: bool,
     /// The newest impact as the operator knows it: the model's at once, those of the far world late.
     pub knock: Knock,
-    /// What the body that was carried last weighs, as far as the model has learnt it.
+    /// Estimated mass of the body that was carried last, as far as the model has learnt it.
     pub weighed: Option<Weighed>,
 }
 
@@ -30,11 +30,11 @@ const RATTLE_S: f64 = 0.04;
 pub struct Knock {
     /// Counts them: another number is another impact.
     pub number: u64,
-    /// When it was, s on the clock of the end that it happened at.
+    /// Time of the impact, s on the clock of the end that it happened at.
     pub time_s: f64,
-    /// How fast, m/s.
+    /// Speed of the impact, m/s.
     pub speed_m_s: f64,
-    /// Where, m in the world.
+    /// Position of the impact, m in the world.
     pub at_in_world: Vec2,
 }
 

@@ -1,10 +1,10 @@
 //! Without a model: forces and motions in wave variables, and a picture that comes late.
 //!
-//! Waves over a delay d feel like a spring of b/d in series with the world. With half a second of round trip that is 36 N/m for a
-//! relaxed finger: what is pinched with it turns out of the fingers. So the far hand is made stronger than the near one: its forces
-//! are divided by a gain before they come back, which multiplies the impedance of the line at the far end and leaves the near
-//! one alone. Both ends stay passive, the far one in units of the gain (power scaling: Colgate 1993). What is felt is a share of
-//! what is exerted, and said to be one ([`gain`]).
+//! Waves over a delay d feel like a spring of b/d in series with the world. With half a second of round trip that is 36
+//! N/m for a relaxed finger: a pinched object turns out of the fingers. The far hand is therefore made stronger than
+//! the near one: its forces are divided by a gain before they come back. This multiplies the impedance of the line at
+//! the far end and leaves the near one alone. Both ends stay passive, the far one in units of the gain (power scaling:
+//! Colgate 1993). The felt force is a share of the exerted one, and said to be one ([`gain`]).
 
 use super::album::Album;
 use super::view::{Knock, ViewInput};
@@ -18,13 +18,13 @@ use crate::world::{State, World};
 /// Salt of the impacts' fate.
 const SALT: u64 = 0x5be0_cd19_137e_2179;
 
-/// How many times the far forces are those that are felt: as much as gives the far fingers a hand's stiffness over a line of
-/// `line_n_m` (N/m), and never less than one.
+/// Ratio of the far forces to the felt ones, ≥ 1. It lends the far fingers a hand's stiffness over a line of `line_n_m`
+/// (N/m).
 fn gain(line_n_m: Option<f64>) -> f64 {
     line_n_m.map_or(1.0, |line_n_m| (hand_stiffness_n_m() / line_n_m).max(1.0))
 }
 
-/// An operator behind a line with waves who sees late.
+/// An operator behind a line with waves, with delayed sight.
 pub(super) struct WavedHand {
     channel: ChannelDevice,
     spec: DeviceSpec,
@@ -54,7 +54,7 @@ impl WavedHand {
         let gain = gain(channel.line_stiffness_n_m());
         let mut spec = channel.spec().clone();
         spec.name = format!("{name} over {:.0} ms and back", 1e3 * delay.round_trip_s);
-        // What the servo may ask for is divided before it is felt.
+        // The force that the servo may ask for is divided before it is felt.
         spec.max_force_n *= gain;
         spec.damping_n_s_m *= gain;
         Ok(Self {
@@ -108,7 +108,7 @@ impl Device for WavedHand {
     }
 
     fn line_stiffness_n_m(&self) -> Option<f64> {
-        // What is felt; the far fingers are stiffer by the gain.
+        // The felt stiffness; the far fingers are stiffer by the gain.
         self.channel.line_stiffness_n_m()
     }
 

@@ -25,15 +25,15 @@ pub struct Block {
     pub stiffness_n_m: f64,
     /// Contact damping against blocks per contact point, N s/m.
     pub damping_n_s_m: f64,
-    /// Where it starts: centre, m, and angle, rad counter-clockwise.
+    /// Starting pose: centre, m, and angle, rad counter-clockwise.
     pub start: Pose,
-    /// What it looks like, and whether it may turn.
+    /// Shape of the body: its look, and whether it may turn.
     #[serde(default, skip_serializing_if = "Shape::is_block")]
     pub shape: Shape,
-    /// Its wall gives under a finger; absent: rigid.
+    /// Its wall yields under a finger; absent: rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<Wall>,
-    /// What it holds and can lose; absent: it is solid.
+    /// Content that it can lose; absent: it is solid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub content: Option<Content>,
     /// A cable that holds it; absent: it is free.
@@ -44,7 +44,7 @@ pub struct Block {
     pub guide: Option<Guide>,
 }
 
-/// What a movable body is.
+/// Kind of a movable body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
@@ -60,7 +60,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether it is carried about as it is, like a block: no barrel that is examined, no needle.
+    /// True if it is carried about as it is, like a block: no barrel that is examined, no needle.
     pub fn is_carried(self) -> bool {
         matches!(self, Self::Block | Self::Cup)
     }
@@ -72,7 +72,7 @@ impl Shape {
     }
 }
 
-/// A wall that gives: a spring in series with the finger's pad.
+/// A wall that yields: a spring in series with the finger's pad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
@@ -83,15 +83,15 @@ pub struct Wall {
     pub strength_n: Option<f64>,
 }
 
-/// What a body holds; part of its `mass_kg`.
+/// Content of a body; part of its `mass_kg`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Content {
     /// Mass of the content at the start, kg, less than the whole.
     pub mass_kg: f64,
-    /// How fast it runs out of a leak, kg/s, ≥ 0.
+    /// Rate at which it runs out of a leak, kg/s, ≥ 0.
     pub leak_kg_s: f64,
-    /// When it begins to leak by itself, s of simulated time; absent: only when the wall breaks.
+    /// Start of a leak without a cause, s of simulated time; absent: it leaks only when the wall breaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leaks_from_s: Option<f64>,
 }
@@ -100,7 +100,7 @@ pub struct Content {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cable {
-    /// Where it is tied, m in the world.
+    /// Anchor of the cable, m in the world.
     pub anchor_m: Vec2,
     /// Length at which it gets taut, m, ≥ 0.
     pub length_m: f64,

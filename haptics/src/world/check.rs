@@ -1,4 +1,4 @@
-//! What makes a world impossible to run, in one sentence.
+//! Faults that make a world impossible to run, in one sentence.
 
 use super::block::Block;
 use super::model::{MAX_BLOCKS, SCHEMA, World};
@@ -13,9 +13,9 @@ pub enum WorldError {
     /// A number out of its physical range.
     #[error("{object} has {name} = {value}, which must be {must}; correct it in the world file")]
     OutOfRange {
-        /// Which object.
+        /// Name of the object.
         object: String,
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
         /// Its value.
         value: f64,
@@ -33,7 +33,7 @@ pub enum WorldError {
         "{who} would need {parts:.0} steps a millisecond to be simulated; make it heavier, or contacts, dampers and springs softer"
     )]
     TooStiff {
-        /// Which body.
+        /// Name of the body.
         who: String,
         /// Parts of a tick at 1 kHz.
         parts: f64,
@@ -41,11 +41,11 @@ pub enum WorldError {
     /// Bodies that start inside each other would be thrown apart.
     #[error("{who} starts {depth_mm:.1} mm inside {other}; move one of them in the world file")]
     Overlap {
-        /// Which body.
+        /// Name of the first body.
         who: String,
-        /// In what.
+        /// Name of the other body or surface.
         other: String,
-        /// How deep, mm.
+        /// Depth of the overlap, mm.
         depth_mm: f64,
     },
     /// A law's parameter out of its range.
@@ -129,7 +129,8 @@ fn outline(block: &Block) -> Rect {
     Rect { center_m: block.start.center_m, half_m, axis_x: Vec2::new(cos, sin) }
 }
 
-/// Refuses values outside the bounds that a law states for them: a damper that gives energy out, a stiffness below zero.
+/// Refuses values outside the bounds that a law states for them: a damper that generates energy, a stiffness below
+/// zero.
 pub(super) fn effects(list: &[Effect]) -> Result<(), WorldError> {
     for effect in list {
         for (spec, value) in effect.law().parameters().iter().zip(effect.values) {

@@ -1,6 +1,6 @@
-//! Where surfaces touch, or may touch before the tick is over: found once a tick, in a fixed order.
+//! Touching surfaces, or surfaces that may touch before the tick is over: found once a tick, in a fixed order.
 //!
-//! They are found where everything will be in the middle of the tick if nothing pushes it: lever arms and directions of that
+//! They are found for the middle of the tick with everything in unforced motion: lever arms and directions of that
 //! moment hold for the whole tick to second order, those of its start only to first.
 
 mod ground;
@@ -21,8 +21,8 @@ pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
 /// A finger that is no deeper than this has come through a surface just now, m.
 const ARRIVAL_M: f64 = 0.1e-3;
 
-/// Looks up the contacts of the tick before. Touches are found in the same order every tick, so that the search goes on
-/// where the last one ended and mostly hits at once.
+/// Looks up the contacts of the tick before. Touches are found in the same order every tick, so that the search
+/// continues at the end of the last one and mostly hits at once.
 struct Memory<'a> {
     before: &'a [Contact],
     next: usize,
@@ -46,20 +46,20 @@ struct Found {
     depth_m: f64,
 }
 
-/// Gathers touches with what the tick before knew of them.
+/// Gathers touches with the memory of the tick before.
 struct Gather<'a> {
     world: &'a World,
     tips: [Vec2; 2],
-    /// How far each tip goes within the tick, m.
+    /// Distance that each tip goes within the tick, m.
     tip_sweep_m: [f64; 2],
     memory: Memory<'a>,
     touches: &'a mut Vec<Touch>,
-    /// How deep a fingertip may be pressed within the tick, m.
+    /// Largest possible compression of a fingertip within the tick, m.
     deepest_pad_m: &'a mut f64,
     solids: &'a [Solid],
     /// The first tick: whatever touches has touched before.
     begins: bool,
-    /// What this tick's slip in the fingers adds, m (see [`crate::law::contact::FingertipSlip`]).
+    /// Additional slip in the fingers in this tick, m (see [`crate::law::contact::FingertipSlip`]).
     slipped_m: Vec2,
 }
 
@@ -111,10 +111,10 @@ fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid
 }
 
 impl Gather<'_> {
-    /// Adds a touch with what the tick before left.
+    /// Adds a touch with its memory of the tick before.
     fn add(&mut self, found: &Found, material: &Material) {
-        // The buffer is sized for the densest packing; should that ever be wrong, the tick goes on without this touch, because
-        // growing here would allocate in the servo.
+        // The buffer is sized for the densest packing. Should that ever be wrong, the tick continues without this
+        // touch, because growing here would allocate in the servo.
         if self.touches.len() >= self.touches.capacity() {
             return;
         }
@@ -158,7 +158,7 @@ impl Gather<'_> {
         (arm_m, self.yields(surface, arm_m.perp(&found.normal)))
     }
 
-    /// How fast a body yields to a force that passes its centre at this distance, m, in 1/kg.
+    /// Mobility of a body under a force that passes its centre at this distance, m: its acceleration per force, 1/kg.
     #[inline]
     fn yields(&self, surface: Surface, passes_m: f64) -> f64 {
         let Surface::Block(index) = surface else { return 0.0 };
@@ -208,8 +208,8 @@ impl Gather<'_> {
         self.fixed();
     }
 
-    /// A finger on the membrane: it is blunt and pierces nothing. Whoever came from above stays on the sheet until it is let go
-    /// of, so that the force depends on the depth alone; from the side or from below nothing is felt.
+    /// A finger on the membrane: it is blunt and pierces nothing. A finger that came from above stays on the sheet
+    /// until it lets go, so that the force depends on the depth alone; from the side or from below nothing is felt.
     fn sheet(&mut self) {
         let Some(membrane) = &self.world.membrane else { return };
         for finger in 0..2_u8 {
@@ -228,7 +228,7 @@ impl Gather<'_> {
         }
     }
 
-    /// Fingers on what stands fixed. Whoever pushes the sheet down is inside of the cup and does not meet its wall.
+    /// Fingers on fixed objects. A finger that pushes the sheet down is inside of the cup and does not meet its wall.
     fn fixed(&mut self) {
         let (cup, base) = (self.world.membrane.as_ref().zip(self.world.floor.as_ref()), self.world.switch.as_ref());
         for finger in 0..2_u8 {
@@ -264,8 +264,8 @@ impl Gather<'_> {
         self.add(&Found { pair, feature, point_m, normal, depth_m }, &material);
     }
 
-    /// Fingers on what is driven along one coordinate: handle and knob. Depth and normal are found anew in each part of the
-    /// tick, because these surfaces go on curves.
+    /// Fingers on the driven handle and knob. Depth and normal are found again in each part of the tick, because these
+    /// surfaces move on curves.
     fn driven(&mut self, handle_m: Option<Vec2>, handle_sweep_m: f64, knob_at_m: f64) {
         if let (Some(crank), Some(handle)) = (&self.world.crank, handle_m) {
             for finger in 0..2_u8 {
@@ -276,7 +276,8 @@ impl Gather<'_> {
                 let held = self.kept(pair).is_some();
                 let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
                 let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
-                // Whoever comes down on it from above does not press on its side: that would be a blow out of nothing.
+                // A finger that comes down on it from above does not press on its side: that would be a blow out of
+                // nothing.
                 let arrives = depth_m < self.tip_sweep_m[usize::from(finger)] + handle_sweep_m + ARRIVAL_M;
                 if level && (held || arrives || self.begins) {
                     let found = Found { pair, feature: 0, point_m: tip, normal: Vec2::new(-facing, 0.0), depth_m };

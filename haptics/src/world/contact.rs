@@ -1,12 +1,12 @@
 //! Compliant contact with a stick state: the force between two surfaces from their overlap and relative motion.
 //!
-//! Normal: Kelvin–Voigt spring and damper that never pulls; where a restitution was measured, a damper that grows with the
-//! force (Hunt & Crossley 1975), whose loss depends on no mass. Tangential: an elastic anchor that is carried along when the
-//! Coulomb limit is reached (Cundall & Strack 1979), so that a sticking contact holds without creep.
+//! Normal: Kelvin–Voigt spring and damper that never pulls; with a measured restitution, a damper that grows with the
+//! force (Hunt & Crossley 1975), whose loss depends on no mass. Tangential: an elastic anchor that is carried along
+//! when the Coulomb limit is reached (Cundall & Strack 1979), so that a sticking contact holds without creep.
 //!
-//! Surfaces meet and part somewhere within a part of a tick. The force of such a part is the mean over the way that they go in
-//! it: taken at one point only, an undamped bounce would win or lose a quarter of (ω h)² of its energy, as the phase has it;
-//! with the mean that share is the same at meeting and parting and cancels.
+//! Surfaces meet and part somewhere within a part of a tick. The force of such a part is the mean over their way in it.
+//! Taken at one point only, an undamped bounce would win or lose a quarter of (ω h)² of its energy, depending on the
+//! phase. With the mean that share is the same at meeting and parting and cancels.
 
 use super::state::{Contact, Surface};
 use crate::Vec2;
@@ -30,7 +30,7 @@ pub struct Material {
     pub shear_damping_n_s_m: f64,
     /// Coulomb coefficient.
     pub friction: f64,
-    /// What is pressed gives, too: stiffness of a wall behind the elastic contact, N/m; zero when it is rigid.
+    /// Stiffness of a yielding wall behind the elastic contact, N/m; zero if it is rigid.
     pub wall_n_m: f64,
 }
 
@@ -60,8 +60,8 @@ impl Material {
         if self.wall_n_m == 0.0 { self.elastic.force_n(depth_m) } else { self.in_series_n(depth_m) }
     }
 
-    /// The pad's compression p solves pad(p) = wall (depth − p), by Newton's method from where the linear pad would have it:
-    /// exact at once for linear pads, and in a few steps for those that harden.
+    /// The pad's compression p solves pad(p) = wall (depth − p), by Newton's method from the solution of a linear pad.
+    /// It is exact at once for linear pads, and in a few steps for those that harden.
     fn in_series_n(&self, depth_m: f64) -> f64 {
         let mut pressed_m =
             depth_m * PadCompliance { k: self.wall_n_m }.behind(self.elastic.spring.k1) / self.elastic.spring.k1;
@@ -84,8 +84,8 @@ pub struct Touch {
     pub arm_by_m: Vec2,
     /// The law between them.
     pub material: Material,
-    /// How fast the surfaces part under a normal force, 1/kg: 1/m + (r × n)²/I of both bodies; zero where a finger, which goes
-    /// as it likes, is one of them.
+    /// Mobility of the surfaces under a normal force, 1/kg: 1/m + (r × n)²/I of both bodies; zero if one of them is a
+    /// finger, whose motion is given.
     pub yield_1_kg: f64,
     /// The same along the surfaces where a restitution was measured; zero elsewhere.
     pub slip_yield_1_kg: f64,
@@ -96,9 +96,9 @@ pub struct Touch {
 }
 
 impl Touch {
-    /// Force on `contact.on`, N, from the relative velocity of `on` to `by` at the point, m/s, and the way that `on` has gone
-    /// along the surface since the part before, m, for a part of `dt_s` in whose middle the depth is that of the contact.
-    /// Zero while the surfaces are apart.
+    /// Force on `contact.on`, N, for a part of `dt_s` in whose middle the depth is that of the contact. It follows from
+    /// the relative velocity of `on` to `by` at the point, m/s, and the way that `on` has gone along the surface since
+    /// the part before, m. Zero while the surfaces are apart.
     #[inline]
     pub fn press(&mut self, relative_velocity: Vec2, way_along_m: f64, dt_s: f64) -> Vec2 {
         let contact = &mut self.contact;
@@ -124,16 +124,15 @@ impl Touch {
         let stuck = -(material.shear_stiffness_n_m * shear + damping * slip);
         let tangent_force = within(stuck, limit);
         contact.sliding = stuck != tangent_force;
-        // The anchor slides along when the spring alone is beyond the limit: the spring never holds more than the way that the
-        // surfaces went, or it would give out work that the damper took.
+        // The anchor slides along when the spring alone is beyond the limit. The spring never holds more than the way
+        // of the surfaces, or it would return work that the damper took.
         contact.shear_m = if contact.sliding { within(shear, limit / material.shear_stiffness_n_m) } else { shear };
         contact.normal_force_n = normal_force;
         contact.tangent_force_n = tangent_force;
         contact.force_n()
     }
 
-    /// Tangential damping where a restitution was measured, N s/m: in proportion to the normal one, as everywhere. Without it a body that
-    /// lands while it slides would first have to stretch the anchor, while the damper already presses: it would lose too little speed.
+    /// Tangential damping with a measured restitution, N s/m: in proportion to the normal one, as everywhere.
     #[cold]
     #[inline(never)]
     fn impact_shear_n_s_m(&self, dt_s: f64) -> f64 {
@@ -181,9 +180,9 @@ impl Touch {
         mean_above_zero(elastic, spread) + damper * touching
     }
 
-    /// Spring and damper together, N, with the speed in the middle of the part. The contact brakes what closes within the part
-    /// itself; everything else is taken to go on as in the part before. So a strong damper never turns a motion round, and at
-    /// rest the spring alone carries.
+    /// Spring and damper together, N, with the speed in the middle of the part. The contact brakes the closing motion
+    /// within the part itself; all other forces are taken to stay as in the part before. A strong damper therefore
+    /// never reverses a motion, and at rest the spring alone carries.
     fn braked(&self, elastic: f64, damping: f64, closing: f64, dt_s: f64) -> f64 {
         let contact = &self.contact;
         let share = damping * self.yield_1_kg * dt_s;
@@ -199,7 +198,7 @@ impl Touch {
 /// Impacts slower than this are resting contact, m/s: the damper that a measured restitution asks for does not grow further.
 pub(super) const RESTING_M_S: f64 = 0.01;
 
-/// A value held between −`most` and `most`. Unlike `clamp` it does not panic on what is not a number.
+/// A value held between −`most` and `most`. Unlike `clamp` it does not panic on not-a-number.
 #[inline]
 fn within(value: f64, most: f64) -> f64 {
     if value > most {
@@ -292,8 +291,9 @@ mod tests {
 
     #[test]
     fn a_part_in_which_surfaces_meet_gets_its_mean_force() {
-        // 0.2 m/s for 1 ms: from −0.05 to 0.15 mm, three quarters of the part in contact, on the average 0.15 · 0.75/2 mm deep:
-        // 1000 N/m · 0.05625 mm. A damper of 10 N s/m adds 2 N for three quarters of the part.
+        // Closing at 0.2 m/s for 1 ms, from −0.05 to 0.15 mm: three quarters of the part in contact, in the mean 0.15 ·
+        // 0.75/2 mm deep. The force is 1000 N/m · 0.05625 mm. A damper of 10 N s/m adds 2 N for three quarters of the
+        // part.
         let down = Vec2::new(0.0, -0.2);
         let bare = on_the_floor(5e-5, 20.0, Material::hard(1000.0, 0.0, 0.0)).press(down, 0.0, 1e-3);
         assert!((bare.y - 0.056_25).abs() < 1e-12, "{}", bare.y);

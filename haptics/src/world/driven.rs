@@ -1,4 +1,5 @@
-//! What moves along one coordinate under its laws: the crank's handle, the knob of the switch, and the needle in its membrane.
+//! Motion along one coordinate under its laws: the crank's handle, the knob of the switch, and the needle in its
+//! membrane.
 
 use super::fixture::{Membrane, Switch};
 use super::model::Crank;
@@ -8,7 +9,7 @@ use crate::Vec2;
 use crate::law::object::{MembraneHistory, MembraneLaw, MembranePhase};
 use crate::law::{Motion, Role, step_coordinate_with};
 
-/// What the crank's laws see: path length along the circle, forces in N at the handle.
+/// Motion as the crank's laws see it: path length along the circle, forces in N at the handle.
 pub(crate) fn crank_motion(crank: &Crank, time_s: f64, angle_rad: f64, rate_rad_s: f64, normal_force_n: f64) -> Motion {
     Motion {
         time_s,
@@ -44,7 +45,7 @@ pub(super) fn move_crank(
     state.rate_rad_s = speed / crank.radius_m;
     state.angle_rad += state.rate_rad_s * dt_s;
     move_radially((crank, mass_kg), state, pull, &motion, outward.y, dt_s);
-    // The chord that it moved along, not the tangent: what the pads' anchors add up must be the way that was gone.
+    // The chord that it moved along, not the tangent: the sum of the pads' anchors must be the travelled way.
     state.handle_velocity = (handle(crank, state, arm) - before_m) / dt_s;
 }
 
@@ -83,11 +84,11 @@ fn move_radially(
     }
 }
 
-/// Moves the knob by `dt_s` under the pads' `force`, N, and gravity. Damping and the slope of the curve are taken in the middle
-/// of the step, so that neither takes nor gives more than is theirs; the stops are taken at its end, so that a hard stop never
-/// rings.
-// Not inlined: the compiler would multiply the knob's mass in worlds without a switch, too, and what stands there instead of a
-// mass may be a subnormal number, which costs some 50 ns.
+/// Moves the knob by `dt_s` under the pads' `force`, N, and gravity. Damping and the slope of the curve are taken in
+/// the middle of the step, so that they neither lose nor generate energy by the integration. The stops are taken at its
+/// end, so that a hard stop never rings.
+// Not inlined: the compiler would multiply the knob's mass in worlds without a switch, too. The value in its place may
+// be a subnormal number, which costs some 50 ns.
 #[inline(never)]
 pub(super) fn move_switch(switch: &Switch, state: &mut SwitchState, force: Vec2, gravity: Vec2, dt_s: f64) {
     let knob_m = switch.knob_in_world(state.at_m);
@@ -99,7 +100,7 @@ pub(super) fn move_switch(switch: &Switch, state: &mut SwitchState, force: Vec2,
     let before_m_s = state.rate_m_s;
     let stopped = switch.curve.is_stopped(state.at_m);
     let share = if stopped { 1.0 } else { 0.5 };
-    // How much of the brake counts at the new speed, and how much at the old one, kg.
+    // Share of the brake that counts at the new speed, and at the old one, kg.
     let brake = (share * switch.damping_n_s_m + share * share * stiffness * dt_s) * dt_s;
     let kept = if stopped { switch.mass_kg } else { (switch.mass_kg - brake).max(0.0) };
     // A slope that falls too steeply for the step must not turn the sign.

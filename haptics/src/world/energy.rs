@@ -1,22 +1,22 @@
-//! The energy that a world holds: what an operator may get back without the world being active.
+//! Stored energy of a world: an operator may get it back without the world being active.
 
 use super::driven::crank_motion;
 use super::model::{Crank, World};
 use super::state::State;
 use crate::law::{Role, inertia};
 
-/// Kinetic and potential energy of a world's bodies, handle and knob, J, up to a constant. What pressed pads, contacts and sheets
-/// store is left out: it was put in by the operator, and less than that comes back.
+/// Kinetic and potential energy of a world's bodies, handle and knob, J, up to a constant. The energy in pressed pads,
+/// contacts and sheets is left out: the operator put it in, and less than that comes back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stored {
     /// Angle up to which the handle's springs and weights have been added up, rad.
     angle_rad: Option<f64>,
-    /// What they hold, J.
+    /// Energy that they hold, J.
     crank_j: f64,
 }
 
 impl Stored {
-    /// The energy now. Call it with every tick: what the crank's laws hold depends on the way.
+    /// The energy now. Call it with every tick: the energy of the crank's laws depends on the way.
     pub fn update(&mut self, world: &World, state: &State) -> f64 {
         let crank_j = world.crank.as_ref().map_or(0.0, |crank| self.crank(crank, state));
         bodies_j(world, state) + crank_j + switch_j(world, state)

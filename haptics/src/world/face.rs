@@ -1,4 +1,5 @@
-//! The flat face of a fingertip: the foam under it is pressed more on one side when what it holds turns, and turns that back.
+//! The flat face of a fingertip: a held object that turns presses the foam under it more on one side, and is turned
+//! back.
 
 use super::model::Pad;
 use super::rect::Rect;
@@ -8,9 +9,9 @@ use std::f64::consts::FRAC_PI_2;
 impl Pad {
     /// Moment on a block that a finger presses from the side, N m, counter-clockwise.
     ///
-    /// An elastic foundation of stiffness k over the height 2 a that touches both (Winkler; Johnson, *Contact Mechanics*, 4.3):
-    /// k a²/3 for each radian that the surface leans, with the foam's damping in the same proportion; at the most N a, when
-    /// only an edge is left. The hand keeps its pads upright.
+    /// An elastic foundation of stiffness k over the height 2 a that touches both (Winkler; Johnson, *Contact
+    /// Mechanics*, 4.3): k a²/3 for each radian that the surface leans, with the foam's damping in the same proportion.
+    /// It is at most N a, when only an edge is left. The hand keeps its pads upright.
     pub(super) fn righting_n_m(&self, contact: &Contact, rect: &Rect, body: &BodyState) -> f64 {
         // From above or below a face has nothing to lean against.
         if contact.normal.x.abs() < contact.normal.y.abs() {

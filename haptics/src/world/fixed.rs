@@ -1,18 +1,18 @@
-//! What stands fixed and is solid for fingertips: the wall of the cup under the membrane, and the base of the switch.
+//! Fixed objects that are solid for fingertips: the wall of the cup under the membrane, and the base of the switch.
 
 use super::fixture::{Membrane, Switch};
 use super::rect::{Rect, point_in_rect};
 use crate::Vec2;
 
-/// How far the foot of the cup's wall stands out: its half width on the table over that of the sheet, as paper cups have it.
+/// Flare of the cup's wall: its half width on the table over that of the sheet, as paper cups have it.
 pub const CUP_FLARE: f64 = 1.13;
 
 /// Half the width and half the height of the switch's base, in shares of the lever's length.
 pub const SWITCH_BASE_HALF: [f64; 2] = [0.62, 0.13];
 
-/// Where a fingertip touches a fixed surface, or may touch it within the tick.
+/// Place of a fingertip on a fixed surface, or near enough to touch it within the tick.
 pub(super) struct Fixed {
-    /// Which face.
+    /// Face of the surface.
     pub feature: u8,
     /// Out of the surface.
     pub normal: Vec2,
@@ -20,8 +20,9 @@ pub(super) struct Fixed {
     pub depth_m: f64,
 }
 
-/// The cup's wall, from outside only: it leans from the rim of the sheet out to the table at `floor_m`. `kept` is the side that
-/// the finger pressed on in the tick before; whoever is deeper inside than `arrival_m` without that came another way.
+/// The cup's wall, from outside only: it leans from the rim of the sheet out to the table at `floor_m`. `kept` is the
+/// side that the finger pressed on in the tick before; a finger deeper inside than `arrival_m` without that came
+/// another way.
 pub(super) fn cup_wall(
     membrane: &Membrane,
     floor_m: f64,

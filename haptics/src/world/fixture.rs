@@ -1,4 +1,4 @@
-//! What stands fixed in the world and yields: the membrane and the toggle switch.
+//! Fixed objects of a world that yield: the membrane and the toggle switch.
 
 use super::check::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
@@ -38,7 +38,7 @@ pub struct Switch {
     pub finger_friction: f64,
     /// Force over displacement, as captured.
     pub curve: ToggleCurve,
-    /// Where it starts, m along the arc.
+    /// Starting position, m along the arc.
     pub start_m: f64,
 }
 

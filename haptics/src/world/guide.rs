@@ -1,8 +1,8 @@
 //! Guides: a body whose middle follows a curve in the plane, held to it by a stiff spring and damper, as a slider in a slot.
 //!
-//! The curve is a uniform cubic B-spline over few control points (de Boor 1978): two make a straight rail, the ends of an open one
-//! are its first and last point. The place on it is followed from part to part by projecting the body onto the tangent, so that
-//! a part costs the same however long the curve is.
+//! The curve is a uniform cubic B-spline over few control points (de Boor 1978): two make a straight rail, the ends of
+//! an open one are its first and last point. The place on it is followed from part to part by projecting the body onto
+//! the tangent. The cost of a part therefore does not depend on the length of the curve.
 
 use super::check::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
@@ -13,7 +13,7 @@ pub const MAX_GUIDE_POINTS: usize = 256;
 
 /// Speed within which the direction of friction is blurred, m/s.
 const BLUR_M_S: f64 = 2e-3;
-/// Steps of the projection in one part: the body moves by far less than a piece of the curve.
+/// Steps of the projection in one part: the body moves by far less than a span of the curve.
 const PROJECTIONS: usize = 2;
 
 /// A curve that a body's middle is held to.
@@ -44,7 +44,7 @@ pub struct Guided {
 }
 
 impl Guide {
-    /// Pieces of the curve between control points.
+    /// Number of spans of the curve between control points.
     pub fn pieces(&self) -> usize {
         if self.closed { self.points_m.len() } else { self.points_m.len().saturating_sub(1) }
     }

@@ -1,4 +1,4 @@
-//! The true contact state of a simulated world: what a generator writes into the `label` column. Never used to estimate.
+//! The true contact state of a simulated world: a generator writes it into the `label` column. Never used to estimate.
 
 use super::block::Shape;
 use super::model::World;
@@ -16,7 +16,7 @@ pub fn true_label(world: &World, state: &State) -> &'static str {
     }
     let held = |index: usize| [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), Surface::Block(index as u16)));
     let mut needles = world.blocks.iter().enumerate().filter(|(_, block)| block.shape == Shape::Needle);
-    // A needle that stands on the sheet or in it by itself is no insertion: nobody does anything.
+    // A needle that stands on the sheet or in it by itself is no insertion: no hand moves it.
     if world.membrane.is_some() && needles.any(|(index, _)| held(index)) {
         return match state.membrane.phase {
             MembranePhase::Free => "free-motion",

@@ -1,8 +1,8 @@
-//! Where a mechanism's tool point can go.
+//! Path of a mechanism's tool point.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a mechanism's tool point can go, in the frame of its recording (3-D; z = 0 for planar recordings).
+/// Path of a mechanism's tool point, in the frame of its recording (3-D; z = 0 for planar recordings).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum MechanismPath {
@@ -27,7 +27,7 @@ pub enum MechanismPath {
 }
 
 impl MechanismPath {
-    /// Where the tool point is at a coordinate, m or rad.
+    /// Position of the tool point at a coordinate, m or rad.
     pub fn point_m(&self, coordinate: f64) -> [f64; 3] {
         match self {
             Self::Prismatic { origin_m, direction } => added(*origin_m, *direction, coordinate),

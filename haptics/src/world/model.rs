@@ -1,4 +1,4 @@
-//! The immutable description of a virtual world: what stands in a world file.
+//! The immutable description of a virtual world: the content of a world file.
 
 use super::block::Block;
 use super::check::{self, WorldError, finite, not_negative, positive};
@@ -24,7 +24,7 @@ pub struct World {
     /// File format version, [`SCHEMA`].
     #[serde(default = "schema")]
     pub schema: u32,
-    /// What it is, for people.
+    /// Name for people.
     pub name: String,
     /// Downward acceleration, m/s².
     #[serde(default = "gravity")]
@@ -59,7 +59,7 @@ pub struct World {
     /// A mechanism with one degree of freedom that is driven directly, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mechanism: Option<Mechanism>,
-    /// Where the numbers come from: nothing here is guessed without saying so.
+    /// Sources of the numbers: nothing here is guessed without saying so.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub provenance: Vec<Provenance>,
 }
@@ -85,10 +85,10 @@ pub struct Pad {
     pub shear_stiffness_n_m: f64,
     /// Tangential damping of the sticking pad, N s/m, ≥ 0.
     pub shear_damping_n_s_m: f64,
-    /// Height of the pad's flat face, m, ≥ 0: it keeps what it presses on from turning. 0: it touches at a point.
+    /// Height of the pad's flat face, m, ≥ 0: it keeps the pressed object from turning. 0: it touches at a point.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub face_m: f64,
-    /// A slip of what is held, at a given time and over a given way; absent: it slips when friction says so.
+    /// A slip of the held object, at a given time and over a given way; absent: it slips when friction says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slip: Option<FingertipSlip>,
 }
@@ -137,7 +137,7 @@ pub struct Floor {
     pub stiffness_n_m: f64,
     /// Contact damping per contact point, N s/m.
     pub damping_n_s_m: f64,
-    /// What an impact takes, when it was measured: it stands in for damping and friction under blocks.
+    /// Measured velocity loss at an impact: it stands in for damping and friction under blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loss: Option<VelocityLoss>,
 }
@@ -169,7 +169,7 @@ pub struct Crank {
 pub struct Mechanism {
     /// Length or angle.
     pub coordinate: Coordinate,
-    /// How the coordinate lies in space, when a tool path was recorded.
+    /// Path of the coordinate in space, if a tool path was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<MechanismPath>,
     /// Laws along the coordinate.
@@ -179,7 +179,7 @@ pub struct Mechanism {
     pub direction_blur: f64,
 }
 
-/// Where one number of the world comes from.
+/// Source of one number of the world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
@@ -198,7 +198,7 @@ pub struct Provenance {
     pub from: String,
 }
 
-/// How a number came to be known.
+/// Kind of the source of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
@@ -268,7 +268,7 @@ impl World {
         Vec2::new(sin, -cos) * self.gravity_m_s2
     }
 
-    /// Says what makes the world impossible to run, if anything does.
+    /// Fault that makes the world impossible to run, if there is one.
     pub fn check(&self) -> Result<(), WorldError> {
         if self.schema > SCHEMA {
             return Err(WorldError::NewerSchema(self.schema));

@@ -1,4 +1,4 @@
-//! The parts that a tick is divided into, for what holds a body besides its contacts: numbers worked out on paper.
+//! The parts that a tick is divided into, for the constraints of a body besides its contacts: numbers computed by hand.
 
 use super::{World, presets, substeps};
 

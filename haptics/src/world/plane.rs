@@ -26,7 +26,7 @@ impl Plane {
         self.normal.normalize()
     }
 
-    /// How deep a point lies inside, m; negative outside.
+    /// Depth of a point inside, m; negative outside.
     pub fn depth_m(&self, point_m: Vec2) -> f64 {
         self.normal().dot(&(self.point_m - point_m))
     }

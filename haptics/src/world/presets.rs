@@ -95,7 +95,7 @@ pub fn needle() -> World {
     world
 }
 
-/// A barrel of unknown contents on a cable: heavy, with a wall that gives and breaks, and leaks from then on.
+/// A barrel of unknown contents on a cable: heavy, with a wall that yields and breaks, and leaks from then on.
 pub fn barrel() -> World {
     let mut world = World::empty("Barrel on a cable");
     let floor_m = floor_m(&world);

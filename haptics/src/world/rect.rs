@@ -103,8 +103,8 @@ fn least_overlap(reference: &Rect, other: &Rect, margin_m: f64) -> Option<(u8, f
     Some(if depth_x < depth_y { (face_x, depth_x) } else { (face_y, depth_y) })
 }
 
-/// Clips the incident rectangle's facing edge to the sides of the reference face and keeps what lies below the face, or less
-/// than `margin_m` above it.
+/// Clips the incident rectangle's facing edge to the sides of the reference face and keeps the points below the face,
+/// or less than `margin_m` above it.
 fn clip(reference: &Rect, incident: &Rect, face: u8, feature: u8, margin_m: f64) -> [Option<ManifoldPoint>; 2] {
     let (normal, offset) = reference.face(face);
     // The incident face looks most against the normal.

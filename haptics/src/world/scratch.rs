@@ -1,16 +1,16 @@
-//! What one tick works with. Its buffers are sized once and kept from tick to tick, because the servo never allocates.
+//! Scratch space of one tick. Its buffers are sized once and kept from tick to tick, because the servo never allocates.
 
 use super::contact::Touch;
 use super::model::MAX_BLOCKS;
 use super::rect::Rect;
 use crate::Vec2;
 
-/// Contacts that a state has room for: four corners of every block against the table, two points for each touching pair (a
-/// planar packing has at most 3 n pairs), two fingers on every block, and some on table and handle. Every state has this
-/// room, whatever its world, so that worlds can be swapped without allocation.
+/// Largest number of contacts in a state: four corners of every block against the table, two points for each touching
+/// pair (a planar packing has at most 3 n pairs), two fingers on every block, and some on table and handle. Every state
+/// has this room, whatever its world, so that worlds can be swapped without allocation.
 pub(super) const MAX_CONTACTS: usize = (4 + 6 + 2) * MAX_BLOCKS + 16;
 
-/// What one tick works with; nothing in it outlives the tick.
+/// Scratch space of one tick; nothing in it outlives the tick.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     /// Places that touch or may touch within the tick.
@@ -19,7 +19,7 @@ pub(super) struct Scratch {
     pub solids: Vec<Solid>,
     /// Direction of the crank's arm.
     pub arm: Arm,
-    /// How deep a fingertip may be pressed within the tick, m.
+    /// Largest possible compression of a fingertip within the tick, m.
     pub deepest_pad_m: f64,
 }
 
@@ -55,7 +55,7 @@ pub(super) struct Solid {
     pub rect: Rect,
     /// Radius of the circle around it, m.
     pub reach_m: f64,
-    /// How far any of its points may come within the tick, m.
+    /// Farthest way of any of its points within the tick, m.
     pub sweep_m: f64,
     /// 1/kg.
     pub inverse_mass: f64,
@@ -79,7 +79,7 @@ impl Scratch {
     }
 }
 
-/// The scratch space is no part of what a state is.
+/// The scratch space is no part of a state's identity.
 impl PartialEq for Scratch {
     fn eq(&self, _: &Self) -> bool {
         true

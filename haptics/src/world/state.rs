@@ -7,7 +7,7 @@ use crate::Vec2;
 use crate::law::Memories;
 use crate::law::object::{MembraneHistory, MembranePhase};
 
-/// What the fingers do during one tick, from the device.
+/// Positions and velocities of the fingers during one tick, from the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Input {
     /// Tip position in the world of finger 1 (left) and 2 (right), m.
@@ -27,7 +27,7 @@ pub struct BodyState {
     pub velocity_m_s: Vec2,
     /// Angular velocity, rad/s.
     pub rate_rad_s: f64,
-    /// What has run out of it so far, kg.
+    /// Mass that has run out of it so far, kg.
     pub leaked_kg: f64,
     /// Mean place along the table where that fell, m in the world.
     pub spilled_x_m: f64,
@@ -35,7 +35,7 @@ pub struct BodyState {
     pub broken: bool,
     /// Pull of its cable, N.
     pub cable_n: f64,
-    /// Where it is on its guide, and how that holds it.
+    /// Place on its guide, and the holding force.
     pub guided: Guided,
 }
 
@@ -45,9 +45,9 @@ pub const MAX_HOLES: usize = 8;
 /// A place of the membrane that a needle has touched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hole {
-    /// Where along the sheet, m from its middle, to the right.
+    /// Position along the sheet, m from its middle, to the right.
     pub along_m: f64,
-    /// What the sheet remembers there.
+    /// Memory of the sheet at this place.
     pub history: MembraneHistory,
 }
 
@@ -56,15 +56,15 @@ pub struct Hole {
 pub struct MembraneState {
     /// Places touched so far.
     pub holes: [Hole; MAX_HOLES],
-    /// How many of them are in use.
+    /// Number of holes in use.
     pub touched: usize,
     /// The place that the needle is in.
     pub active: Option<usize>,
-    /// How far the point is beyond the undisturbed surface, m; below zero it is above it.
+    /// Insertion of the point beyond the undisturbed surface, m; negative above it.
     pub insertion_m: f64,
     /// Force of the sheet along the needle, N, positive: out.
     pub force_n: f64,
-    /// What the needle is doing.
+    /// Phase of the needle's motion.
     pub phase: MembranePhase,
 }
 
@@ -98,11 +98,11 @@ pub struct CrankState {
     pub handle_velocity: Vec2,
     /// Force that arm and bearing put on the handle along the outward normal, N.
     pub constraint_force_n: f64,
-    /// What its laws remember, by effect.
+    /// Memories of its laws, by effect.
     pub memories: Memories,
 }
 
-/// What a contact is between.
+/// Party to a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// Finger 0 (left) or 1 (right).
@@ -132,9 +132,9 @@ pub struct Contact {
     pub on: Surface,
     /// The body that pushes.
     pub by: Surface,
-    /// Which corner, edge or face: tells points of one pair apart from tick to tick.
+    /// Corner, edge or face of the contact: tells points of one pair apart from tick to tick.
     pub feature: u8,
-    /// Where, in the world, m.
+    /// Position of the contact, m in the world.
     pub point_m: Vec2,
     /// Unit vector from `by` into `on`.
     pub normal: Vec2,
@@ -173,7 +173,7 @@ pub struct State {
     pub tick: u64,
     /// The input that led here.
     pub input: Input,
-    /// Force each tip exerts on the environment, N (what a force sensor in the tip reads).
+    /// Force each tip exerts on the environment, N (the reading of a force sensor in the tip).
     pub tip_force_n: [Vec2; 2],
     /// Blocks, in the order of the world's.
     pub bodies: Vec<BodyState>,
@@ -189,7 +189,7 @@ pub struct State {
     pub(super) scratch: Scratch,
     /// Largest impact speed since it was last cleared, m/s: drives sound and flash.
     pub impact_m_s: f64,
-    /// Where that was, m.
+    /// Position of that impact, m.
     pub impact_in_world: Vec2,
 }
 

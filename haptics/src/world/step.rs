@@ -1,11 +1,11 @@
 //! One tick of the world: contacts, laws, motion. Deterministic to the bit; allocates nothing.
 //!
-//! Bodies go half of a part on, get the forces of where they are then, and go on with the new velocity (position Verlet: second
-//! order, symplectic; Hairer, Lubich & Wanner 2003). What is driven along one coordinate, and what the fingers do, is taken at
-//! the end of a part (semi-implicit Euler: first order), so that the force that a device gets is as young as can be.
+//! Bodies advance by half of a part, get the forces of that position, and advance with the new velocity (position
+//! Verlet: second order, symplectic; Hairer, Lubich & Wanner 2003). Driven coordinates and fingers are taken at the end
+//! of a part (semi-implicit Euler: first order), so that the force for a device is as young as can be.
 //!
-//! Touches are found once a tick, the forces between them in each of its parts from the way that the surfaces have gone since
-//! (as the small-step solvers of game physics do, Macklin et al. 2019): finding them costs most.
+//! Touches are found once a tick. The forces between them follow in each of its parts from the motion of the surfaces
+//! since (as in the small-step solvers of game physics, Macklin et al. 2019): finding them costs most.
 
 use super::block::{Block, Shape};
 use super::collide::collide;
@@ -47,7 +47,7 @@ pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
         body_ahead_s: 0.5 * (part_s - dt_s),
         gravity: world.gravity_vector(),
         tip_velocity: input.tip_velocity,
-        // What the anchors add up is the way that the tips went, whatever velocity the device reports.
+        // `tip_chord`: the anchors add up the way of the tips, whatever velocity the device reports.
         crank_kg: world.crank.as_ref().map_or(0.0, Crank::mass_at_handle_kg),
         tip_chord: [0, 1].map(|f| (input.tip_in_world[f] - state.input.tip_in_world[f]) / dt_s),
     };
@@ -63,7 +63,7 @@ pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
     keep_contacts(state);
 }
 
-/// What is the same in all parts of a tick.
+/// Constants of all parts of a tick.
 struct Part {
     dt_s: f64,
     /// From the middle of the tick, where touches are found, to where the first part presses them, s: for fingers and bodies.
@@ -78,8 +78,8 @@ struct Part {
 /// Most parts of a tick; worlds that need more at 1 kHz are refused by their check, with a spare factor of two for slower servos.
 pub const MAX_PARTS: u32 = 256;
 
-/// Parts that a tick of `dt_s` is divided into: ω h ≤ 0.5 and damping h / m ≤ 1 for the stiffest body, ω h ≤ 0.6 for what is
-/// driven along one coordinate.
+/// Number of parts that a tick of `dt_s` is divided into: ω h ≤ 0.5 and damping h / m ≤ 1 for the stiffest body, ω h ≤
+/// 0.6 for a driven coordinate.
 ///
 /// The scheme is stable up to ω h = 2 without damping; at a quarter of that an undamped, tumbling block loses less than four
 /// thousandths of its energy at a bounce and gains less than one. Handle and knob do not tumble, and their own laws brake them.
@@ -94,7 +94,7 @@ fn parts_of(world: &World, dt_s: f64, pad_m: f64) -> u32 {
     ((dt_s * part_rate(world, pad_m).0).ceil() as u32).clamp(1, MAX_PARTS)
 }
 
-/// Parts a second that the world needs with the deepest fingertip at `pad_m`, and what needs them.
+/// Parts a second that the world needs with the deepest fingertip at `pad_m`, and the body that needs them.
 pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     const LIMIT: f64 = 0.5;
     const DAMPING_LIMIT: f64 = 1.0;
@@ -120,7 +120,7 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
         world.plane.as_ref().map_or((0.0, 0.0), |p| (2.0 * p.stiffness_n_m, 2.0 * p.damping_n_s_m));
     let ground = (floor_stiffness + plane_stiffness, floor_damping + plane_damping);
     for block in &world.blocks {
-        // What may run out counts as gone: the step must not change as it leaks.
+        // Content that may run out counts as gone: the step must not change as it leaks.
         let mass_kg = block.mass_kg - block.content.map_or(0.0, |c| c.mass_kg);
         let turning = if block.keeps_upright() { 1.0 } else { ROTATION };
         let (held, held_damping) = held_by(world, block);
@@ -139,7 +139,7 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     (most.0.sqrt(), most.1)
 }
 
-/// Stiffness and damping of what holds one body besides contacts: cable, guide and membrane, N/m and N s/m.
+/// Stiffness and damping of one body's constraints besides contacts: cable, guide and membrane, N/m and N s/m.
 fn held_by(world: &World, block: &Block) -> (f64, f64) {
     let (mut stiffness, mut damping) = block.cable.map_or((0.0, 0.0), |c| (c.stiffness_n_m, c.damping_n_s_m));
     if let Some(guide) = &block.guide {
@@ -173,7 +173,8 @@ fn advance(world: &World, state: &mut State, part: &Part, first: bool) {
     }
 }
 
-/// Presses all touches and loads what takes part. Returns the force on the crank's handle and on the switch's knob, N.
+/// Presses all touches and adds their forces to the bodies. Returns the force on the crank's handle and on the switch's
+/// knob, N.
 fn press_all(
     world: &World,
     state: &mut State,
@@ -221,7 +222,7 @@ fn press_all(
             }
         }
         match touch.contact.on {
-            // A finger feels the reaction; its sensor reads what it exerts.
+            // A finger feels the reaction; its sensor reads its own force.
             Surface::Finger(finger) => state.tip_force_n[usize::from(finger)] -= force,
             Surface::Block(index) => load(&mut solids[usize::from(index)], touch.arm_on_m, force),
             _ => {}
@@ -271,7 +272,7 @@ fn velocity_at(body: &BodyState, arm_m: Vec2) -> Vec2 {
     body.velocity_m_s + Vec2::new(-arm_m.y, arm_m.x) * body.rate_rad_s
 }
 
-/// What holds bodies besides contacts: cables, guides and the membrane; and what runs out of them.
+/// Forces on bodies besides contacts: cables, guides and the membrane; and the loss of mass by leaks.
 fn hold(world: &World, state: &mut State, dt_s: f64) {
     let State { scratch: Scratch { touches, solids, .. }, bodies, membrane, time_s, .. } = state;
     for (index, block) in world.blocks.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Force arrows: the force that each fingertip exerts on the environment, in front of everything; beside it, slender, what a model says.
+//! Force arrows: the force that each fingertip exerts on the environment, in front of everything; the slender ones
+//! beside them are the forces of a model.
 
 use super::{Canvas, outwards, thing_scale, tip};
 use crate::draw_data::Layer;
@@ -13,7 +14,7 @@ use glam::Vec2;
 const SMALLEST_N: f32 = 0.02;
 const SHAFT_RADIUS_M: f32 = 0.00115;
 const SLENDER_M: f32 = 0.0006;
-/// So far before the measured one it is seen even where both are the same.
+/// Distance in front of the measured arrow, m: a predicted one is seen even if both are the same.
 const IN_FRONT_M: f32 = 0.004;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
@@ -43,7 +44,7 @@ fn draw_arrow(
     }
     let arrow = force * view.options.force_scale_m_per_n;
     let (tail, head) = match view.options.arrow_anchor {
-        // Just off the foam, so that the head does not hide what it pushes on.
+        // Just off the foam, so that the head does not hide the pushed object.
         ArrowAnchor::HeadAtTip => (tip - arrow, tip),
         ArrowAnchor::TailAtTip => (tip, tip + arrow),
     };

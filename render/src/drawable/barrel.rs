@@ -1,5 +1,5 @@
-//! Barrels: small steel drums with two hoops, a band with a placard between them, and a lid. A broken one shows its crack;
-//! how full it is can never be seen.
+//! Barrels: small steel drums with two hoops, a band with a placard between them, and a lid. A broken one shows its
+//! crack; its filling can never be seen.
 
 use super::Canvas;
 use super::block::Body;
@@ -98,7 +98,7 @@ fn placard(canvas: &mut Canvas<'_>, body: Body) {
     slab(at - Vec2::Y * 0.60 * side, Vec2::splat(0.14 * side), 0.0, 0.00048, 0.00008, mark);
 }
 
-/// Where the crack drips, in the barrel's frame: its lower end and two corners.
+/// Starting points of drips from the crack, in the barrel's frame: its lower end and two corners.
 pub(super) fn drip_starts(half: Vec2) -> [Vec2; 3] {
     let [x, y, _] = CRACK[5];
     let [left_x, left_y, _] = CRACK[4];

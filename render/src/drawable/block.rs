@@ -13,7 +13,7 @@ use haptics::world::Shape;
 /// Radius of the edges, m.
 const EDGE_M: f32 = 0.0009;
 
-/// Where a body is and how it looks.
+/// Pose and look of a body.
 #[derive(Clone, Copy)]
 pub(super) struct Body {
     pub center: Vec2,
@@ -21,7 +21,7 @@ pub(super) struct Body {
     pub half: Vec2,
     pub turn: f32,
     pub color: Color,
-    /// How much of the colour shines by itself: while the body is being talked about.
+    /// Share of the colour that shines by itself: while the body is being talked about.
     pub unlit: f32,
 }
 

@@ -1,5 +1,5 @@
-//! Cables: from an eyelet to the back of the body that they hold. A slack one hangs as a catenary of its true length, and lies on
-//! the table where it reaches it; a taut one is straight and shows how hard it pulls.
+//! Cables from an eyelet to the back of the body that they hold. A slack one hangs as a catenary of its true length,
+//! and lies on the table where it reaches it; a taut one is straight and shows the size of its pull.
 
 use super::{Canvas, Mode, angle};
 use crate::Material;
@@ -11,7 +11,7 @@ use crate::vec2;
 use glam::{Vec2, Vec3};
 
 const RADIUS_M: f32 = 0.00065;
-/// Pieces that a slack cable is drawn in.
+/// Segments of the drawing of a slack cable.
 const PIECES: u16 = 28;
 /// Radius of the eyelet's ring and of its wire, m.
 const RING_M: f32 = 0.0027;
@@ -26,7 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
             eyelet(canvas, anchor, depth);
         }
         let taut = state.cable_n > 0.0;
-        // As hard as it can look: three times what hangs on it.
+        // As hard as it can look: three times the hanging weight.
         let weight_n = (block.mass_kg * view.world.gravity_m_s2.abs()).max(0.5);
         let (color, unlit) =
             if taut { pull_color(canvas, (state.cable_n / weight_n) as f32) } else { (canvas.palette.rope, 0.0) };
@@ -49,8 +49,8 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     }
 }
 
-/// From the rope's own colour at no pull over the colour of constraints at the body's weight to the warning colour at three
-/// times the weight; and how much of it shines by itself.
+/// Colour of the rope by its pull, and the share of it that shines by itself. It goes from the rope's own colour at no
+/// pull over the colour of constraints at the body's weight to the warning colour at three times the weight.
 fn pull_color(canvas: &Canvas<'_>, weights: f32) -> (Color, f32) {
     let (constraint, hard) = (canvas.color(ColorRole::Constraint), canvas.color(ColorRole::Saturated));
     let color = canvas.palette.rope.mix(constraint, (0.4 + 0.6 * weights).min(1.0));
@@ -70,7 +70,7 @@ fn eyelet(canvas: &mut Canvas<'_>, anchor: Vec2, depth: f32) {
     }
 }
 
-/// What would hang below the table lies on it, backwards, just as long.
+/// Point of a cable; parts that would hang below the table lie on it, backwards, just as long.
 fn fold(point: Vec2, floor: f32, depth: f32) -> Vec3 {
     let below = (floor - point.y).max(0.0);
     Vec3::new(point.x, point.y.max(floor), depth - below)

@@ -1,4 +1,4 @@
-//! Where bodies touch: a ring around a point in front of everything, in the warning colour while they slide.
+//! Contacts of bodies: a ring around a point in front of everything, in the warning colour while they slide.
 
 use super::{Canvas, Line, at};
 use crate::draw_data::Layer;

@@ -1,5 +1,5 @@
-//! Paper cups: a tapering wall with a rolled rim, a sleeve around the middle, and what one sees of the inside from above. A crushed one
-//! shows its tear.
+//! Paper cups: a tapering wall with a rolled rim, a sleeve around the middle, and the visible part of the inside from
+//! above. A crushed one shows its tear.
 
 use super::Canvas;
 use super::barrel::crack;
@@ -10,11 +10,13 @@ use crate::shape::Solid;
 use crate::theme::Color;
 use glam::Vec2;
 
-/// How much wider than at its middle, where the fingers are, it is at the top, and narrower at the bottom, as a share of the radius.
+/// Excess of the radius at the top over that at the middle, where the fingers are, as a share of it; the bottom is as
+/// much narrower.
 const TAPER: f32 = 0.07;
 /// Half the thickness of the rolled rim and how far it stands out, in shares of the radius.
 const RIM: f32 = 0.05;
-/// Where the sleeve begins and ends, in shares of the half height, and how far it stands out, in shares of the radius.
+/// Beginning and end of the sleeve, in shares of the half height; `SLEEVE_OUT`: its protrusion, in shares of the
+/// radius.
 const SLEEVE: [f32; 2] = [-0.62, 0.42];
 const SLEEVE_OUT: f32 = 0.015;
 /// The inside begins so far below the rim, in shares of the radius: the world does not say how full it is.

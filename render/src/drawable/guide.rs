@@ -11,7 +11,7 @@ use glam::Vec2;
 /// Half the width of the slot and the radius of its edges, m.
 const HALF_M: f32 = 0.0022;
 const EDGE_M: f32 = 0.0007;
-/// Pieces between two control points.
+/// Segments of the drawing between two control points.
 const PIECES: usize = 10;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {

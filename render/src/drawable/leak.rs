@@ -1,4 +1,4 @@
-//! What has run out of a body: a streak below the crack, drops on their way, a puddle that grows on the table.
+//! Leaks of a body: a streak below the crack, drops on their way, a puddle that grows on the table.
 
 use super::barrel::{drip_starts, on_front};
 use super::block::{Body, reach};
@@ -12,7 +12,7 @@ use haptics::world::{Block, BodyState, Shape};
 
 /// Radius of a puddle that holds all of the content, in half widths of the body.
 const PUDDLE: f32 = 2.1;
-/// Where its lobes lie and how large they are, in radii of the puddle: a puddle is not a disc.
+/// Places and sizes of its lobes, in radii of the puddle: a puddle is not a disc.
 const LOBES: [[f32; 3]; 6] = [
     [0.0, 0.0, 0.72],
     [0.40, 0.22, 0.52],
@@ -23,7 +23,7 @@ const LOBES: [[f32; 3]; 6] = [
 ];
 /// Bright places, likewise; much longer than deep.
 const GLINTS: [[f32; 3]; 3] = [[-0.46, 0.44, 0.22], [0.46, 0.46, 0.13], [0.10, 0.74, 0.10]];
-/// A drop leaves every so many seconds of simulated time, and takes as long to fall as it does to grow.
+/// Time between two drops, s of simulated time; a drop takes as long to fall as it does to grow.
 const DROP_PERIOD_S: f64 = 0.45;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {

@@ -16,7 +16,7 @@ use haptics::world::{Hole, Membrane, MembraneState, Shape, State, World};
 const PAPER_M: f32 = 0.00032;
 const CUT_Z: [f32; 2] = [-0.0004, 0.00015];
 const NO_TABLE_M: f32 = 0.022;
-/// How much the wall leans outwards: radius at the table over radius at the sheet.
+/// Outward lean of the wall: radius at the table over radius at the sheet.
 const FLARE: f32 = 1.13;
 /// Half the width of a hole, and how far its torn rim hangs down, m.
 const HOLE_M: f32 = 0.0009;
@@ -28,7 +28,7 @@ const RIM_STEPS: u16 = 24;
 struct Sheet {
     center: Vec2,
     radius: f32,
-    /// Where the dent is deepest, from the middle, and how deep, m; negative: drawn upwards.
+    /// Deepest point of the dent, from the middle, m; `depth`: its depth, m, negative if drawn upwards.
     apex: f32,
     depth: f32,
 }
@@ -87,7 +87,7 @@ fn shape_now(membrane: &Membrane, world: &World, state: &State) -> Sheet {
     Sheet { center: vec2(membrane.center_m), radius, apex, depth: (depth as f32).clamp(-radius, 2.0 * radius) }
 }
 
-/// Where the point of the needle that is in the sheet is along it, m from the middle: the lowest one.
+/// Position along the sheet of the needle's point, m from the middle: that of the lowest needle.
 fn point_along(membrane: &Membrane, world: &World, state: &State) -> Option<f64> {
     let needles = world.blocks.iter().zip(&state.bodies).filter(|(block, _)| block.shape == Shape::Needle);
     let lowest = needles

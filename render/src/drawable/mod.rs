@@ -87,7 +87,7 @@ enum Mode {
     Ghost,
 }
 
-/// Where drawables put their shapes; a ghost canvas makes everything translucent and leaves the table alone.
+/// Canvas to which drawables add their shapes; a ghost canvas makes everything translucent and leaves the table alone.
 pub(crate) struct Canvas<'a> {
     data: &'a mut DrawData,
     mode: Mode,
@@ -171,7 +171,7 @@ fn thing_scale(view: &SceneView<'_>) -> f32 {
     }
 }
 
-/// How a line looks.
+/// Look of a line.
 #[derive(Clone, Copy)]
 struct Line {
     width_px: f32,

@@ -54,7 +54,7 @@ fn slab(x: [f32; 2], y: [f32; 2], half_z: f32) -> (Vec3, Vec3) {
     (center, Vec3::new(0.5 * (x[1] - x[0]).abs(), 0.5 * (y[1] - y[0]).abs(), half_z))
 }
 
-/// How far a finger's foam is pressed in sideways, m.
+/// Compression of a finger's foam sideways, m.
 fn compression(state: &State, finger: usize) -> f32 {
     let touches = |s: Surface| s == Surface::Finger(finger as u8);
     let contacts = state.contacts.iter().filter(|c| touches(c.by) || touches(c.on));

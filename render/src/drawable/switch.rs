@@ -1,5 +1,6 @@
-//! The toggle switch: a housing on the table, a bushing with a slot, a lever with a round knob, and a mark at each end of the
-//! throw: a ring at the left one, a bar at the right one, as on real switches. The mark of the side that it is on is lit.
+//! The toggle switch: a housing on the table, a bushing with a slot, a lever with a round knob, and a mark at each end
+//! of the throw. The marks are a ring at the left end and a bar at the right one, as on real switches; the mark of its
+//! present side is lit.
 
 use super::{Canvas, HALF_DEPTH_M, Mode, at};
 use crate::Material;

@@ -83,8 +83,8 @@ pub(super) fn shell(n: u16) -> Mesh {
 /// The back half (z ≤ 0) of a level round sheet of radius 1, dented by `radius.y` at an apex that is `radius.x` beside its
 /// middle, seen from above and from below.
 ///
-/// Its normals are those of a dent as deep as the radius, not of unit length: [`crate::shape::Solid::sheet`] stretches the
-/// instance so that they come out right for every depth.
+/// Its normals are those of a dent as deep as the radius, not of unit length: [`crate::shape::Solid::sheet`] stretches
+/// the instance so that they are right for every depth.
 pub(super) fn sheet(n: u16) -> Mesh {
     let mut mesh = Mesh::default();
     for above in [true, false] {

@@ -1,4 +1,5 @@
-//! What the shaders can read beside their vertices: numbers of the scene, the shadow map or that of undersides, the table's light maps.
+//! Bind groups of the shaders beside their vertices: numbers of the scene, the shadow map or that of undersides, the
+//! table's light maps.
 
 use super::MapFormat;
 
@@ -6,7 +7,7 @@ use super::MapFormat;
 #[derive(Debug)]
 pub(crate) struct Groups {
     layouts: [wgpu::BindGroupLayout; 3],
-    /// What the maps in group 1 hold.
+    /// Format of the maps in group 1.
     pub(crate) map_format: MapFormat,
 }
 

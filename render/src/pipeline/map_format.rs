@@ -1,6 +1,6 @@
-//! What the maps of the light are made of: numbers, or bytes where a driver cannot draw numbers (OpenGL without targets of floats).
+//! Format of the light maps: numbers, or bytes if a driver cannot draw numbers (OpenGL without targets of floats).
 
-/// How a map holds what is nearest at each place.
+/// Format of the nearest surface at each place of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapFormat {
     /// One number a place.
@@ -10,7 +10,7 @@ pub(crate) enum MapFormat {
 }
 
 impl MapFormat {
-    /// The best that a device can draw into: it is tried, because a device does not tell what its driver lacks.
+    /// The best that a device can draw into: it is tried, because a device does not tell the limits of its driver.
     pub(crate) fn of(device: &wgpu::Device) -> Self {
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let tried = device.create_texture(&wgpu::TextureDescriptor {

@@ -1,4 +1,4 @@
-//! The pipelines: how each kind of shape becomes pixels. Shaders stand beside this file.
+//! The pipelines: each turns one kind of shape into pixels. Shaders stand beside this file.
 
 mod groups;
 mod map_format;
@@ -27,11 +27,11 @@ pub(crate) const TABLE_LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::
 pub(crate) struct Pipelines {
     /// Solids as the key light sees them: their depth.
     pub cast: wgpu::RenderPipeline,
-    /// What of the key light reaches the table.
+    /// Share of the key light that reaches the table.
     pub table_light: wgpu::RenderPipeline,
     /// Solids as the table sees them: how high they hang.
     pub under: wgpu::RenderPipeline,
-    /// How much of the sky they hide from it.
+    /// Share of the sky that they hide from it.
     pub sky: wgpu::RenderPipeline,
     pub solid: wgpu::RenderPipeline,
     pub table: wgpu::RenderPipeline,
@@ -45,23 +45,23 @@ pub(crate) struct Pipelines {
     pub overlay: wgpu::RenderPipeline,
 }
 
-/// What is the same in every pipeline of one renderer.
+/// Inputs that are the same for every pipeline of one renderer.
 struct Maker<'a> {
     device: &'a wgpu::Device,
     groups: &'a Groups,
 }
 
-/// What a pipeline draws into.
+/// Target of a pipeline.
 #[derive(Clone, Copy)]
 struct Into {
     format: wgpu::TextureFormat,
     samples: u32,
-    /// How many of the bind groups its passes have.
+    /// Number of bind groups of its passes.
     groups: usize,
     depth: bool,
 }
 
-/// What differs from pipeline to pipeline.
+/// Inputs that differ from pipeline to pipeline.
 struct Spec<'a> {
     label: &'a str,
     module: &'a wgpu::ShaderModule,
@@ -79,7 +79,7 @@ struct Spec<'a> {
     culled: bool,
 }
 
-/// What a pipeline does with the colour it computes.
+/// Use of the colour that a pipeline computes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ink {
     Opaque,
@@ -191,7 +191,7 @@ fn table_map<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule, [vertex, fra
     }
 }
 
-/// Steps of depth that a ghost is pushed back by, so that it does not fight with what it coincides with.
+/// Steps of depth that a ghost is pushed back by, so that it does not fight with a coincident solid.
 const GHOST_DEPTH_BIAS: i32 = 24;
 
 /// First pass of a ghost: only depth, so that its own inner faces do not show through.

@@ -1,29 +1,31 @@
-//! Line or circle: a probability, and from where on it is an answer.
+//! Line or circle: a probability, and the thresholds from which it is an answer.
 //!
-//! The thresholds are set so that an answer is right in at least 19 of 20 mechanisms like those of the prior, on tuning seeds; for
-//! pieces cut out of a motion, of which the prior does not speak, they are stricter. The figures are in `docs/constraints.md`.
+//! The thresholds are set so that an answer is right in at least 19 of 20 mechanisms like those of the prior, on tuning
+//! seeds. For parts cut out of a motion, which the prior does not cover, they are stricter. The figures are in
+//! `docs/constraints.md`.
 
 use super::super::noise::PathNoise;
 use super::{HINGE_M, Shape};
 
-/// Posterior probability from which on the path of a whole motion is called straight …
+/// Least posterior probability for a straight path of a whole motion.
 const STRAIGHT_WHOLE: f64 = 0.65;
-/// … that of one whose rest at the ends is seen in a few samples only …
+/// The same for a motion whose rest at the ends is seen in a few samples only.
 const STRAIGHT_FEW: f64 = 0.78;
-/// … and that of a piece of one.
+/// The same for a part of a motion.
 const STRAIGHT_PIECE: f64 = 0.93;
-/// … provided that it bends by no more than this over its length with 95 % certainty, rad: a whole motion, a piece.
+/// Largest bend of a straight path over its length with 95 % certainty, rad: a whole motion, a part.
 const STRAIGHT_WHOLE_RAD: f64 = 1.0;
 const STRAIGHT_PIECE_RAD: f64 = 0.5;
-/// Below this, or where the interval leaves no doubt, it is called round whatever its bend is.
+/// Probability of a line below which a path is round whatever its bend. It is also round if the interval leaves no
+/// doubt.
 const ROUND_PROBABILITY: f64 = 0.02;
-/// … and below this as long as it bends little: a circle that bends more would be plain to see, and what hides it is no noise
-/// but another shape.
+/// The same for a slight bend: a circle that bends more would be plain to see, and is hidden not by noise but by
+/// another shape.
 const ROUND_SLIGHT: f64 = 0.3;
 const SLIGHT_BEND_RAD: f64 = 0.6;
-/// A path that bends by more than this, with certainty, is round whatever was thought before, rad.
+/// Certain bend from which a path is round whatever the prior, rad.
 const ROUND_RAD: f64 = 0.15;
-/// Hinges turn by at least this, rad (5°): who records a hinge moves it.
+/// Least turn of a recorded hinge, rad (5°): hinges are recorded while they move.
 const HINGE_TURN_RAD: f64 = 0.087;
 
 impl Shape {

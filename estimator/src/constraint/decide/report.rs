@@ -1,4 +1,4 @@
-//! Numbers of a decided shape: what stands in a constraint beside its kind.
+//! Numbers of a decided shape: the content of a constraint beside its kind.
 
 use super::{CLOSE_SHARE, COMPACT_NOISES, COMPACT_SHARE, GUIDE_ALONG, RIGID_N_M, Shape};
 use crate::constraint::spline;

@@ -203,7 +203,7 @@ fn sparse_paths_are_decided_where_their_evidence_suffices_and_never_wrongly() {
         let drawer = look(&sparse(12, 100 + seed, &on_line, 1e-3));
         assert_ne!(drawer.kind, ConstraintKind::Revolute, "{}", drawer.evidence);
         lines += usize::from(drawer.kind == ConstraintKind::Prismatic);
-        // Short pieces of wide doors bend by no more than their noise: nothing may be said.
+        // Short parts of wide doors bend by no more than their noise: nothing may be said.
         let piece = look(&sparse(12, 200 + seed, &on_arc(0.5, 0.15), 1e-3));
         assert_ne!(piece.kind, ConstraintKind::Prismatic, "{}", piece.evidence);
         let bent = look(&sparse(14, 300 + seed, &on_arc(0.3, 0.5), 2e-3));

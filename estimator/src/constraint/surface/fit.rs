@@ -6,14 +6,14 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Rows that the contact is averaged to, at most: neighbouring samples say the same.
 const ROWS: usize = 400;
-/// The slant is taken from the positions when the tool slid over at least this, m, and over so many times the noise.
+/// Least way of a sliding tool, m, and in multiples of the noise, from which the slant is taken from the positions.
 const SLID_M: f64 = 3e-3;
 const SLID_NOISES: f64 = 20.0;
 /// A second direction of sliding counts from this share of the first on.
 const SECOND_SHARE: f64 = 0.1;
 /// Steps of the slant towards its end.
 const STEPS: usize = 6;
-/// A bend is seen from so many standard errors on.
+/// Size of a bend in standard errors from which it is seen.
 const SEEN: f64 = 3.0;
 /// Share of the depth that a straight law of give gets wrong.
 const GIVE_SHARE: f64 = 0.01;
@@ -150,7 +150,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// The push with what lies along the sliding taken off, which is friction's.
+    /// The push less its part along the sliding, which is friction's.
     fn leaning_on_the_push(self, push: Vector3<f64>, planar: bool) -> Self {
         let out = -(push - self.along * self.along.dot(&push));
         let Some(normal) = out.try_normalize(1e-9) else { return self };

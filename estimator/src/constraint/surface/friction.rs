@@ -9,9 +9,9 @@ use nalgebra::Vector3;
 const SLIDING_SHARE: f64 = 0.4;
 /// Fewer rows tell nothing.
 const LEAST_ROWS: usize = 20;
-/// What Coulomb's law gets wrong about a compliant contact, as a share of the coefficient.
+/// Model error of Coulomb's law for a compliant contact, as a share of the coefficient.
 const MODEL_SHARE: f64 = 0.02;
-/// Half of the chord that gives direction and speed, as a share of the samples, and at least so many samples.
+/// Half of the chord for direction and speed, as a share of the samples, and a least number of samples.
 const CHORD_SHARE: f64 = 0.005;
 const CHORD_LEAST: usize = 3;
 
@@ -24,7 +24,7 @@ pub struct Rubbing {
     pub std_error: f64,
 }
 
-/// From both directions of sliding where there are two: what does not turn with the motion belongs to the slant.
+/// From both directions of sliding if there are two: the part that does not turn with the motion belongs to the slant.
 pub(super) fn rubbing(pressed: &Pressed<'_>, split: &Split, plane: &Plane) -> Option<Rubbing> {
     let n = pressed.points.len();
     let half = ((CHORD_SHARE * n as f64) as usize).max(CHORD_LEAST);

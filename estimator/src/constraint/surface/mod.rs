@@ -1,9 +1,10 @@
-//! A surface that pushes one way: a tool, or a thing that is carried, presses on a table or a wall, slides along it and comes off.
+//! A surface that pushes one way: a tool, or a carried object, presses on a table or a wall, slides along it and comes
+//! off.
 //!
-//! Force splits the recording into contact and free motion. In contact the position follows a plane, deeper where the push
-//! is harder; the push never turns into a pull; and where the tool is off the plane, on the free side, nothing holds it. All
-//! three are asked for: a rail pulled from one side only, or a spring, has no free side and is not called a surface.
-//! Whether the push is real is a test with a stated rate of false alarms ([`test`]).
+//! Force splits the recording into contact and free motion. A surface has three signs. In contact the position follows
+//! a plane, deeper under a harder push. The push never turns into a pull. Off the plane, on the free side, nothing
+//! holds the tool. All three are required: a rail pulled from one side only, or a spring, has no free side and is not
+//! called a surface. The reality of the push is a test with a stated rate of false alarms ([`test`]).
 
 mod fit;
 mod friction;
@@ -22,11 +23,11 @@ use split::Split;
 
 /// Stiffness of a hand of which nothing is known, N/m.
 const HAND_N_M: f64 = 2000.0;
-/// The plane of contact may be missed by so many times the noise, by this share of the way along it, or by this, m …
+/// Largest distance from the plane of contact: in multiples of the noise, as a share of the way along it, or in m.
 const CLOSE_NOISES: f64 = 5.0;
 const CLOSE_SHARE: f64 = 0.01;
 const CLOSE_M: f64 = 3e-4;
-/// … and the tool must have been off it by more than this, m, and by so many times what it is missed by.
+/// Least distance of the tool off the plane, m; `OFF_NOISES`: the same in multiples of the distance from it in contact.
 const OFF_M: f64 = 1e-3;
 const OFF_NOISES: f64 = 5.0;
 /// Free samples behind the plane, beside where it was touched, that speak against it: a share of all free ones.

@@ -5,29 +5,29 @@ use nalgebra::Vector3;
 
 /// Fewer samples of contact or of free motion tell nothing.
 pub(super) const LEAST_SAMPLES: usize = 12;
-/// A force counts as contact from so many times its noise on …
+/// Least force in contact, in multiples of its noise.
 const NOISES: f64 = 6.0;
-/// … and from this share of the strongest push on (what a moving tool weighs is less).
+/// Least force in contact, as a share of the strongest push (the weight of a moving tool is less).
 const CONTACT_SHARE: f64 = 0.2;
 /// Below this share the tool is free.
 const FREE_SHARE: f64 = 0.08;
-/// Free samples scatter by less than this share of what still counts as free.
+/// Largest scatter of free samples, as a share of the largest force that still counts as free.
 const QUIET_SHARE: f64 = 0.35;
 /// The strongest push is this quantile of the force's size, so that a knock does not set it.
 const STRONG: f64 = 0.9;
 /// Share of the samples, those of the least force, that a first idea of the sensor's zero comes from.
 const QUIET: f64 = 0.1;
-/// A push stays within 60° of its mean …
+/// Cosine of the largest angle of a push from its mean, 60°.
 const WITHIN_COSINE: f64 = 0.5;
-/// … in all but this share of the contact.
+/// Share of the contact that may be outside that angle.
 const STRAY_SHARE: f64 = 0.02;
 
-/// Positions and forces of what presses.
+/// Positions and forces of the pressing tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<'a> {
     /// Positions, m.
     pub points: &'a [Vector3<f64>],
-    /// Force of the tool on what it touches, N.
+    /// Force of the tool on the surface, N.
     pub forces: &'a [Vector3<f64>],
     /// Times, s, where there is a clock.
     pub time_s: Option<&'a [f64]>,
@@ -35,7 +35,7 @@ pub struct Pressed<'a> {
     pub planar: bool,
 }
 
-/// Which samples are contact and which are free.
+/// Samples of contact and of free motion.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
     pub contact: Vec<bool>,

@@ -1,9 +1,9 @@
-//! Is there a push at all that depends on the side of the plane?
+//! Test of a push that depends on the side of the plane.
 //!
-//! Plane and push were chosen to fit, so they are tested on other data than they were fitted to: the recording is cut into
-//! pieces, plane and split of every other piece say where contact is, and the push in the pieces between is compared: its mean on
-//! the plane and off it, each piece one sample, because what happens within a piece hangs together (Welch's t). Inertia is
-//! taken off where there is a clock: a mass that is shaken pushes hardest where it turns round.
+//! Plane and push were chosen to fit, so they are tested on held-out data. The recording is cut into blocks. Plane and
+//! split of every other block tell the contact, and the push in the blocks between is compared: its mean on the plane
+//! and off it. Each block is one sample, because rows within a block are correlated (Welch's t). With a clock the
+//! inertial force is taken off: a mass that is shaken pushes hardest at its reversals.
 
 use super::super::existence::FALSE_ALARMS;
 use super::fit::Plane;
@@ -14,15 +14,15 @@ use crate::signal::derive::savitzky_golay;
 use nalgebra::Vector3;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Pieces of the recording.
+/// Blocks of the recording.
 const PIECES: usize = 24;
-/// Rows of one side in a piece that make a mean.
+/// Rows of one side in a block that make a mean.
 const LEAST_ROWS: usize = 3;
-/// Rows that the tested pieces are averaged to, at most.
+/// Largest number of rows that the tested blocks are averaged to.
 const ROWS: usize = 600;
-/// What no model of a grip gets right, as a share of the force.
+/// Model error of a grip, as a share of the force.
 const MODEL_SHARE: f64 = 0.02;
-/// Within so many times the plane's own residual a sample counts as on it.
+/// Largest distance of a sample on the plane, in multiples of the plane's own residual.
 const ON_NOISES: f64 = 3.0;
 /// Half of the window over which motion is smoothed for its acceleration, s.
 const HALF_S: f64 = 0.05;
@@ -91,7 +91,7 @@ pub(super) fn existence(pressed: &Pressed<'_>, split: &Split, plane: &Plane) -> 
     })
 }
 
-/// Mean of some pieces and the variance of that mean.
+/// Mean of some blocks and the variance of that mean.
 struct Group {
     mean: f64,
     variance: f64,
@@ -110,7 +110,7 @@ impl Group {
     }
 }
 
-/// The plane of the learned pieces alone.
+/// The plane of the learned blocks alone.
 fn learn(pressed: &Pressed<'_>, split: &Split, learned: &[bool]) -> Option<Plane> {
     let contact = split.contact.iter().zip(learned).map(|(c, l)| *c && *l).collect();
     Plane::fit(pressed, &Split { contact, ..split.clone() })

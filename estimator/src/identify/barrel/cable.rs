@@ -1,5 +1,5 @@
-//! A cable as the hand feels it: beyond some place a pull sets in and grows. From one side only, so it is searched for among
-//! all directions and places; where the pull turns as the barrel moves, it points at the place where the cable is tied.
+//! A cable as the hand feels it: beyond some place a pull sets in and grows. It pulls from one side only, so all
+//! directions and places are searched. A pull that turns as the barrel moves points at the anchor of the cable.
 //!
 //! The pull at p, towards the anchor A, is k max(0, |p − A| − L). Written about a place p₀ in the direction u away from the
 //! anchor, with one over the distance κ = 1/|p₀ − A|, it stays regular for a cable so long that its pull does not turn.
@@ -13,7 +13,7 @@ pub struct Cable {
     pub about_m: Vec2,
     /// Direction away from the anchor there, rad from the horizontal.
     pub angle_rad: f64,
-    /// Where it gets taut, along that direction from the place, m.
+    /// Place at which it becomes taut, along that direction from the reference place, m.
     pub taut_m: f64,
     /// One over the distance of the anchor from the place, 1/m; 0: too far to tell.
     pub bend_1_m: f64,
@@ -25,7 +25,7 @@ impl Cable {
         Vec2::new(self.angle_rad.cos(), self.angle_rad.sin())
     }
 
-    /// How far it is stretched at `p`, m (below 0: slack), and the unit vector away from the anchor there.
+    /// Stretch at `p`, m (below 0: slack), and the unit vector away from the anchor there.
     pub fn stretch(&self, p: Vec2) -> (f64, Vec2) {
         let u = self.away();
         let way = p - self.about_m;
@@ -38,7 +38,7 @@ impl Cable {
         (gone - self.taut_m, direction)
     }
 
-    /// Where it is tied, m; `None` without a bend.
+    /// Anchor of the cable, m; `None` without a bend.
     pub fn anchor_m(&self) -> Option<Vec2> {
         (self.bend_1_m > 0.0).then(|| self.about_m - self.away() / self.bend_1_m)
     }

@@ -9,19 +9,20 @@ use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
 use haptics::Vec2;
 use nalgebra::DMatrix;
 
-/// Held above or below its middle, the barrel turns in the grip while it is pulled. Where that takes its middle is known to this share …
+/// Uncertainty of the shift of the barrel's middle, as a share of it: held above or below its middle, a pulled barrel
+/// turns in the grip.
 const TURN_SHARE: f64 = 0.25;
-/// … and to this way, m, …
+/// Uncertainty of that shift, m.
 const SWINGS_M: f64 = 4e-5;
-/// … and to this way while the pull grows.
+/// The same while the pull grows, m.
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
-/// What shows only where the pull turns.
+/// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
 /// Stiffness of a hand whose give was not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 
 impl Seen<'_> {
-    /// A value of the cable with its own error and what softer pads would change.
+    /// A value of the cable with its own error and the changes by softer pads.
     fn of_cable(&self, own: f64, of: impl Fn(&Pull, &Cable) -> Option<f64>) -> Option<Value> {
         let value = |pull: &Pull| of(pull, pull.cable.as_ref()?);
         let best = value(&self.taken.pull)?;
@@ -71,13 +72,13 @@ impl Seen<'_> {
         found
     }
 
-    /// A parameter of the cable out of what a covariance of the pull's columns says of it.
+    /// A parameter of the cable from a covariance of the pull's regressors.
     fn of_covariance(&self, name: &str, of: impl Fn(&DMatrix<f64>) -> Option<Value>, how: &str) -> Option<Parameter> {
         of(&self.taken.pull.around.covariance)?;
         Some(self.given_by(CABLE, name, |c| of(c).unwrap_or_default(), how))
     }
 
-    /// Where it is tied, and how long it is.
+    /// Anchor and length of the cable.
     fn tied(&self, cable: &Cable) -> Vec<Parameter> {
         if cable.anchor_m().is_none() {
             let why = "the pull hardly turned: where it is tied, and so its length, stays open; move the barrel along an arc while \

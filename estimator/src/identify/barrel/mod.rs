@@ -1,8 +1,10 @@
-//! A barrel of unknown contents, lifted by two fingers: how heavy, how wide, how soft, whether it leaks, and what holds it.
+//! A barrel of unknown contents, lifted by two fingers: its weight, width and stiffness, a leak, and a cable that holds
+//! it.
 //!
-//! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share shows where the
-//! pads' own stiffness is stated. A leak and a drift of the sensors look alike while it hangs; the free phases before and after
-//! tell them apart. The cable is searched for (`pull.rs`); where its pull turns as the barrel moves, it shows where it is tied.
+//! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share is
+//! identifiable if the pads' own stiffness is stated. A leak and a drift of the sensors look alike while the barrel
+//! hangs; the free phases before and after tell them apart. The cable is searched for (`pull.rs`); a pull that turns as
+//! the barrel moves shows its anchor.
 
 mod cable;
 mod holding;
@@ -27,7 +29,7 @@ use zero::Zero;
 
 /// The object's name in the results.
 pub const OBJECT: &str = "barrel";
-/// What holds it.
+/// Object name of the cable that holds it.
 pub const CABLE: &str = "cable";
 /// Fewer rows while it hangs tell nothing.
 const LEAST_ROWS: usize = 12;
@@ -60,7 +62,7 @@ pub fn fit_by(
     let mut taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: None, rows: hanging.len(), zero };
     if let Some(cable) = &taken.pull.cable {
         if let Some(way_m) = slip::slipped_m(&signals) {
-            // Where the cable pulled, the barrel was not where the fingers were: only what was before counts.
+            // The barrel was not at the fingers' place while the cable pulled: only the rows before count.
             let slack = |p: &Vec2| cable.stretch(*p).0 < -way_m.abs();
             let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
             let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
@@ -69,7 +71,7 @@ pub fn fit_by(
             let pull = Pull::without_cable(&rows)?;
             taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: Some(way_m), rows: hanging.len(), zero };
         } else {
-            // What else the pads may give changes where the barrel was, and so what the cable looks like.
+            // A different give of the pads changes the place of the barrel, and so the estimate of the cable.
             let pull_with =
                 |give: Vec2, swing: &Swing| Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity));
             taken.others = vec![
@@ -93,14 +95,14 @@ pub fn fit_by(
     Ok((fit, signals.segmentation))
 }
 
-/// What was taken for the answer.
+/// Estimates on which the report is based.
 struct Taken {
     pull: Pull,
     /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
     others: Vec<Pull>,
-    /// How far its middle went from that of the fingers by turning in the grip, m.
+    /// Displacement of its middle from that of the fingers by turning in the grip, m.
     turned_m: f64,
-    /// How far the barrel slid down in the grip while a cable pulled, m.
+    /// Slip of the barrel down in the grip while a cable pulled, m.
     slipped_m: Option<f64>,
     rows: usize,
     zero: Zero,
@@ -110,7 +112,7 @@ fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
     samples.iter().map(|i| signals.time_s[*i]).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
+/// The samples while it hangs, behind pads of this `give` along x and y, m/N for both fingers together.
 fn rows(signals: &Signals, hanging: &[usize], give: Vec2, swing: &Swing, zero: &Zero, gravity: f64) -> Rows {
     let force = |i: &usize| signals.net_n[*i] - zero.net_n;
     Rows {

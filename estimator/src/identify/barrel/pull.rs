@@ -1,4 +1,4 @@
-//! What pulls at the hand while the barrel hangs from it: its weight, which a leak lowers, its inertia, and a cable.
+//! Forces on the hand while the barrel hangs from it: its weight, which a leak lowers, its inertia, and a cable.
 
 use super::cable::Cable;
 use crate::estimate::EstimateError;
@@ -13,10 +13,10 @@ const DIRECTIONS: usize = 48;
 const PLACES: usize = 32;
 /// Steps of Gauss and Newton after the search.
 const STEPS: usize = 30;
-/// A cable is seen when its stiffness is this many standard errors above zero (the best of many directions and places is chosen,
-/// so this is more than a single test would ask for) …
+/// Stiffness of a cable in standard errors above zero from which it is seen. It is more than a single test would need,
+/// because the best of many directions and places is chosen.
 const SEEN: f64 = 7.0;
-/// … and the largest pull comes to this share of the weight.
+/// Least ratio of the largest pull to the weight.
 const LEAST_PULL: f64 = 0.03;
 /// The fingers' acceleration is the barrel's up to this share.
 const ACCELERATION_SHARE: f64 = 0.05;
@@ -47,7 +47,8 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Those for which the filter saw the cable either slack or taut all the time: where it gets taut, the force bends.
+    /// Rows for which the filter saw the cable either slack or taut all the time: the force bends where the cable
+    /// becomes taut.
     fn clear_of(&self, cable: &Cable) -> Self {
         let clear = |i: &usize| cable.stretch(self.place_m[*i]).0.abs() > self.velocity[*i].norm() * self.reach_s;
         let kept: Vec<usize> = (0..self.time_s.len()).filter(clear).collect();
@@ -74,8 +75,9 @@ impl Rows {
 /// The fitted pull.
 #[derive(Clone, Debug)]
 pub struct Pull {
-    /// Mass in the middle of the time, kg; how fast it grows, kg/s; horizontal offset of the forces, N; then, with a cable, its
-    /// stiffness, N/m, damping, N s/m, and the changes of angle, taut place and bend (all zero at the answer).
+    /// Mass in the middle of the time, kg; its rate of growth, kg/s; horizontal offset of the forces, N. With a cable
+    /// there follow its stiffness, N/m, damping, N s/m, and the changes of angle, taut place and bend (all zero at the
+    /// answer).
     pub values: Vec<f64>,
     /// Linearised fit around the answer, with the errors of all of these.
     pub around: LinearFit,
@@ -181,7 +183,7 @@ fn columns(rows: &Rows, cable: Option<&Cable>) -> (Vec<Vec<f64>>, Vec<f64>) {
     (columns, pairs(&|i| rows.force_n[i]))
 }
 
-/// How the predicted force answers to a change of the geometry.
+/// Regressor of a change of the geometry: derivative of the predicted force.
 fn geometry_column(rows: &Rows, cable: &Cable, values: &[f64], which: usize) -> Vec<f64> {
     let step = [1e-5, 1e-7, 1e-3][which];
     let force = |cable: &Cable, p: Vec2| {
@@ -204,7 +206,7 @@ fn geometry_column(rows: &Rows, cable: &Cable, values: &[f64], which: usize) -> 
         .collect()
 }
 
-/// The best straight cable among directions and places: what is left of the force falls most.
+/// The straight cable among all directions and places that lowers the residual force most.
 fn search(rows: &Rows) -> Option<Cable> {
     let about_m = rows.place_m.iter().sum::<Vec2>() / rows.place_m.len().max(1) as f64;
     let mut best: Option<(f64, Cable)> = None;
@@ -226,15 +228,15 @@ fn search(rows: &Rows) -> Option<Cable> {
         }
     }
     let (_, mut cable) = best?;
-    // About the middle of what is taut: there direction and bend are told apart best.
+    // About the middle of the taut samples: there direction and bend are told apart best.
     let taut: Vec<Vec2> = rows.place_m.iter().copied().filter(|p| cable.stretch(*p).0 > 0.0).collect();
     let about_m = taut.iter().sum::<Vec2>() / taut.len().max(1) as f64;
     cable.taut_m -= (about_m - cable.about_m).dot(&cable.away());
     Some(Cable { about_m, ..cable })
 }
 
-/// Linear values and sum of squares for a given geometry, with the first so many columns: the damping does not help the search, but
-/// without it a cable that is drawn out quickly seems to get taut too early.
+/// Linear values and sum of squares for a given geometry, with the first `count` regressors. The damping does not help
+/// the search, but without it a quickly pulled cable seems to become taut too early.
 fn solve(rows: &Rows, cable: &Cable, count: usize) -> Option<(Vec<f64>, f64)> {
     let (mut columns, force) = columns(rows, Some(cable));
     columns.truncate(count);

@@ -1,4 +1,4 @@
-//! What the barrel's recording shows, in the words of a fit.
+//! Report of a barrel's parameters from its recording, as a fit.
 
 use super::cable::Cable;
 use super::pull::{GROWTH, MASS, Pull, STIFFNESS};
@@ -15,8 +15,8 @@ use nalgebra::DMatrix;
 const UNKNOWN_COMPRESSION: f64 = 0.07;
 /// A wall's give counts when it is this many standard errors above zero.
 const SEEN: f64 = 3.0;
-/// What a cable's pull is off by along and across, as a share of it: fingers that move the barrel feel it a little late, and their
-/// sensors' axes are not quite those of their positions.
+/// Error of a cable's pull along and across, as a share of it: fingers that move the barrel feel it a little late, and
+/// their sensors' axes are not quite those of their positions.
 const PULL_SHARE: f64 = 2e-4;
 
 /// Everything that was found out.
@@ -26,7 +26,7 @@ pub(super) struct Seen<'a> {
     pub(super) grip: Grip,
     pub(super) taken: Taken,
     pub(super) gravity: f64,
-    /// What the sidecar states: N/m, m, kg.
+    /// Values stated in the sidecar: N/m, m, kg.
     pub(super) pad_n_m: Option<f64>,
     pub(super) height_m: Option<f64>,
     pub(super) empty_kg: Option<f64>,
@@ -163,7 +163,7 @@ impl Seen<'_> {
         [series, wall]
     }
 
-    /// What may be in it: mass per volume of a cylinder as wide as the barrel.
+    /// Density of the contents: mass per volume of a cylinder as wide as the barrel.
     fn contents(&self) -> Vec<Parameter> {
         const DENSITY: &str = "density_kg_m3";
         let (mass, mass_error) = self.mass_kg();
@@ -216,7 +216,7 @@ impl Seen<'_> {
         self.given_by(OBJECT, LEAK, |c| (value, error(c)), &how)
     }
 
-    /// What the change of its weight is, in words: leak, drift, both, or nothing.
+    /// Verdict on the change of its weight, in words: leak, drift, both, or nothing.
     fn verdict(&self) -> Option<String> {
         let signals = self.signals;
         let hanging = signals.hanging().concat();

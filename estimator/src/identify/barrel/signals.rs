@@ -1,4 +1,5 @@
-//! What a two-fingered recording says about a barrel: motion, net force and grip, all through one filter, and where it was held.
+//! Signals of a two-fingered recording of a barrel: motion, net force and grip, all through one filter, and the samples
+//! in which it was held.
 
 use crate::estimate::EstimateError;
 use crate::segment::definition::Definition;
@@ -10,9 +11,9 @@ use crate::signal::task::{TaskSignals, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
-/// A lift counts from this share of its height on: below it the floor may still carry a part …
+/// Share of its height from which a lift counts: below it the floor may still carry a part.
 const CLEAR_OF_FLOOR: f64 = 0.25;
-/// … or from where the weight has stretched two fingers of this stiffness in shear, N/m: no pads are softer.
+/// Shear stiffness of two fingers, N/m, whose stretch under the weight is enough for a lift, too: no pads are softer.
 const SOFTEST_N_M: f64 = 500.0;
 
 /// The recording of a barrel.
@@ -31,7 +32,7 @@ pub struct Signals {
     pub net_n: Vec<Vec2>,
     /// N/s.
     pub net_rate: Vec<Vec2>,
-    /// How much higher the right tip is than the left one, m.
+    /// Height of the right tip above the left one, m.
     pub rise_m: Vec<f64>,
     /// Forces of the left and of the right finger without their bias, N.
     pub finger_n: [Vec<Vec2>; 2],
@@ -45,11 +46,11 @@ pub struct Signals {
     pub ratio: Vec<f64>,
     /// Force channels at rest.
     pub levels: Levels,
-    /// Which states and subtasks were seen.
+    /// States and subtasks found.
     pub segmentation: Segmentation,
-    /// What the resolution leaves unknown of a mean: m and N.
+    /// Error of a mean by the resolution, m.
     pub resolution_m: f64,
-    /// N.
+    /// Error of a mean by the resolution, N.
     pub resolution_n: f64,
     stride: usize,
 }
@@ -139,7 +140,7 @@ impl Signals {
         (1..=self.lifts()).flat_map(of).flat_map(|name| self.segmentation.samples_of(&name)).collect()
     }
 
-    /// Samples of every lift in which the barrel hangs from the fingers (and what else holds it), clear of the floor.
+    /// Samples of every lift in which the barrel hangs from the fingers (and the cable), clear of the floor.
     pub fn hanging(&self) -> Vec<Vec<usize>> {
         let lift = |n: usize| {
             let samples = self.segmentation.samples_of(&format!("carry-barrel-{n}"));

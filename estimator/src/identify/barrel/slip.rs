@@ -1,19 +1,22 @@
-//! Whether the barrel slipped in the grip: where the fingers are when the floor takes half of its weight over, before and after.
+//! Slip of the barrel in the grip: the heights of the fingers at which the floor takes half of its weight over, before
+//! and after.
 //!
-//! Two fingers see where they are, not where the barrel is between them. The floor has not moved: what the fingers are higher when the
-//! barrel is put down than when it was picked up, it slid down between them. At the same lift pads give the same, so it cancels.
+//! The positions of two fingers do not show the barrel between them. The floor has not moved: a greater height of the
+//! fingers at putting down than at picking up is a slip down between them. At the same lift pads yield the same, so
+//! that cancels.
 
 use super::signals::Signals;
 use super::wall::weight_n;
 
-/// Pads that creep and a floor that is not quite even: less than this way is no slip, m.
+/// Least way of a slip, m: pads creep, and a floor is not quite even.
 const CREEP_M: f64 = 4e-5;
-/// … and less than so many standard errors.
+/// Least size of a slip, standard errors.
 const CLEAR: f64 = 4.0;
 /// Share of the weight at which heights are compared.
 const HALF: f64 = 0.5;
 
-/// How far the barrel slid down (below 0: up) in the grip within its lifts, m; `None` where it did not, or was not put down again.
+/// Way that the barrel slid down (below 0: up) in the grip within its lifts, m; `None` if it did not, or was not put
+/// down again.
 pub fn slipped_m(signals: &Signals) -> Option<f64> {
     let half_n = HALF * weight_n(signals)?;
     let lifts = signals.hanging();

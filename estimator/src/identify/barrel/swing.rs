@@ -1,7 +1,9 @@
-//! How a barrel that is held above or below its middle turns in the grip while a cable pulls at it, and where that takes its middle.
+//! Turning of a barrel in the grip, held above or below its middle, while a cable pulls at it, and the shift of its
+//! middle by that.
 //!
-//! The fingers stick to its sides: as it turns, one rises and the other sinks. How far above its middle they hold it follows from the
-//! balance of moments: the couple that both fingers make by their vertical forces is that of the pull about the middle of the grip.
+//! The fingers stick to its sides: as it turns, one rises and the other sinks. The height of the grip above its middle
+//! follows from the balance of moments: the couple of the fingers' vertical forces equals the moment of the pull about
+//! the middle of the grip.
 
 use super::signals::Signals;
 use crate::estimate::EstimateError;
@@ -12,7 +14,7 @@ use haptics::Vec2;
 const CLOSED: f64 = 0.5;
 /// Fewer samples show no balance.
 const LEAST_ROWS: usize = 12;
-/// Nobody holds it farther from its middle, m: what says so is no balance of a stiff barrel.
+/// Largest distance of the grip from its middle, m: a larger estimate is no balance of a stiff barrel.
 const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.
@@ -20,7 +22,7 @@ const FARTHEST_M: f64 = 5e-3;
 pub struct Swing {
     /// Angle against how it stood on the floor, rad, one a sample of the recording; empty where that is not known.
     angle_rad: Vec<f64>,
-    /// How far above the barrel's middle the fingers hold it, m, and its standard error.
+    /// Height of the grip above the barrel's middle, m, and its standard error.
     pub above_m: (f64, f64),
 }
 
@@ -59,7 +61,7 @@ impl Swing {
         Self { above_m: (self.above_m.0 + self.above_m.1, self.above_m.1), ..self.clone() }
     }
 
-    /// Where the barrel's middle went against that of the fingers by turning, m.
+    /// Displacement of the barrel's middle against that of the fingers by turning, m.
     pub fn shift(&self, i: usize) -> Vec2 {
         let Some(angle) = self.angle_rad.get(i) else { return Vec2::zeros() };
         Vec2::new(angle.sin(), 1.0 - angle.cos()) * self.above_m.0

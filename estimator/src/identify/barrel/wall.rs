@@ -1,4 +1,5 @@
-//! Width of the barrel and how its sides give under the fingers: pad and wall in series, from the distance of the tips over the grip.
+//! Width of the barrel and give of its sides under the fingers: pad and wall in series, from the distance of the tips
+//! over the grip.
 
 use super::signals::Signals;
 use crate::estimate::EstimateError;
@@ -22,7 +23,7 @@ const SIDEWAYS: f64 = 0.05;
 /// Fewer samples show no give.
 const LEAST_ROWS: usize = 8;
 
-/// What the grip shows.
+/// Estimates from the grip.
 pub struct Grip {
     /// Width, m, and give of one side, m/N.
     pub sides: Option<PadFit>,
@@ -55,7 +56,7 @@ impl Grip {
         let sides = if spread > LEAST_GRIP_VARIATION * mean_n { width_over_force(&grip)? } else { None };
         let sides = sides.filter(|s| s.give_m_per_n > 0.0);
         let normal = sides.map_or(USUAL_GIVE_M_N.0, |s| s.give_m_per_n);
-        // A wall gives under the grip, but not along itself.
+        // A wall yields under the grip, but not along itself.
         let one = 0.5 * pad_n_m.map_or(normal, f64::recip);
         let shear_m_n = shear(signals)?.unwrap_or((one * SHEAR_GIVE.0, one * SHEAR_GIVE.1));
         Ok(Self { sides, mean_width_m, mean_n, shear_m_n, samples: held.len() })
@@ -68,7 +69,7 @@ impl Grip {
     }
 }
 
-/// About what the barrel weighs while nothing else pulls, N; `None` where it never hung.
+/// Approximate weight of the barrel while nothing else pulls, N; `None` if it never hung.
 pub fn weight_n(signals: &Signals) -> Option<f64> {
     let mut weights: Vec<f64> = signals.hanging().iter().flatten().map(|i| signals.net_n[*i].y).collect();
     (!weights.is_empty()).then(|| percentile(&mut weights, LEAST_CARRIED))

@@ -11,7 +11,7 @@ const LEAST_FREE_S: f64 = 0.2;
 /// The zero of both sensors together.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Zero {
-    /// What it is at the time asked for, beyond the mean that was already taken out, N.
+    /// Zero at the requested time, beyond the mean that was already taken out, N.
     pub net_n: Vec2,
     /// Standard error of its vertical part, N.
     pub error_n: f64,

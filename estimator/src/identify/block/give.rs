@@ -1,4 +1,4 @@
-//! How far pads give: one stiffness out of several measurements.
+//! Give of the pads: one stiffness out of several measurements.
 
 use crate::estimate::Parameter;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -13,7 +13,7 @@ pub(super) struct Give {
 
 /// A stiffness from several measurements of a give, averaged by their errors.
 ///
-/// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
+/// A scatter larger than their errors means that the errors are too small by that ratio (Birge 1932).
 pub(super) fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
     const SIGNIFICANT: f64 = 3.0;
     let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();

@@ -1,15 +1,17 @@
-//! Heights of blocks and shear of the pads, from where blocks were picked up and put down: one regression over all of it.
+//! Heights of blocks and shear of the pads, from the places where blocks were picked up and put down: one regression
+//! over all of it.
 //!
 //! While a carried block rests on a tower, the height of the grip is
 //!
 //! `y = G + Σ heights below + s load + c ((m + 1) load − Σ weights × level)`
 //!
-//! with `G` the height of the grasp over the block's foot (one a carry), the load the lift less the block's weight, `s` the give of
-//! both pads in shear, `c` the give of one contact between blocks or floor and m blocks below: the load presses every contact
-//! under it, and the blocks below press those under them. The thesis took differences of mean heights, whose gives differ.
+//! with `G` the height of the grasp over the block's foot (one a carry), the load the lift less the block's weight, `s`
+//! the give of both pads in shear, `c` the give of one contact between blocks or floor and m blocks below. The load
+//! presses every contact under it, and the blocks below press those under them. The thesis took differences of mean
+//! heights, whose gives differ.
 //!
-//! Several recordings of the same blocks share heights and gives; grasps are each one's own. What was restacked in one recording and
-//! left alone in another is then known in both.
+//! Several recordings of the same blocks share heights and gives; grasps are each one's own. A stack that was
+//! rearranged in one recording and left alone in another is then known in both.
 
 use super::slipped::{Slipped, slips};
 use super::{Blocks, MAIN, object};
@@ -22,10 +24,10 @@ use std::ops::Range;
 const LEAST_SAMPLES: usize = 5;
 /// A block is below another one when its grip was lower by at least this, m.
 const LEAST_STEP_M: f64 = 3e-3;
-/// The contact with the floor gives as one between blocks does, within this share (one standard deviation): they cannot be told
-/// apart, because the floor's give looks like the pads' shear.
+/// Relative difference of the give of the floor's contact from that between blocks, one standard deviation. They cannot
+/// be told apart, because the floor's give looks like the pads' shear.
 const CONTACTS_DIFFER: f64 = 0.33;
-/// Before anything is measured, a contact gives this much or less (one standard deviation), m/N: 5 kN/m is a soft block.
+/// Prior standard deviation of the give of a contact, m/N: 5 kN/m is a soft block.
 const GIVE_BEFORE: f64 = 2e-4;
 /// A shear stiffness is reported when its give is this many standard errors above zero.
 const SIGNIFICANT: f64 = 3.0;
@@ -39,7 +41,7 @@ pub(crate) struct Rest {
     pub(crate) below: Vec<usize>,
 }
 
-/// Where a block is, by the middle of the grip.
+/// Place of a block, by the middle of the grip.
 #[derive(Clone, Copy)]
 struct Place {
     x_m: f64,
@@ -50,9 +52,9 @@ struct Place {
 struct Rows {
     columns: Vec<Vec<f64>>,
     height: Vec<f64>,
-    /// What the height changes by when the floor's contact gives 1 m/N more than the others.
+    /// Change of the height for a floor contact that yields 1 m/N more than the others.
     floor: Vec<f64>,
-    /// What the height may be off by what was taken out for slips, m.
+    /// Error of the height by the slips that were taken out, m.
     slipped: Vec<f64>,
     /// Rows of each rest.
     stretches: Vec<Range<usize>>,
@@ -73,7 +75,7 @@ impl<'a> Stacked<'a> {
         Self { blocks, weights_n, rests, slips }
     }
 
-    /// What of the heights was put right.
+    /// Warnings about the corrected slips.
     pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
         self.slips.iter().map(|slip| slip.told(&self.blocks.recording.name, &self.rests[slip.rest]))
     }
@@ -121,7 +123,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
     let (fit, resampled) = with_prior(&rows, at.contact)?;
     let resampled = |column: usize| resampled.as_ref().map(|r| r[column]);
     let give = fit.values[at.contact];
-    // What it would change if the floor gave differently from the blocks.
+    // Change of the fit for a floor that yields differently from the blocks.
     let shift: Vec<f64> = rows.floor.iter().map(|f| f * CONTACTS_DIFFER * give).collect();
     let floor = least_squares(&rows.columns, &shift, None)?;
     let slipped = least_squares(&rows.columns, &rows.slipped, None)?;
@@ -240,8 +242,8 @@ fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
     rows
 }
 
-/// The regression with what is known of a contact beforehand: one more row that asks the column for zero, as strongly as
-/// [`GIVE_BEFORE`] weighs against the noise of the rows. Its errors by resampling within each rest come with it.
+/// The regression with a prior of a contact: one more row pulls its parameter to zero, as strongly as [`GIVE_BEFORE`]
+/// weighs against the noise of the rows. Its errors by resampling within each rest come with it.
 fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Resampled>), EstimateError> {
     let alone = least_squares(&rows.columns, &rows.height, None)?;
     let mut columns = rows.columns.clone();
@@ -255,8 +257,8 @@ fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Resample
     stretches.push(rows.height.len()..height.len());
     let resampled = block_bootstrap_within(&columns, &height, None, &fit, &stretches);
     if fit.values[contact] < 0.0 {
-        // Nothing grows under a load: the nearest that can be is a contact that does not give. What it might still be is in the
-        // errors, which stay.
+        // Nothing grows under a load: the nearest possible value is a contact that does not yield. Its other possible
+        // values are in the errors, which stay.
         columns[contact][..rows.height.len()].fill(0.0);
         fit.values = least_squares(&columns, &height, None)?.values;
         fit.values[contact] = 0.0;
@@ -264,8 +266,9 @@ fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Resample
     Ok((fit, resampled))
 }
 
-/// Error by blocks that turn between the pads: when one finger slips and the other does not, the grip's middle moves by half of
-/// it, one way or the other; the largest of the carries that show this height in a recording, in the mean of the recordings, m.
+/// Error by blocks that turn between the pads, m. A slip of one finger alone moves the grip's middle by half of it, one
+/// way or the other. It is the largest of the carries that show this height in a recording, in the mean of the
+/// recordings.
 fn tilt(seen: &[Stacked<'_>], block: usize) -> f64 {
     let shows = |pair: &[Rest]| pair.iter().any(|r| r.below.contains(&block));
     let even = 3.0_f64.sqrt();
@@ -284,7 +287,8 @@ fn tilt(seen: &[Stacked<'_>], block: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// A block picked up from a tower of one and put down on the floor; the pads' shear gives 0.3 mm/N, and contacts give `contact_m_n`.
+    /// A block picked up from a tower of one and put down on the floor; the pads yield 0.3 mm/N in shear, and contacts
+    /// `contact_m_n`.
     fn rows_of(contact_m_n: f64) -> (Rows, usize) {
         let (mut columns, mut height) = (vec![Vec::new(); 4], Vec::new());
         for (below, from_n, to_n) in [(1.0, -0.3, 0.0), (0.0, 0.0, -0.7)] {
@@ -309,7 +313,7 @@ mod tests {
         let (rows, contact) = rows_of(-5e-5);
         let (fit, _) = with_prior(&rows, contact).expect("a fit");
         assert_eq!(fit.values[contact], 0.0);
-        // What the rows can have without it: the shear takes over what they have in common.
+        // Values that the rows allow without it: the shear takes over their common part.
         assert!(fit.values[2] > 2e-4 && fit.values[2] < 3e-4, "{:?}", fit.values);
         assert!(fit.std_errors[contact] > 0.0);
     }

@@ -1,5 +1,5 @@
-//! When a carried block stands again: the load goes over from the fingers to what is below. Nothing but the load tells what the fingers do from
-//! then on (pads that give, a slip of the grip) from lowering, so the earlier it is seen the better.
+//! Landing of a carried block: the load passes from the fingers to the support. From then on only the load tells motion
+//! of the fingers (pads that yield, a slip of the grip) from lowering, so the earlier it is seen the better.
 
 use super::Blocks;
 use crate::segment::threshold::percentile;
@@ -7,16 +7,17 @@ use std::ops::Range;
 
 /// A weight that changes by less than this share in a carry is taken for one that does not.
 const LEAST_CHANGE: f64 = 0.1;
-/// The ground takes a part of the load when this share of the weight is missing from the lift …
+/// Share of the weight missing from the lift at which the ground takes a part of the load.
 const LEAST_SHARE: f64 = 0.05;
-/// … and as many standard deviations of what is off while the block is carried.
+/// Least size of that deficit in standard deviations of the force error while the block is carried.
 const CLEARLY: f64 = 3.0;
-/// From there the load is followed until half of the weight is gone over, or for this time, s; the line through it says when it began …
+/// Share of the weight and time, s, up to which the load is followed from there; the line through it tells the
+/// beginning.
 const HALF: f64 = 0.5;
 const RISE_S: f64 = 0.2;
-/// … or a line through its first part, up to these shares of the weight …
+/// Shares of the weight up to which lines through the first part are fitted, too.
 const FIRST: [f64; 2] = [0.25, 0.12];
-/// … by this much before at most, s.
+/// Largest lead of the beginning so found, s.
 const BEFORE_S: f64 = 0.06;
 
 /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out. `rows`: samples in which the block is carried.
@@ -34,8 +35,9 @@ pub(crate) fn usual_lift(time_s: &[f64], rows: &[usize], lift_n: &dyn Fn(usize) 
     move |time_s| whole + slope * (time_s - start_s)
 }
 
-/// The first sample of `within` from which on, up to its end, the lift is less than what the block asks for: it stands from there on. The end of
-/// `within` where that is not so at its last sample. `carried`: rows in which the block is carried; `lift_n`: of every sample.
+/// The first sample of `within` from which, up to its end, the lift is less than the block needs: it stands from there
+/// on. The end of `within` if that is not true at its last sample. `carried`: rows in which the block is carried;
+/// `lift_n`: of every sample.
 pub(crate) fn stands_from(
     blocks: &Blocks<'_>,
     carried: &[usize],
@@ -49,12 +51,13 @@ pub(crate) fn stands_from(
     let usual = usual_lift(time_s, carried, lift_n);
     let gravity = blocks.recording.meta.gravity().max(1e-9);
     let usual = |i: usize| usual(time_s[i]);
-    // What falls asks for less, the block between its pads and what slips on it alike: it counts where that is the smaller doubt.
+    // A falling object needs less force, the block between its pads and one that slips on them alike: it counts if that
+    // is the smaller doubt.
     let falls = |i: usize| usual(i) * blocks.acceleration_y[i].min(0.0) / gravity;
     let missing = |i: usize| usual(i) - lift_n(i);
     let limit = |off: &dyn Fn(usize) -> f64| {
         let mut all: Vec<f64> = carried.iter().map(|i| off(*i)).collect();
-        // Half of what two thirds lie within: a few rows at the ends may stand already.
+        // Half of the range of two thirds: a few rows at the ends may stand already.
         0.5 * CLEARLY * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
     };
     let plain_n = limit(&missing);
@@ -76,9 +79,9 @@ pub(crate) fn stands_from(
     time_s[..clear].partition_point(|t| *t < begins_s).max(least)
 }
 
-/// Where the load (N, after times, s) began before it rose out of the noise: where a straight line through its rise is zero. What is set down hard
-/// rises at once and then slowly, and a line through all of that would begin too early: the line through its first part counts where it begins later
-/// for certain. `None` where it does not rise.
+/// Beginning of the load (N, after times, s) before it rose out of the noise: the zero of a straight line through its
+/// rise. The load of a hard landing rises at once and then slowly, and a line through all of it would begin too early.
+/// The line through its first part counts if it begins later for certain. `None` if it does not rise.
 fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
     let (mut begins_s, _) = zero(rise, noise_n).filter(|_| rise.len() > 2)?;
     for share in FIRST {
@@ -92,7 +95,8 @@ fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
     Some(begins_s)
 }
 
-/// Where a straight line through points is zero, and the error of that by their noise, which neighbours share. `None` where it does not rise.
+/// Zero of a straight line through points, and its error by their noise, which neighbours share. `None` if it does not
+/// rise.
 fn zero(points: &[(f64, f64)], noise_n: f64) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
@@ -110,7 +114,7 @@ fn zero(points: &[(f64, f64)], noise_n: f64) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Load over time every 4 ms, from 20 ms before it begins; what it is after so many seconds.
+    /// Load over time every 4 ms, from 20 ms before it begins; `after`: its value at a time.
     fn load(after: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let all = (0..60).map(|k| 0.004 * f64::from(k) - 0.02).map(|t| (t, after(t.max(0.0))));
         // From where it is clear of the noise on.

@@ -1,4 +1,4 @@
-//! Whether a block's weight changed while it was carried, and whether that is a leak or the sensors (see [`crate::online::leak`]).
+//! Change of a block's weight while it was carried: a leak or the sensors (see [`crate::online::leak`]).
 
 use super::Blocks;
 use crate::estimate::Parameter;

@@ -1,8 +1,8 @@
 //! Weight, width, height and friction of stacked blocks (thesis, tables 5.2 to 5.4), with standard errors.
 //!
-//! The thesis's formulas are means over a segment. Here each is the intercept of a small regression, so that what disturbed the
-//! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
-//! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
+//! The thesis's formulas are means over a segment. Here each is the intercept of a small regression, which takes
+//! disturbances of the thesis's numbers out if the recording shows them: accelerations from the weight, the give of the
+//! pads from the width (it grew 7 % too narrow there) and from the height. Otherwise the standard error includes them.
 
 mod give;
 pub(crate) mod heights;
@@ -48,7 +48,8 @@ pub(crate) struct Blocks<'a> {
     pub(crate) segmentation: Segmentation,
     task: Definition,
     pub(crate) recording: &'a Recording,
-    /// Error of a single position and of a single force by the resolution of the log, m and N: what no averaging removes.
+    /// Error of a single position and of a single force by the resolution of the log, m and N: averaging does not
+    /// remove it.
     resolution_m: f64,
     resolution_n: f64,
     /// Vertical acceleration of the grip, m/s².
@@ -79,7 +80,7 @@ pub fn fit_by(
     Ok((fit, blocks.segmentation))
 }
 
-/// Why there is nothing to fit, and what to do.
+/// Reason why there is nothing to fit, and the remedy.
 fn nothing(blocks: &Blocks<'_>) -> EstimateError {
     let name = &blocks.recording.name;
     let slides = blocks.segmentation.states.iter().any(|s| s.state == SystemState::SlidingOnGround);
@@ -139,7 +140,7 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     })
 }
 
-/// What the resolution leaves unknown of a mean, the largest among the components of a series of both fingers.
+/// Error of a mean by the resolution, the largest among the components of a series of both fingers.
 fn unresolved(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<Vec2>>) -> f64 {
     let error = |pick: fn(&Vec2) -> f64| {
         let of = |tip| {
@@ -153,14 +154,14 @@ fn unresolved(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<
     error(|v| v.x).max(error(|v| v.y))
 }
 
-/// What the steps of the joint encoders leave unknown of a tip's mean position, m; 0 for a log of tip positions.
+/// Error of a tip's mean position by the steps of the joint encoders, m; 0 for a log of tip positions.
 fn unresolved_by_joints_m(recording: &Recording) -> f64 {
     let finger = recording.meta.hand().fingers[0];
     let error = |name: &str| recording.channel(name).map_or(0.0, |q| resolution_error(quantum(q), white_noise(q)));
     ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(error).fold(0.0, f64::max) * finger.link_m
 }
 
-/// They are one thing: what is stated of either holds for both.
+/// They are one thing: a statement about either holds for both.
 fn weight_and_mass(weight: &Parameter, mass: &Parameter) -> Option<Correlated> {
     let (a, b) = (weight.std_error?, mass.std_error?);
     Some(Correlated {
@@ -235,8 +236,9 @@ impl<'a> Blocks<'a> {
         self.samples(&self.task.showing(parameter, MAIN, number))
     }
 
-    /// Samples in which a block is gripped and the smoothed channels have seen nothing else: within half a window of where a finger touches or lets
-    /// go they mix the way to the block with the grip on it, and pads would seem far too soft at first.
+    /// Samples in which a block is gripped and the smoothed channels have seen nothing else. Within half a window of
+    /// the beginning or end of a touch they mix the way to the block with the grip on it, and pads would seem far too
+    /// soft at first.
     pub(crate) fn gripped(&self, number: usize) -> Vec<usize> {
         let least_n = self.segmentation.thresholds.force_n;
         let presses =
@@ -256,8 +258,8 @@ impl<'a> Blocks<'a> {
         (!self.task.is_shown(parameter)).then(why)
     }
 
-    /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours that
-    /// share their noise come out too small.
+    /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours
+    /// that share their noise are too small.
     pub(crate) fn rows(&self, samples: &[usize]) -> Vec<usize> {
         const LEAST_ROWS: usize = 12;
         let window = 2 * half_width(&self.signals.time_s);
@@ -282,7 +284,7 @@ impl<'a> Blocks<'a> {
         least_squares(&constant, &sums, None).map_or(self.levels.force_noise_n, |fit| fit.std_errors[0])
     }
 
-    /// Whether anything but the hand held a block while it was carried.
+    /// Constraint of a carried block, if anything but the hand held it.
     fn constraint(&self, number: usize) -> Option<Constraint> {
         carried(&Carry {
             object: &object(number),
@@ -364,7 +366,7 @@ impl<'a> Blocks<'a> {
                 if normal > least {
                     let ratio = force.y.abs() / normal;
                     let error = noise * ratio.hypot(1.0) / normal;
-                    // What is certainly reached counts: the largest of many noisy ratios would overshoot.
+                    // Only the certain part counts: the largest of many noisy ratios would overshoot.
                     if best.is_none_or(|(r, e)| ratio - 2.0 * error > r - 2.0 * e) {
                         best = Some((ratio, error));
                     }

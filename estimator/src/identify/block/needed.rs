@@ -12,8 +12,9 @@ use haptics::world::World;
 
 /// The forces that the measured motion of carried blocks needs, channels named as measured.
 ///
-/// In the air the net force is m (g + a), shared by both fingers; grip and leaning are the operator's own and stay as measured,
-/// as does everything while a block rests. Free fingers feel nothing but what their sensors read at rest.
+/// The net force in the air is m (g + a), shared by both fingers. Grip and leaning are the operator's own and stay as
+/// measured, and so does everything while a block rests. Free fingers feel nothing but the resting values of their
+/// sensors.
 pub(crate) fn needed_forces(world: &World, recording: &Recording) -> Result<Needed, EstimateError> {
     let signals = task_signals(recording)?;
     let task = Definition::of(recording, Task::BlockStack)?;

@@ -1,4 +1,4 @@
-//! How wide held blocks are: the distance of the tips, and what the pads give under the grip.
+//! Width of held blocks: the distance of the tips, and the compression of the pads under the grip.
 
 use super::{Blocks, LEAST_GRIP_VARIATION, MAIN, UNKNOWN_COMPRESSION, intercept, mean_and_spread, object, unseen};
 use crate::estimate::{EstimateError, Parameter};
@@ -9,14 +9,14 @@ use crate::signal::task::{half_width, task_signals};
 use haptics::law::contact::Cushion;
 use haptics::recording::Recording;
 
-/// Where the noise of the forces makes more than this share of how the grip varies, the variation tells nothing of the pads.
+/// Share of force noise in the variation of the grip above which that variation tells nothing of the pads.
 const MOSTLY_NOISE: f64 = 0.5;
 /// Of white noise, the parabolic window of `2 h + 1` samples leaves this over their number (6/5: the mean square of its weights).
 const WINDOW_NOISE: f64 = 1.2;
 
 impl Blocks<'_> {
-    /// Width: distance of the tips while held, extrapolated to no grip force. `pad`: stiffness of a pad out of all holds, for a grip that is too
-    /// even to show by itself what the pads give.
+    /// Width: distance of the tips while held, extrapolated to no grip force. `pad`: stiffness of a pad out of all
+    /// holds, for a grip that is too even to show the give of the pads by itself.
     pub(super) fn width(&self, number: usize, pad: &Parameter) -> Result<Parameter, EstimateError> {
         let samples = self.gripped(number);
         if let Some(why) = self.unshown("width_m").or_else(|| unseen(&samples)) {
@@ -61,8 +61,9 @@ impl Blocks<'_> {
 
     /// The grip on one block from picking it up to letting it go.
     ///
-    /// Noise of the forces makes a slope against them look flatter, and the pads harder, by its share of the variance of the grip. That share is
-    /// taken out, and half of it joins the error, because noise that is not white is not known that well.
+    /// Noise of the forces makes a slope against them look flatter, and the pads harder, by its share of the variance
+    /// of the grip. The share is taken out, and half of it joins the error, because noise that is not white is not
+    /// known that well.
     pub(super) fn pads(&self, number: usize) -> Result<Option<PadFit>, EstimateError> {
         let rows = self.rows(&self.gripped(number));
         if rows.is_empty() {
@@ -83,8 +84,9 @@ impl Blocks<'_> {
     }
 }
 
-/// What an even grip shows of linear pads. That they bend cannot be told from it, and noise of the forces, which flattens the middle of its narrow
-/// range and not the ends, looks like foam that hardens; what bent pads would say joins the errors.
+/// Estimate of linear pads from an even grip. It cannot tell that they bend: noise of the forces, which flattens the
+/// middle of its narrow range and not the ends, looks like foam that hardens. The deviations of bent pads join the
+/// errors.
 fn unbent(pads: PadFit) -> PadFit {
     let (width_m, give_m_per_n) = pads.line;
     let (by_width, by_give) = (pads.width_m - width_m, pads.give_m_per_n - give_m_per_n);
@@ -118,7 +120,7 @@ fn rid_of_noise(pads: PadFit, share: f64, mean_n: f64) -> PadFit {
 /// Distance of the tips, m, and mean normal force of both fingers, N, at the samples of a hold.
 pub(crate) type Hold = Vec<(f64, f64)>;
 
-/// How each of the first `count` blocks was held, as measured, in the states that show its width.
+/// Grip on each of the first `count` blocks, as measured, in the states that show its width.
 pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Hold>> {
     /// Less than this share of the usual grip is the way to it or from it.
     const HELD: f64 = 0.5;
@@ -136,8 +138,8 @@ pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: u
     Some((1..=count).map(hold).collect())
 }
 
-/// The width of what pads that give like `pad` press on average as hard as was measured: a world with any other one would predict another grip,
-/// or none at all. `None` for a hold that nothing was measured of.
+/// Width at which pads with the give of `pad` press on average as hard as measured: a world with any other one would
+/// predict another grip, or none at all. `None` for a hold without a measured grip.
 pub(crate) fn width_under(pad: &Cushion, hold: &[(f64, f64)]) -> Option<f64> {
     /// Halvings of the bracket: beyond the digits of a double.
     const HALVINGS: usize = 60;
@@ -197,7 +199,7 @@ mod tests {
         let found = rid_of_noise(pads, 0.2, 2.0);
         assert!((found.give_m_per_n - 1e-4).abs() < 1e-12 && (found.width_m - 0.01608).abs() < 1e-9, "{found:?}");
         assert!(found.give_error > 0.9e-5 && found.width_error_m > 3.9e-5, "{found:?}");
-        // What an even grip says of bends is an error.
+        // The bends that an even grip shows are an error.
         let even = unbent(pads);
         assert!((even.width_m, even.give_m_per_n, even.bent) == (0.0159, 0.7e-4, 0.0), "{even:?}");
         assert!(even.width_error_m > 1e-4 && even.give_error > 1e-5, "{even:?}");

@@ -1,13 +1,13 @@
-//! True static friction, where fingers were seen to slip on a block.
+//! True static friction, if fingers were seen to slip on a block.
 //!
-//! A ratio of forces is only a lower bound of the friction coefficient, unless the fingers slip. They slip where the block is not
-//! carried by them any more (the lift is less than weight and acceleration ask for), where shear and normal force of both fingers
-//! keep one ratio, and where something happens at that ratio: the pinch changes, or the tips move farther than pads give. A block
-//! that is put down has the first without the second, one that is carried steadily has the second without the first. And no ratio
-//! below one that was held without a slip is friction.
+//! A ratio of forces is only a lower bound of the friction coefficient, unless the fingers slip. A slip has three
+//! signs. The block is not carried by the fingers any more (the lift is less than weight and acceleration need). Shear
+//! and normal force of both fingers keep one ratio. Something happens at that ratio: the pinch changes, or the tips
+//! move farther than pads yield. A block that is put down shows the first without the second, a steadily carried one
+//! the second without the first. And no ratio below one that was held without a slip is friction.
 //!
-//! That the ratio is one must be shown, not only be possible: a grip that is let go of while the block stands has a pinch that falls beside a
-//! shear that stays, and in a short window the noise allows for that, too.
+//! The equality of the ratios must be shown, not only be possible. A grip that is released while the block stands has a
+//! falling pinch beside a constant shear, and in a short window the noise allows for that, too.
 
 use super::Blocks;
 use crate::identify::bootstrap::block_bootstrap;
@@ -16,9 +16,10 @@ use crate::identify::linear::least_squares;
 /// Length of the windows that are looked at, and their distance, s.
 const WINDOW_S: f64 = 0.05;
 const STEP_S: f64 = 0.01;
-/// The lift must miss what the block asks for by this share.
+/// Least deficit of the lift, as a share of the force that the block needs.
 const MISSING: f64 = 0.06;
-/// The pinch changes by this share within a window, or the tips move by this much beyond what pads of [`SOFTEST_N_M`] give, m.
+/// Least change of the pinch within a window, as a share, or least motion of the tips beyond the give of pads of
+/// [`SOFTEST_N_M`], m.
 const PINCH_CHANGES: f64 = 0.08;
 const SLIDES_M: f64 = 0.3e-3;
 const SOFTEST_N_M: f64 = 500.0;
@@ -26,11 +27,12 @@ const SOFTEST_N_M: f64 = 500.0;
 const OF_THE_BOUND: f64 = 0.9;
 /// The two fingers' ratios agree within this share: one that only leans has another one.
 const FINGERS_AGREE: f64 = 0.15;
-/// From the first to the second half of a window the ratio changes by less than this share of itself, beyond doubt …
+/// Largest change of the ratio from the first to the second half of a window, as a share of itself, beyond doubt.
 const KEEPS: f64 = 0.2;
-/// … and where it is the pinch that changes, by less than this share of that change: a shear that stays as it is would change it by all of that.
+/// Largest change of the ratio as a share of that of the pinch, if the pinch changes: a constant shear would change it
+/// by the whole.
 const OF_THE_PINCH: f64 = 0.5;
-/// Beyond doubt: so many standard errors.
+/// Number of standard errors beyond doubt.
 const DOUBT: f64 = 2.0;
 /// Onset: the first part of a slip, s; later the friction is that of motion.
 const ONSET_S: f64 = 0.1;
@@ -42,11 +44,11 @@ pub(super) struct Slip {
     /// The error by resampling; `None` where the onset is too short.
     pub(super) resampled: Option<f64>,
     pub(super) samples: usize,
-    /// When the first one began, s.
+    /// Beginning of the first one, s.
     pub(super) at_s: f64,
 }
 
-/// What a slip must be judged against.
+/// Conditions for judging a slip.
 #[derive(Clone, Copy)]
 pub(super) struct Held {
     /// Weight of the block, N.
@@ -117,7 +119,7 @@ fn slides(blocks: &Blocks<'_>, (from, to): (usize, usize), held: Held) -> bool {
     let mean =
         |value: &dyn Fn(usize) -> f64, from: usize, to: usize| (from..to).map(value).sum::<f64>() / (to - from) as f64;
     let noise = blocks.levels.force_noise_n;
-    // Tips that are thrown up at lift-off ask for more than the block, behind its pads, takes: only what falls asks for less.
+    // Tips that are thrown up at lift-off need more force than the block behind its pads: only a fall needs less.
     let gravity = blocks.recording.meta.gravity();
     let asked = mean(&|i| weight_n * (1.0 + blocks.acceleration_y[i].min(0.0) / gravity), from, to);
     let lift = mean(&|i| blocks.lift(i), from, to);

@@ -1,4 +1,4 @@
-//! Slips of the grip on a block that stands, as the fit takes them out of heights: the thesis's height that was 9 % off.
+//! Slips of the grip on a standing block, as the fit takes them out of heights: the thesis's height that was 9 % off.
 
 use super::heights::Rest;
 use super::landing::stands_from;
@@ -9,9 +9,9 @@ use crate::signal::task::half_width;
 
 /// Fewer rows of a rest show nothing.
 const LEAST_ROWS: usize = 8;
-/// A slip must take so much off in 2 ln(likelihood): nothing can be held out of so few rows, so it must be beyond doubt …
+/// Least decrease of −2 ln(likelihood) by a slip: no rows can be held out of so few, so it must be beyond doubt.
 const SURE: f64 = 50.0;
-/// … and so many of its own errors.
+/// Least size of a slip in its own standard errors.
 const ERRORS: f64 = 5.0;
 
 /// A slip of the grip at one end of a carry.
@@ -27,10 +27,10 @@ pub(super) struct Slipped {
 }
 
 impl Slipped {
-    /// What a row's height must be changed by so that it is that of the grip in the air, m, and the error of that.
+    /// Correction of a row's height to that of the grip in the air, m, and its error.
     pub(super) fn correction_m(&self, time_s: f64) -> (f64, f64) {
         let done = self.slip.shown(time_s, self.half_s);
-        // What is carried has been gripped as it is after a slip at its beginning, and before one at its end.
+        // A carried block is gripped as after a slip at its beginning, and as before one at its end.
         let share = if self.placed { -done } else { 1.0 - done };
         (share * self.way_m, share * self.error_m)
     }
@@ -58,7 +58,7 @@ struct Rows {
     lift_rate: Vec<f64>,
     /// Contacts below.
     contacts: Vec<f64>,
-    /// Which rest each stretch is.
+    /// Index of the rest of each entry in `stretches`.
     numbers: Vec<usize>,
     stretches: Vec<Stretch>,
 }
@@ -104,7 +104,7 @@ fn half_window_s(blocks: &Blocks<'_>) -> f64 {
     half_width(time_s) as f64 * step_s
 }
 
-/// Each rest's own height, the give of pads and contacts, and what pads damp.
+/// Regressors: each rest's own height, the give of pads and contacts, and the damping of the pads.
 fn model(rows: &Rows) -> Vec<Vec<f64>> {
     let n = rows.time_s.len();
     let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
@@ -144,7 +144,8 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
     rows
 }
 
-/// From when a block stands at one end of its carry, s, and the samples in which its height is that of the grip over what it stands on.
+/// Time from which a block stands at one end of its carry, s, and the samples in which its height is that of the grip
+/// over its support.
 fn standing(blocks: &Blocks<'_>, rest: &Rest, placed: bool) -> (f64, Vec<usize>) {
     let time_s = &blocks.signals.time_s;
     let Some(first) = rest.samples.first().copied() else { return (0.0, Vec::new()) };

@@ -1,30 +1,32 @@
-//! Where the fingers slip on a block that stands: the height of the grip goes on although nothing asks for it. Searched first everywhere by plain
-//! least squares, then closely around the best place. The fit takes such slips out of heights; a diagnosis names them.
+//! Slips of the fingers on a standing block: the height of the grip changes although nothing moves it. Plain least
+//! squares search everywhere first, then closely around the best place. The fit takes such slips out of heights; a
+//! diagnosis names them.
 
 use std::ops::Range;
 
-/// How long a slip may take in the search for the best place, s.
+/// Durations of a slip in the search for the best place, s.
 const SEARCHED_S: [f64; 9] = [0.0, 0.02, 0.05, 0.08, 0.1, 0.13, 0.17, 0.23, 0.3];
 /// Most starts of that search in one rest.
 const MOST_STARTS: usize = 60;
-/// The best place is approached in so many rounds, each with steps of this share of those before.
+/// Number of rounds in which the best place is approached; each has steps of `SHRINKS` times those before.
 const ROUNDS: usize = 8;
 const SHRINKS: f64 = 0.6;
-/// So much of a slip must fall between the first and the last row of its rest: of one of which less is seen, anything could be said.
+/// Least share of a slip between the first and the last row of its rest: with less, any slip would fit.
 const SEEN: f64 = 0.3;
-/// Less than this share of a column beside the model's own says nothing.
+/// Least share of a regressor that is not in the model's own space.
 const OWN: f64 = 1e-3;
-/// What a slip did before its rest's first row is a guess, as a share (one standard deviation): nobody says that it goes evenly.
+/// Relative uncertainty (one standard deviation) of the part of a slip before its rest's first row: it need not be
+/// even.
 const UNSEEN: f64 = 0.3;
 /// No slip goes quite evenly: its rows are off an even one by this share of its way.
 const SHAPE: f64 = 0.05;
 /// Less than this is how blocks turn in the grasp and how flat they are, m.
 pub(crate) const LEAST_M: f64 = 3e-4;
 
-/// What goes by more than this is no block that stands in the grip, whatever the states say, m.
+/// Largest range of heights, m: with more the block does not stand in the grip, whatever the states say.
 const STANDS_M: f64 = 5e-3;
 
-/// Whether heights of the grip can be those over a block that stands.
+/// True if heights of the grip can be those over a standing block.
 pub(crate) fn may_stand(heights_m: impl Iterator<Item = f64>) -> bool {
     let (low, high) = heights_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     high - low < STANDS_M
@@ -33,7 +35,7 @@ pub(crate) fn may_stand(heights_m: impl Iterator<Item = f64>) -> bool {
 /// The ramp of one slip as the rows would show it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slip {
-    /// Which rest.
+    /// Index of the rest.
     pub(crate) rest: usize,
     pub(crate) start_s: f64,
     pub(crate) length_s: f64,
@@ -60,13 +62,13 @@ pub(crate) struct Heights<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tried {
     pub(crate) slip: Slip,
-    /// What it comes out at, m.
+    /// Estimated way of the slip, m.
     pub(crate) way_m: f64,
-    /// What it takes off the squares of what the model leaves, m².
+    /// Decrease of the residual sum of squares by the slip, m².
     pub(crate) taken_m2: f64,
 }
 
-/// What a model of the heights leaves of them.
+/// Residual of a model of the heights.
 pub(crate) struct Left {
     own: Vec<Vec<f64>>,
     /// Row by row, m.
@@ -80,7 +82,7 @@ impl Slip {
         if self.length_s > 0.0 { (since / self.length_s).clamp(0.0, 1.0) } else { f64::from(u8::from(since >= 0.0)) }
     }
 
-    /// The same in the mean over a filter's window: what a row shows of it.
+    /// The same in the mean over a filter's window: the part that a row shows.
     pub(crate) fn shown(self, time_s: f64, half_s: f64) -> f64 {
         /// Places in the window, as shares of its half, and how much they count.
         const WINDOW: [(f64, f64); 5] = [(-0.8, 0.36), (-0.4, 0.84), (0.0, 1.0), (0.4, 0.84), (0.8, 0.36)];
@@ -89,13 +91,13 @@ impl Slip {
     }
 }
 
-/// What has happened before the first row is in the rest's own height.
+/// True if enough of the slip lies within the rows; the part before the first row is in the rest's own height.
 pub(crate) fn is_seen(column: &[f64]) -> bool {
     column.last().zip(column.first()).is_some_and(|(last, first)| last - first > SEEN)
 }
 
 impl Heights<'_> {
-    /// What the rows of its own rest show of a slip.
+    /// Regressor of a slip in the rows of its own rest.
     pub(crate) fn column(&self, slip: Slip) -> Vec<f64> {
         self.rests[slip.rest].rows.clone().map(|i| slip.shown(self.time_s[i], self.half_s)).collect()
     }
@@ -115,7 +117,7 @@ impl Heights<'_> {
         found
     }
 
-    /// What `model`, a column each, leaves.
+    /// Residual of `model`, given as its regressors.
     pub(crate) fn left(&self, model: &[Vec<f64>]) -> Left {
         let own = orthonormal(model);
         let mut left_m = self.height_m.to_vec();
@@ -141,7 +143,7 @@ impl Heights<'_> {
         slips.filter_map(|slip| self.tried(left, slip)).max_by(|a, b| a.taken_m2.total_cmp(&b.taken_m2))
     }
 
-    /// The slip that takes most off the squares of what the model leaves; in the rests that are `asked` for.
+    /// The slip that decreases the residual sum of squares most; in the rests that are `asked` for.
     pub(crate) fn best(&self, left: &Left, asked: &dyn Fn(usize) -> bool) -> Option<Tried> {
         let everywhere = (0..self.rests.len()).filter(|rest| asked(*rest)).flat_map(|rest| {
             let starts = self.starts(rest, MOST_STARTS);
@@ -157,8 +159,9 @@ impl Heights<'_> {
         Some(best)
     }
 
-    /// A slip's way and its error, m, one standard deviation, with its time and its duration open: rows a filter window apart say when it ended and
-    /// how steep it was better than when it began, and nobody saw how much of it was done before the first of them. `variance_m2`: of the rows' noise.
+    /// A slip's way and its error, m, one standard deviation, with its time and its duration open. Rows a filter window
+    /// apart tell its end and its slope better than its beginning, and the part before the first of them is unseen.
+    /// `variance_m2`: of the rows' noise.
     pub(crate) fn way_m(&self, left: &Left, best: Tried, variance_m2: f64) -> (f64, f64) {
         let variance_m2 = variance_m2 + (SHAPE * best.way_m).powi(2);
         let mut sums = [0.0; 3];
@@ -182,7 +185,7 @@ impl Heights<'_> {
         let (first_s, last_s) = self.bounds(best.rest);
         let latest_s = (best.start_s + 0.5 * self.half_s).min(last_s).max(first_s);
         let start = |k: usize| first_s + (latest_s - first_s) * k as f64 / STEPS as f64;
-        // A rest is long, and so may be what lies before a slip within it.
+        // A rest is long, and so may be the part before a slip within it.
         let earliest_s = best.start_s - 2.0 * self.half_s - best.length_s;
         let starts = (0..=STEPS).map(start).filter(|s| *s >= earliest_s);
         let near = (-4..=2).map(|k| (best.start_s + 0.25 * f64::from(k) * self.half_s).clamp(first_s, latest_s));
@@ -209,7 +212,8 @@ fn dot(a: &[f64], b: &[f64], range: Range<usize>) -> f64 {
     range.map(|i| a[i] * b[i]).sum()
 }
 
-/// An orthonormal basis of what the columns span (Gram and Schmidt, twice); what is nearly in the others is left out.
+/// An orthonormal basis of the space of the columns (Gram and Schmidt, twice); a column nearly in that of the others is
+/// left out.
 fn orthonormal(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut found: Vec<Vec<f64>> = Vec::new();
     for column in columns {

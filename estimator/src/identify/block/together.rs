@@ -1,8 +1,10 @@
-//! Several recordings of the same blocks: weights, widths, heights and the pads' give are shared, so all recordings' rows go into one
-//! regression each; the zero of the force sensors and where blocks were grasped is each recording's own.
+//! Several recordings of the same blocks: weights, widths, heights and the pads' give are shared, so all recordings'
+//! rows go into one regression each. The zero of the force sensors and the places of the grasps are each recording's
+//! own.
 //!
-//! Averaging the single fits is not the same: a recording that began with the blocks in hand does not show its zero, one with an
-//! even grip not its widths, one in which a block was not stood on not its height; beside another one of the same blocks all do.
+//! Averaging the single fits is not the same. A recording that began with the blocks in hand does not show its zero,
+//! one with an even grip not its widths, and one without a block on top not the height of the lowest. Beside another
+//! recording of the same blocks all do.
 
 use super::heights::Stacked;
 use super::{Blocks, MAIN, describe, heights, mean_and_spread, object, weight_and_mass};
@@ -28,7 +30,7 @@ pub struct Together {
     pub segmentations: Vec<Segmentation>,
     /// Weights, masses, widths, heights and the stiffness of the pads.
     pub shared: Vec<Parameter>,
-    /// How the errors of weights and masses go together.
+    /// Covariance of weights and masses.
     pub correlated: Vec<Correlated>,
 }
 

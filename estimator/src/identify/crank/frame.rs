@@ -1,9 +1,9 @@
-//! Where a crank's circle is, and how a held handle moves and is pushed along it: the same for recordings and beside the servo.
+//! Circle of a crank, and motion and force of a held handle along it: the same for recordings and beside the servo.
 
 use haptics::Vec2;
 use haptics::law::Motion;
 
-/// Half of the low-pass window that rows of the laws go through, s: what is slower than about 5 Hz stays.
+/// Half of the low-pass window that rows of the laws go through, s: motion below about 5 Hz stays.
 pub const LOW_PASS_HALF_S: f64 = 0.06;
 
 /// The sign of a velocity within its noise is a guess: it is blurred over twice that (and never less than 0.5 mm/s), m/s.
@@ -28,7 +28,7 @@ pub struct Handled {
     pub force_bend: Vec2,
 }
 
-/// Where the crank's circle is, and how much the pads give between tips and handle.
+/// Circle of the crank, and give of the pads between tips and handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Centre, m.

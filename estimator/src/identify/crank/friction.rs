@@ -1,4 +1,4 @@
-//! Weighted regression of the tangential force on the laws; what it shows and what it does not.
+//! Weighted regression of the tangential force on the laws, and the identifiability of their parameters.
 
 use super::SIGNIFICANT;
 use super::geometry::Geometry;
@@ -19,7 +19,7 @@ const LARGEST_ERROR: f64 = 0.3;
 /// Samples of each low-pass window that a shift of the geometry is followed through.
 const TAPS: usize = 16;
 
-/// What besides the rows decides how well the laws are known.
+/// Quantities besides the rows that decide the uncertainty of the laws.
 pub(super) struct Sensed {
     /// Samples that turned.
     pub(super) samples: usize,
@@ -49,10 +49,10 @@ impl Sensed {
 /// The fitted friction laws.
 pub(super) struct Friction {
     pub(super) fit: LinearFit,
-    /// Which of [`LAWS`] took part, in the order of the fit's columns.
+    /// Indices of the fitted laws in [`LAWS`], in the order of the regressors.
     pub(super) used: Vec<usize>,
     pub(super) known: BTreeMap<usize, f64>,
-    /// What the uncertainty of centre and give adds to the error of each fitted parameter.
+    /// Error of each fitted parameter by the uncertainty of centre and give.
     pub(super) geometry_errors: Vec<f64>,
 }
 
@@ -62,8 +62,8 @@ impl Friction {
         fitted.or_else(|| self.known.get(&law).copied()).unwrap_or(0.0)
     }
 
-    /// Whether the recording shows the parameter of a column: it is told from the others, its error matters little, and it is
-    /// not the other side of one that is not shown.
+    /// True if the recording shows the parameter of a regressor: it is distinct from the others, its error is small
+    /// enough, and it is not tied to one that is not shown.
     fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
         const SAME_THING: f64 = 0.9;
         let covariance = &self.fit.covariance;
@@ -71,7 +71,7 @@ impl Friction {
             let scale = (covariance[(column, column)] * covariance[(other, other)]).sqrt();
             covariance[(column, other)].abs() > SAME_THING * scale
         };
-        // Where one kind of friction is not shown, another one near zero may only have lost its share to it.
+        // If one kind of friction is not shown, another one near zero may only have lost its share to it.
         let is_friction = |law: usize| FRICTION.contains(&law);
         let doubtful = is_friction(self.used[column])
             && self.fit.t_value(column).abs() < SIGNIFICANT
@@ -86,7 +86,8 @@ impl Friction {
         self.fit.identified[column] && self.fit.std_errors[column] * size(regressor) <= LARGEST_ERROR * load_n
     }
 
-    /// What joins the scatter of a column's parameter: N (or N s/m …) before it is turned into its own unit.
+    /// Systematic error of a regressor's parameter beside its scatter: N (or N s/m …) before it is converted into its
+    /// own unit.
     fn systematic(&self, column: usize, seen: &Sensed, load_n: f64) -> f64 {
         // A force that is off by the log's resolution shifts every parameter by that share of the load.
         let resolution = self.fit.values[column].abs() * seen.resolution_n / load_n.max(1e-9);
@@ -129,7 +130,7 @@ impl Friction {
         block_bootstrap(&columns, &rest, Some(&rows.weights), &self.fit)
     }
 
-    /// How the errors of the laws' parameters go together.
+    /// Covariance of the laws' parameters.
     pub(super) fn correlated(&self, seen: &Sensed, rows: &Rows) -> Correlated {
         let load = load_n(rows);
         let scale = |column: usize| seen.scale(self.used[column]);
@@ -165,7 +166,7 @@ pub(super) fn friction(recording: &Recording, rows: &Rows) -> Result<Friction, E
         .collect();
     let mut used: Vec<usize> = (0..LAWS.len()).filter(|law| !known.contains_key(law)).collect();
     let mut fit = regress(rows, &used, &known)?;
-    // What this recording cannot separate is left out, the least essential first; what remains keeps its meaning.
+    // Laws that this recording cannot separate are left out, the least essential first; the rest keeps its meaning.
     for law in [INERTIA, COULOMB] {
         if fit.identified.iter().all(|i| *i) {
             break;
@@ -192,7 +193,7 @@ pub(super) fn geometry_errors(
         (Vec2::zeros(), Vec2::new(give.x, 0.0)),
         (Vec2::zeros(), Vec2::new(0.0, give.y)),
     ];
-    // What a shift changes is seen in a few samples of each window just as well.
+    // The effect of a shift is seen in a few samples of each window just as well.
     let of = |geometry: &Geometry| {
         let rows = Rows::coarse(&Along::new(recording, held, geometry), TAPS);
         regress(&rows, &friction.used, &friction.known).ok()
@@ -217,7 +218,7 @@ fn regress(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> Result<
     Ok(robust(&columns, &rest, Some(&rows.weights))?.fit)
 }
 
-/// The columns of the wanted laws, and the tangential force without what is known of it.
+/// The regressors of the wanted laws, and the tangential force less the known laws.
 fn system(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> (Vec<Vec<f64>>, Vec<f64>) {
     let rest = (0..rows.len())
         .map(|i| rows.tangential[i] - known.iter().map(|(law, value)| value * rows.columns[*law][i]).sum::<f64>())

@@ -53,7 +53,7 @@ pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
         let (fit, columns, places) = radius_fit(&points, &forces, center, give)?;
         let step = Vec2::new(fit.values[1], fit.values[2]);
         center += step;
-        // A give stays in the fit even when it is small: leaving it out would hide what it does to the centre, because the
+        // A give stays in the fit even if it is small. Without it its effect on the centre would be hidden, because the
         // steady part of the load (the weight) moves the tips as a shifted centre would.
         let keep = |k: usize| places[k].is_some_and(|j| fit.identified[j]);
         let next = [give[0] && keep(0), give[1] && keep(1)];

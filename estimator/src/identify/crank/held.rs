@@ -1,4 +1,4 @@
-//! What is known of the handle while it is held: smoothed motion and force, with their noise.
+//! Motion and force of the handle while it is held, smoothed, with their noise.
 
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
@@ -25,10 +25,10 @@ pub(super) struct Smooth {
     pub(super) velocity: Vec<Vec2>,
     /// Derivative of the velocity, m/s².
     pub(super) acceleration: Vec<Vec2>,
-    /// Net force on the handle as measured, not smoothed and smoothed, N, …
+    /// Net force on the handle as measured, N, and smoothed, N.
     measured_force: Vec<Vec2>,
     filtered_force: Vec<Vec2>,
-    /// … and its first two derivatives, N/s and N/s².
+    /// First and second derivative of the smoothed force, N/s and N/s².
     pub(super) force_rate: Vec<Vec2>,
     pub(super) force_bend: Vec<Vec2>,
     /// Noise of one velocity component after smoothing, m/s.
@@ -38,7 +38,7 @@ pub(super) struct Smooth {
     pub(super) resolution_n: f64,
 }
 
-/// The handle's motion and force while it is held, with what the states say of them. Fits by the same states share it.
+/// The handle's motion and force while it is held, by the states. Fits by the same states share it.
 pub(super) struct Grasped {
     smooth: Arc<Smooth>,
     /// Net force on the handle, N, bias taken out.
@@ -153,7 +153,8 @@ pub(super) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
         velocity_smooth = position_rate;
         acceleration = position_bend;
     }
-    // What the filter took out, scaled to what it left: a cubic fit over m samples leaves 9/(4 m) of the variance.
+    // Noise from the removed part of the signal, scaled to the remaining one: a cubic fit over m samples leaves 9/(4 m)
+    // of the variance.
     let removed: Vec<f64> = velocity.iter().zip(&velocity_smooth).map(|(a, b)| (a - b).y).collect();
     let velocity_noise = white_noise(&removed) * (2.25 / (2 * half + 1) as f64).min(1.0).sqrt();
     // While it turns, the handle passes over many steps, and rounding is one more noise. Only the grip, which hardly changes,

@@ -11,13 +11,13 @@ pub const WEIGHT: usize = 0;
 pub const INERTIA: usize = 4;
 /// Place of the constant friction.
 pub const COULOMB: usize = 3;
-/// Places of what resists the motion.
+/// Indices of the laws that resist the motion.
 pub const FRICTION: [usize; 3] = [1, 2, COULOMB];
 
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.
 pub const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N", "inertia_kg_m2"];
 
-/// What the law adds to the force per unit of its parameter.
+/// Regressor of a law: its force per unit of its parameter.
 pub fn column(law: &dyn Law, motion: &Motion) -> f64 {
     let mut columns = [0.0; MAX_PARAMETERS];
     law.regressor(motion, &mut columns);

@@ -69,11 +69,11 @@ pub(super) fn motions_at(
         .unzip()
 }
 
-/// The regression's rows: every law's column and the tangential force, all through one more low-pass.
+/// The regression's rows: every law's regressor and the tangential force, all through one more low-pass.
 ///
-/// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out what the
-/// equation does not hold for: the noise of accelerations, which would flatten the inertia, and the tremor of the hand, which
-/// the handle does not quite follow because of the pads.
+/// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out
+/// signals for which the equation does not hold: the noise of accelerations, which would flatten the inertia, and the
+/// tremor of the hand, which the handle does not quite follow because of the pads.
 pub(super) struct Rows {
     pub(super) columns: [Vec<f64>; LAWS.len()],
     pub(super) tangential: Vec<f64>,
@@ -110,7 +110,8 @@ impl Rows {
         Self::thinned(along, 1)
     }
 
-    /// The same from about `taps` samples in each window of the low-pass: enough to see what a small change of the geometry does.
+    /// The same from about `taps` samples in each window of the low-pass: enough for the effect of a small change of
+    /// the geometry.
     pub(super) fn coarse(along: &Along<'_>, taps: usize) -> Self {
         Self::thinned(along, (2 * half(&along.held.time_s) / taps).max(1))
     }

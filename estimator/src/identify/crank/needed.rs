@@ -15,15 +15,15 @@ use haptics::world::Crank;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Without forces the handle is held where the tool is as near to its circle as this share of the radius, and it turns where it is faster
-/// than this share of its usual speed.
+/// Largest distance of the tool from its circle, as a share of the radius, at which the handle counts as held in a
+/// recording without forces; it turns if it is faster than this share of its usual speed.
 const NEAR_CIRCLE: f64 = 0.03;
 const TURNS: f64 = 0.1;
 
 /// The forces that the measured motion of a crank needs, channels named as measured.
 ///
-/// Along the circle the world's laws say what it takes; the pull along the arm and the grip are the operator's own and stay as
-/// measured. Where nothing is held nothing is felt but what the sensor reads at rest.
+/// The world's laws predict the force along the circle; the pull along the arm and the grip are the operator's own and
+/// stay as measured. A free hand feels nothing but the resting value of the sensor.
 pub(crate) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Needed, EstimateError> {
     let names = names(recording);
     let is_felt = names.iter().any(|name| recording.channel(name).is_some_and(|f| f.iter().any(|v| *v != f[0])));
@@ -112,7 +112,7 @@ fn by_path(crank: &Crank, smooth: &Smooth, position: &[Vec2]) -> Vec<SystemState
     is_on.iter().zip(&speeds).map(state).collect()
 }
 
-/// What is not predicted.
+/// Inputs that are not predicted.
 fn inputs(is_felt: bool) -> Vec<String> {
     if !is_felt {
         return vec![

@@ -52,7 +52,7 @@ pub(super) fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Param
     parameters
 }
 
-/// How two fingers squeeze the handle, all channels through one filter. One entry a sample.
+/// Squeeze of two fingers on the handle, all channels through one filter. One entry a sample.
 pub(super) struct GripSignals {
     /// Distance of the tips, m, and its rate.
     width: Smoothed,
@@ -72,10 +72,10 @@ impl GripSignals {
     }
 }
 
-/// Width of the handle and stiffness of one pad: what a virtual grip needs to feel like the real one.
+/// Width of the handle and stiffness of one pad: a virtual grip needs them to feel like the real one.
 ///
-/// The tips' distance is the handle's width less the give of both pads, 2 F / k; along y two pads side by side carry the
-/// handle in shear, as the radius residual shows.
+/// The tips' distance is the handle's width less the give of both pads, 2 F / k. Along y two pads side by side carry
+/// the handle in shear, as the radius residual shows.
 pub(super) fn grip_parameters(
     signals: &GripSignals,
     held: &Held,
@@ -218,7 +218,7 @@ fn rigidity(geometry: &Geometry, parameters: &[Parameter]) -> (Option<bool>, Opt
     }
 }
 
-/// What the thesis's own method, normals over twelve samples, says of the centre.
+/// Result of the thesis's own method for the centre, normals over twelve samples.
 fn normals_sentence(by_normals: Option<Vec2>, center: Vec2) -> String {
     match by_normals {
         Some(found) => {

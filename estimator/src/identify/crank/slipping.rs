@@ -1,5 +1,5 @@
-//! Slips of the grasp on the handle: the circle that the fingers follow goes on beside itself (thesis, 5.3.1). They are found in
-//! the radius residual and taken out of the positions, so that centre and radius survive them.
+//! Slips of the grasp on the handle: the fingers' circle jumps aside (thesis, 5.3.1). They are found in the radius
+//! residual and taken out of the positions, so that centre and radius survive them.
 
 use super::geometry::{Geometry, geometry};
 use super::held::Held;
@@ -8,11 +8,11 @@ use crate::estimate::{EstimateError, Slip};
 use crate::signal::task::{CUBIC_HALF, half_width};
 use haptics::Vec2;
 
-/// A slip of less is neither felt nor does it matter, as a share of the radius …
+/// Least size of a slip, as a share of the radius: less is neither felt nor does it matter.
 const LEAST_SHARE: f64 = 0.01;
-/// … and in m.
+/// Least size of a slip, m.
 const LEAST_M: f64 = 1e-4;
-/// Slips change what the first fit looked like: search, take out, search again.
+/// Rounds of search and correction: slips change the look of the first fit.
 const ROUNDS: usize = 2;
 
 /// Centre and radius with all slips taken out: those of the first grasp. The positions in `held` are moved back to it.

@@ -1,5 +1,5 @@
-//! Several recordings of one crank: the laws are shared, so all recordings' rows go into one regression; where the crank stood and
-//! how it was grasped is each recording's own.
+//! Several recordings of one crank: the laws are shared, so all recordings' rows go into one regression; the place of
+//! the crank and the grasp on it are each recording's own.
 //!
 //! Averaging the single fits is not the same: two recordings that each show only the sum of two parameters can show both together.
 
@@ -18,11 +18,11 @@ pub struct Together {
     pub segmentations: Vec<Segmentation>,
     /// Weight, friction and inertia.
     pub shared: Vec<Parameter>,
-    /// How their errors go together.
+    /// Covariance of the shared parameters.
     pub correlated: Correlated,
 }
 
-/// Fits several recordings of the same crank. What is stated in the first one's sidecar holds for all.
+/// Fits several recordings of the same crank. Facts stated in the first one's sidecar hold for all.
 pub fn fit_together(
     method: Method,
     recordings: &[Recording],

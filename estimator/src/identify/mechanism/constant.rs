@@ -1,4 +1,4 @@
-//! A force that never changes shows nothing of what it moves: a constant of its own explains it, whatever the motion.
+//! A force that never changes tells nothing of the mechanism: a constant of its own explains it, whatever the motion.
 
 use super::regress::Shown;
 use super::report::{OBJECT, push_known};

@@ -1,8 +1,8 @@
 //! Uneven samples onto an even grid: one linear operation for every channel, so that it cancels in the regression.
 //!
-//! What interpolation does to a signal between its samples, it must do to every column: position, force and the direction of
-//! motion are all taken at the recorded times and then brought onto the grid together. A direction made on the grid instead
-//! would be sharper than the force that it explains, and Coulomb friction would come out too small.
+//! Interpolation must do the same to every regressor as to a signal: position, force and the direction of motion are
+//! all taken at the recorded times and then brought onto the grid together. A direction made on the grid instead would
+//! be sharper than the force that it explains, and the estimate of Coulomb friction would be too small.
 
 use crate::signal::derive::{even_period, interpolate, interpolate_cubic};
 use crate::signal::noise::{white_noise_under_fast_motion, white_noise_uneven};
@@ -10,14 +10,14 @@ use crate::signal::noise::{white_noise_under_fast_motion, white_noise_uneven};
 /// Samples nearer to each other than this share of the grid's period are taken as one: a slope between them is noise.
 const TOGETHER: f64 = 0.3;
 
-/// Recorded times and the even grid of one piece.
+/// Recorded times and the even grid of one segment.
 #[derive(Clone, Debug)]
 pub struct Even {
     /// The grid, s; the recorded times themselves where they are even.
     pub grid: Vec<f64>,
     /// Spacing of the grid, s.
     pub period_s: f64,
-    /// Where the recording is uneven: what its samples are read as.
+    /// Groups of samples read as one, if the recording is uneven.
     uneven: Option<Groups>,
 }
 

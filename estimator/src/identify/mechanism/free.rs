@@ -1,5 +1,5 @@
-//! Motion without a force column: nothing drives the mechanism, so its terms cancel and only their ratios can be seen. One
-//! known parameter gives all of them their size.
+//! Motion without a force column: nothing drives the mechanism, so only the ratios of its parameters are identifiable.
+//! One known parameter sets the scale of all.
 
 use super::regress::{System, shown};
 use super::report::{OBJECT, PHASE, push_known};
@@ -13,7 +13,7 @@ use haptics::recording::Meta;
 
 /// Relative error of the integration that the refinement rests on.
 const INTEGRATION_ERROR: f64 = 2e-5;
-/// Ratios that are reported when nothing gives the scale.
+/// Ratios that are reported without a known scale.
 const RATIO_NAMES: [(Term, &str, &str); 4] = [
     (Term::Viscous, "viscous_per_inertia_1_s", "viscous_per_mass_1_s"),
     (Term::Coulomb, "coulomb_per_inertia_rad_s2", "coulomb_per_mass_m_s2"),
@@ -44,7 +44,8 @@ impl Ratios {
     }
 }
 
-/// A known parameter that gives all of a free motion's values their size: its value in SI units, for a gravity moment the whole of it.
+/// A known parameter that sets the scale of all of a free motion's values: its value in SI units, for a gravity moment
+/// the whole of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stated {
     /// Mass or moment of inertia, kg or kg m².
@@ -57,7 +58,7 @@ pub enum Stated {
     Coulomb(f64),
 }
 
-/// What a sidecar states of a free motion's scale, what tells most first.
+/// Parameters stated in a sidecar that set the scale of a free motion, the most informative first.
 pub fn stated(meta: &Meta, coordinate: Coordinate) -> Vec<Stated> {
     let known = Known::from_meta(meta, coordinate);
     let moment = known.value(Term::GravitySine).map(|a| a.hypot(known.value(Term::GravityCosine).unwrap_or(0.0)));
@@ -123,7 +124,8 @@ fn report(ratios: &Ratios, known: &Known, coordinate: Coordinate, samples: usize
     result
 }
 
-/// What coasts one way shows friction and a constant force as one: their sum is still worth knowing.
+/// Sum of friction and constant force of a one-way coasting motion, which does not separate them: it is still worth
+/// knowing.
 fn resistance(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, inertia: (f64, f64), samples: usize) {
     let offset = ratios.terms.iter().position(|t| *t == Term::Offset);
     let Some(i) = offset.filter(|_| !ratios.terms.contains(&Term::Coulomb)) else { return };
@@ -137,7 +139,7 @@ fn resistance(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, inertia
     result.parameters.push(Parameter::identified(OBJECT, name, ratio * inertia.0, error, samples, how));
 }
 
-/// The regression −a = Σ ratio × regressor over all pieces.
+/// The regression −a = Σ ratio × regressor over all segments.
 fn ratios(pieces: &[Piece], known: &Known, coordinate: Coordinate) -> Result<Ratios, EstimateError> {
     let mut candidates = vec![Term::Viscous, Term::Coulomb];
     let swings = known.value(Term::GravitySine).is_some() || coordinate == Coordinate::Angular && restoring(pieces);
@@ -216,7 +218,7 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
     }
 }
 
-/// Nothing is known: every parameter is unidentified, the ratios are what there is.
+/// Result without a known scale: every parameter is unidentified, only the ratios are reported.
 fn unscaled(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, samples: usize) {
     let why = "a free motion shows only ratios; state one parameter under \"known\" in the sidecar, or record a force";
     for term in [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset] {

@@ -1,7 +1,7 @@
 //! Does a turning mechanism carry weight off its axis? Decided by evidence, against a spring as the rival.
 //!
-//! All models are judged with the noise of the richest one: without gravity, what gravity does is a slow residual, which looks
-//! like few independent samples and hides the very effect that is asked for (`facts/diagnosis.md`, step 5).
+//! All models are judged with the noise of the richest one. Without gravity, its effect is a slow residual, which looks
+//! like few independent samples and hides the very effect in question (`facts/diagnosis.md`, step 5).
 
 use super::regress::System;
 use super::signals::Piece;
@@ -12,17 +12,17 @@ use crate::identify::linear::LinearFit;
 /// Evidence (log-likelihood ratio less the BIC penalty) that a gravity moment must bring. 10 is "very strong" (Kass and
 /// Raftery 1995).
 const EVIDENCE: f64 = 10.0;
-/// … and a value this many standard errors from zero.
+/// Least size of the value in standard errors from zero.
 const CLEAR_T: f64 = 4.0;
 /// Smallest range of the angle in which sine and line can differ, rad.
 const MIN_RANGE_RAD: f64 = 0.3;
 
-/// What was found.
+/// Decision about gravity.
 #[derive(Clone, Debug)]
 pub enum Gravity {
     /// These terms belong to the model.
     Present(Vec<Term>),
-    /// They do not, for this reason. What an overlooked moment would have moved the base terms by is their `doubt`.
+    /// They do not, for this reason. The shift of the base terms by an overlooked moment is their `doubt`.
     Absent {
         /// The reason.
         why: String,
@@ -63,9 +63,9 @@ impl Models {
         2.0 * self.independent * ratio.ln() - parameters * self.independent.ln()
     }
 
-    /// How much each base term would move if there were gravity, weighted with the probability that there is (Bayesian model
-    /// averaging, Hoeting et al. 1999; even odds before). Where the arc is too short for it to tell the two, `short`, a model is not
-    /// less likely for having a term more: the data could not have spoken for it.
+    /// Shift of each base term if there were gravity, weighted with the probability that there is (Bayesian model
+    /// averaging, Hoeting et al. 1999; even odds before). If the arc is too `short` to tell the two apart, a model is
+    /// not less likely for having a term more: the data could not have spoken for it.
     fn doubt(&self, base: usize, short: bool) -> Vec<f64> {
         let count = |parameters: f64| if short { 0.0 } else { parameters };
         let rivals =
@@ -106,8 +106,8 @@ pub fn decide(pieces: &[Piece], base: &[Term], known: &Known) -> Result<Gravity,
     Ok(Gravity::Present(if phased > alone + EVIDENCE { any } else { hanging }))
 }
 
-/// True when the terms from `base` on differ from zero by [`CLEAR_T`] standard errors: sine and cosine together, because over a
-/// short arc either may stand for part of the other.
+/// True if the terms from `base` on differ from zero by [`CLEAR_T`] standard errors. Sine and cosine count together,
+/// because over a short arc either may stand for part of the other.
 fn stands_out(fit: &LinearFit, base: usize) -> bool {
     let p = fit.values.len();
     if (base..p).any(|i| fit.t_value(i).abs() > CLEAR_T) {

@@ -1,9 +1,9 @@
 //! Mechanisms with one degree of freedom: a slide, a door, a motor axis, a pendulum.
 //!
-//! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and says what the recording
-//! cannot show. Four forms of recording are understood: a coordinate with its force; a tool path with forces, whose
-//! constraint is found first; a coordinate without a force, which moves freely; and a path without a clock, which shows its
-//! constraint only. Two angles with two torques are a chain of two links (`chain/`).
+//! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and reports parameters
+//! that are not identifiable. Four forms of recording are understood: a coordinate with its force; a tool path with
+//! forces, whose constraint is found first; a coordinate without a force, which moves freely; and a path without a
+//! clock, which shows its constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
 mod chain;
 mod constant;
@@ -108,7 +108,7 @@ fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Resu
     Ok(each.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// Motion that nothing drives: without what stands in it, where enough is left that moves.
+/// Motion that nothing drives: without its standstills, if enough motion remains.
 fn freely(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
     let (parts, stood) = moving::moving(raws);
     if stood {
@@ -128,7 +128,7 @@ fn has_coordinate(recording: &Recording) -> bool {
     recording.channel("q_m").is_some() || recording.channel("q_rad").is_some()
 }
 
-/// The constraint of every tool path, and the path it gives: see [`paths`].
+/// The constraint of every tool path, and its path: see [`paths`].
 fn constraints(recordings: &[Recording]) -> (Vec<Constraint>, Vec<Option<MechanismPath>>) {
     let mut found = Vec::new();
     let mut paths = Vec::new();
@@ -234,8 +234,8 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     Ok(result)
 }
 
-/// What the clock's tolerance does to parameters of a motion under a measured force: inertia goes as time squared, viscous
-/// friction as time.
+/// Errors by the clock's tolerance of parameters of a motion under a measured force: inertia goes as time squared,
+/// viscous friction as time.
 fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
     let powers = |term: &Term| Term::GravitySine.powers_of_time() - term.powers_of_time();
     terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
@@ -245,7 +245,7 @@ fn force_of(piece: &Piece) -> Vec<f64> {
     piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
 }
 
-/// Refit on the first 70 % of every piece, error on the last 30 %.
+/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %.
 fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
     let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
     let late = system.part(|place| place >= 1.0 - HELD_OUT);
@@ -257,7 +257,7 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
         |i: usize| late.target[i] - late.columns.iter().zip(&early.values).map(|(c, v)| c[i] * v).sum::<f64>();
     let root = |sum: f64| (sum / n as f64).sqrt();
     let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
-    // Relative to the force as measured, what is known included.
+    // Relative to the force as measured, its known part included.
     let nothing_known = System::stack(pieces, &[], &Known::default(), force_of).part(|place| place >= 1.0 - HELD_OUT);
     debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
     let force = root(nothing_known.target.iter().map(|f| f * f).sum());

@@ -1,4 +1,5 @@
-//! Where a free motion moves: what stands is held by dry friction, which is anything up to its size then, and says nothing of the laws.
+//! Moving parts of a free motion: a mechanism at rest is held by dry friction, anywhere up to its level, and tells
+//! nothing of the laws.
 
 use super::signals::{MIN_SAMPLES, Raw};
 use crate::signal::noise::{quantum, white_noise_under_fast_motion};
@@ -12,8 +13,8 @@ const NOISES: f64 = 4.0;
 /// Fewer windows in a row are no standstill, but a turn of the motion.
 const LEAST_WINDOWS: usize = 3;
 
-/// The recordings without what stands in them, each stretch by itself, and whether there was any standstill. As they are, where nothing would be
-/// left.
+/// The recordings without their standstills, each moving segment by itself, and whether there was any standstill. They
+/// stay as they are if nothing would remain.
 pub(super) fn moving(raws: &[Raw]) -> (Vec<Raw>, bool) {
     let mut parts = Vec::new();
     let mut stood = false;
@@ -38,7 +39,7 @@ fn part(raw: &Raw, range: Range<usize>) -> Raw {
     }
 }
 
-/// Samples of the stretches that move.
+/// Samples of the moving segments.
 fn ranges(raw: &Raw) -> Vec<Range<usize>> {
     let n = raw.position.len();
     let period_s = (raw.time_s[n - 1] - raw.time_s[0]) / n.saturating_sub(1).max(1) as f64;
@@ -58,7 +59,7 @@ fn ranges(raw: &Raw) -> Vec<Range<usize>> {
             begin = end;
         }
     }
-    // What is left over at the end is part of its neighbour.
+    // The last incomplete window belongs to its neighbour.
     let last_stands = begin > 0 && begin == stands.len() * length;
     if begin < n && !last_stands {
         moving.push(begin..n);
@@ -105,7 +106,7 @@ mod tests {
         let swing = raw(|t| 0.1 * (5.0 * t).sin());
         let (parts, stood) = moving(std::slice::from_ref(&swing));
         assert!(!stood && parts.len() == 1 && parts[0].time_s.len() == 2000);
-        // What never moves is handed on for the fit to say so.
+        // A recording without motion is handed on for the fit to report it.
         let still = raw(|_| 0.0);
         assert_eq!(moving(std::slice::from_ref(&still)).0.len(), 1);
     }

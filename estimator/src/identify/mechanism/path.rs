@@ -78,11 +78,12 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
     }
 }
 
-/// A tool keeps to its path so much worse when the object is held again, as a factor and as a share of the path's extent.
+/// Larger distance of a tool from its path when the object is held again, as a factor and as a share of the path's
+/// extent.
 const WORSE: f64 = 3.0;
 const SPARE: f64 = 0.005;
 
-/// How far a recording of the same object in the same frame lies beside the path that was found in `like`, at most, m.
+/// Largest distance of a recording of the same object, in the same frame, from the path that was found in `like`, m.
 pub fn spare_m(path: &MechanismPath, like: &Recording) -> Option<f64> {
     let points = points(like)?;
     let extent_m = |axis: usize| {
@@ -93,13 +94,14 @@ pub fn spare_m(path: &MechanismPath, like: &Recording) -> Option<f64> {
     Some(WORSE * beside_m(&points, path) + SPARE * extent_m)
 }
 
-/// Whether a recording keeps to a path within [`spare_m`], so that one coordinate holds in it and where the path was found.
+/// True if a recording keeps to a path within [`spare_m`], so that one coordinate holds in it and in the recording of
+/// the path.
 pub fn keeps_to(recording: &Recording, path: &MechanismPath, spare_m: f64) -> bool {
-    // Written so that a number that is none is no yes.
+    // Written so that not-a-number is false.
     points(recording).is_some_and(|own| beside_m(&own, path) <= spare_m)
 }
 
-/// Whether a recording keeps to the path that was found in `like`: the same object in the same frame.
+/// True if a recording keeps to the path that was found in `like`: the same object in the same frame.
 pub fn lies_on(recording: &Recording, path: &MechanismPath, like: &Recording) -> bool {
     spare_m(path, like).is_some_and(|spare_m| keeps_to(recording, path, spare_m))
 }

@@ -1,4 +1,4 @@
-//! The fit itself: stacked pieces, effective-variance weights, which terms the motion can show.
+//! The fit itself: stacked segments, effective-variance weights, and the terms that the motion can show.
 
 use super::signals::{Piece, StateNoise};
 use super::terms::{Known, Term};
@@ -12,7 +12,7 @@ const DISTINCT: f64 = 0.05;
 const STEADY_DIRECTION: f64 = 0.98;
 /// Smaller share of the moving time that must lie in each direction for a reversal to count.
 const REVERSAL_SHARE: f64 = 0.02;
-/// … and of the way.
+/// The same as a share of the way.
 const REVERSAL_WAY: f64 = 0.01;
 /// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
 const SKEW_SAMPLES: f64 = 0.29;
@@ -22,33 +22,33 @@ const SLOW_SHARE: f64 = 0.015;
 const ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
 const UNSEEN_STOP: f64 = 0.4;
-/// How fast the reach of the filter decays, per period of its cut-off: between its main lobe and its ringing (2.4), where masses of generated
-/// recordings with many stops have no bias and the errors are least.
+/// Decay rate of the reach of the filter, per period of its cut-off. It lies between its main lobe and its ringing
+/// (2.4), where masses of generated recordings with many stops have no bias and the errors are least.
 const REACH: f64 = 4.5;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
-/// Columns, target and weights of a fit, over the usable samples of all pieces.
+/// Regressors, target and weights of a fit, over the usable samples of all segments.
 #[derive(Clone, Debug)]
 pub struct System {
     /// The terms that are estimated, in the order of the columns.
     pub terms: Vec<Term>,
     /// One column a term.
     pub columns: Vec<Vec<f64>>,
-    /// Force less what is known, N or N m.
+    /// Force less its known part, N or N m.
     pub target: Vec<f64>,
     /// Share of 1 by which the direction of motion is uncertain, 0 … 1.
     pub uncertainty: Vec<f64>,
     /// Filtered position of each sample, m or rad, and the noise of the motion there: how much the columns are off.
     pub motion: Vec<(f64, StateNoise)>,
-    /// To what share that noise is known.
+    /// Relative uncertainty of that noise.
     pub noise_known_to: f64,
     /// Place of each sample in its recording, 0 … 1: for holding out the end.
     pub place: Vec<f64>,
 }
 
 impl System {
-    /// Stacks the pieces for `terms`; `target_of` gives the left-hand side of a piece.
+    /// Stacks the segments for `terms`; `target_of` returns the left-hand side of a segment.
     pub fn stack(pieces: &[Piece], terms: &[Term], known: &Known, target_of: impl Fn(&Piece) -> Vec<f64>) -> Self {
         let mut system = Self {
             terms: terms.to_vec(),
@@ -80,8 +80,8 @@ impl System {
         system
     }
 
-    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and takes
-    /// out what noise in the columns attenuates.
+    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and
+    /// takes out the attenuation by noise in the regressors.
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
@@ -93,7 +93,7 @@ impl System {
         Ok(fit.without_attenuation(&self.column_noise(weights.as_deref()), self.noise_known_to))
     }
 
-    /// What each sample counts after `fit`; `None` where no term depends on the direction.
+    /// Weights of the samples after `fit`; `None` if no term depends on the direction.
     pub fn weights(&self, fit: &LinearFit) -> Option<Vec<f64>> {
         let dry = self.terms.iter().position(|t| *t == Term::Coulomb)?;
         let level = fit.values[dry].powi(2);
@@ -158,7 +158,7 @@ impl System {
             let size = norm[i] * norm[j];
             if size > 0.0 { dot(&self.columns[i], &self.columns[j]) / size } else { f64::from(u8::from(i == j)) }
         });
-        // A ridge far below what counts keeps the inverse finite.
+        // A ridge far below anything that counts keeps the inverse finite.
         let inverse = (gram + DMatrix::identity(p, p) * 1e-12).try_inverse();
         (0..p)
             .map(|j| match &inverse {
@@ -169,16 +169,16 @@ impl System {
     }
 }
 
-/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise, the place of the reversal between
-/// two samples, and friction that holds what stands still.
+/// 1 for an entirely uncertain sign of the motion, 0 for a certain one. It depends on velocity noise, the place of the
+/// reversal between two samples, and friction that holds the mechanism at rest.
 pub(super) fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
     let slow = SLOW_SHARE * piece.rms(|m| m.velocity);
-    // A mechanism that sticks resists with anything up to its friction, and a stop that is shorter than the filter's own time looks
-    // like a smooth reversal. What the filter makes of such a moment reaches as far as the filter does, and all samples within its
-    // time have the same of it: one error that comes back so often counts so often.
+    // A mechanism that sticks resists with anything up to its friction, and a stop that is shorter than the filter's
+    // own time looks like a smooth reversal. The filtered error of such a moment reaches as far as the filter does. All
+    // samples within that time share it: one error that comes back so often counts so often.
     let sticking = |m: &haptics::law::Motion| {
         let slow = slow.hypot(UNSEEN_STOP * m.acceleration / piece.cutoff_hz).max(f64::MIN_POSITIVE);
         (1.0 + (m.velocity / slow).powi(2)).powi(-2)
@@ -189,8 +189,8 @@ pub(super) fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     piece.motion.iter().zip(stuck).map(|(m, stuck)| by_noise(m).max(repeats * stuck * stuck)).collect()
 }
 
-/// How far a filter of this cut-off (a share of the rate) carries `values`, decaying to both sides without zeros: the filter's own answer rings,
-/// and where that of one moment passes through zero, that of the next does not.
+/// Spread of `values` by a filter of this cut-off (a share of the rate), decaying to both sides without zeros. The
+/// filter's own response rings, and where that of one moment passes through zero, that of the next does not.
 fn spread(values: &[f64], cutoff_share: f64) -> Vec<f64> {
     let kept = (-REACH * cutoff_share).exp();
     let before = decaying(values.iter(), kept);
@@ -209,7 +209,7 @@ fn decaying<'a>(values: impl Iterator<Item = &'a f64>, kept: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Which terms this motion can show, and why not the others.
+/// Terms that this motion can show, and the reason for each other one.
 #[derive(Clone, Debug)]
 pub struct Shown {
     /// Terms to fit. [`Term::Offset`] is always among them.

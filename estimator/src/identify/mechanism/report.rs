@@ -19,25 +19,25 @@ const CLEAR_T: f64 = 3.0;
 /// Everything has a mass: one whose 95 % interval holds none at all was not shown.
 const SOME_MASS_T: f64 = 1.96;
 
-/// What the report is made of.
+/// Input of the report.
 pub struct Material<'a> {
     /// Length or angle.
     pub coordinate: Coordinate,
-    /// What the motion can show.
+    /// Terms that the motion can show.
     pub shown: &'a Shown,
     /// The terms in the order of the columns.
     pub terms: &'a [Term],
     /// The solution.
     pub fit: &'a LinearFit,
-    /// Root mean square of each column, of the target.
+    /// Root mean square of each regressor: force per unit of its parameter.
     pub effect: &'a [f64],
-    /// … and of the force.
+    /// Root mean square of the force.
     pub force_rms: f64,
-    /// What the sidecar states.
+    /// Parameters that the sidecar states.
     pub known: &'a Known,
     /// Errors by resampling, in the order of the columns.
     pub resampled: Option<&'a Resampled>,
-    /// What was decided about gravity; `None` where it cannot act.
+    /// Decision about gravity; `None` if it cannot act.
     pub gravity: Option<&'a Gravity>,
 }
 
@@ -92,7 +92,7 @@ impl Material<'_> {
         Parameter::identified(OBJECT, name, value, error, self.samples(), &how).with_bootstrap(self.drawn(i))
     }
 
-    /// How the errors of the fitted terms go together.
+    /// Covariance of the fitted terms.
     pub fn correlated(&self) -> Correlated {
         let kept: Vec<usize> = (0..self.terms.len())
             .filter(|i| !matches!(self.terms[*i], Term::GravitySine | Term::GravityCosine))
@@ -106,7 +106,7 @@ impl Material<'_> {
         }
     }
 
-    /// When offset and friction are one, their sum is still worth knowing.
+    /// Sum of offset and friction if they are inseparable: it is still worth knowing.
     fn push_resistance(&self, result: &mut Fit) {
         let hidden = |t: Term| self.shown.hidden.iter().any(|(h, _)| *h == t);
         let (term, what) = match (hidden(Term::Offset), hidden(Term::Coulomb)) {
@@ -157,7 +157,7 @@ impl Material<'_> {
     }
 }
 
-/// What the sidecar states stands in the result as it was given.
+/// Copies the values stated in the sidecar into the result.
 pub fn push_known(result: &mut Fit, known: &Known, coordinate: Coordinate) {
     let how = "given in the sidecar, not estimated";
     for &(term, value) in &known.values {

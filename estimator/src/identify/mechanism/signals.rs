@@ -11,18 +11,18 @@ use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
 use std::f64::consts::TAU;
 
-/// Fewest samples of one uninterrupted piece.
+/// Fewest samples of a segment without a gap.
 pub const MIN_SAMPLES: usize = 24;
-/// A step of more than this many periods interrupts a piece.
+/// Step in periods above which a segment ends.
 const GAP_PERIODS: f64 = 10.0;
 /// Acceleration noise that is let through, as a share of the acceleration itself: biases the inertia by its square, 0.1 %.
 const ACCELERATION_NOISE: f64 = 0.03;
-/// … nor above this many times: further up there is noise only.
+/// Largest ratio of the cut-off to the fastest motion that matters: further up there is noise only.
 const CUTOFF_OVER_MOTION_MAX: f64 = 100.0;
-/// The cut-off never goes below this many times the fastest motion that matters.
+/// Least ratio of the cut-off to the fastest motion that matters.
 const CUTOFF_OVER_MOTION: f64 = 3.0;
 
-/// Coordinate and force as recorded: what every recording form is reduced to.
+/// Coordinate and force as recorded: every recording form is reduced to it.
 #[derive(Clone, Debug)]
 pub struct Raw {
     /// Length or angle.
@@ -66,7 +66,7 @@ impl StateNoise {
     }
 }
 
-/// Filtered signals of one uninterrupted piece of a recording, evenly sampled.
+/// Filtered signals of one segment of a recording without a gap, evenly sampled.
 #[derive(Clone, Debug)]
 pub struct Piece {
     /// Motion at every sample, direction not yet blurred: sign of the filtered velocity.
@@ -89,15 +89,15 @@ pub struct Piece {
     pub from_resolution: f64,
     /// True when there is an acceleration that stands clear of its noise.
     pub accelerates: bool,
-    /// Index of the first sample of this piece in the recording (nearest, when it was resampled).
+    /// Index of the first sample of this segment in the recording (nearest, if it was resampled).
     pub first: usize,
     /// Time of the first sample, s.
     pub start_s: f64,
 }
 
 impl Piece {
-    /// To what share the noise of the motion is known. What rounding leaves in the band of the motion depends on how fast the steps pass:
-    /// between nothing and as much as white noise of that size.
+    /// Relative uncertainty of the noise of the motion. The effect of rounding in the band of the motion depends on the
+    /// rate at which the steps pass: between nothing and as much as white noise of that size.
     pub fn noise_known_to(&self) -> f64 {
         COLUMN_NOISE_UNCERTAINTY + 0.5 * self.from_resolution
     }
@@ -168,14 +168,14 @@ pub fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
     flags
 }
 
-/// Cuts at gaps, resamples uneven pieces, filters and derives. Pieces that are too short are left out.
+/// Cuts at gaps, resamples uneven segments, filters and derives. Segments that are too short are left out.
 pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
     let (spans, median) = uninterrupted(&raw.time_s, name)?;
     let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median)).collect();
     if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, raw.time_s.len())) } else { Ok(found) }
 }
 
-/// Stretches without a gap that are long enough (first sample, end), and the usual step, s.
+/// Segments without a gap that are long enough (first sample, end), and the usual step, s.
 pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>, f64), EstimateError> {
     let n = time_s.len();
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
@@ -280,8 +280,8 @@ struct Noisy {
     noise: f64,
 }
 
-/// The highest cut-off at which the acceleration still stands clear of its noise: within that bound, more bandwidth means
-/// better told reversals. Where there is no acceleration to speak of, the same for the velocity.
+/// The highest cut-off at which the acceleration still stands clear of its noise: within that bound, more bandwidth
+/// means better resolved reversals. Without an acceleration to speak of, the same for the velocity.
 fn choose_cutoff(position: &[f64], sigma: f64, rate_hz: f64) -> Choice {
     let bottom = (8.0 * rate_hz / position.len() as f64).min(MAX_CUTOFF_SHARE * rate_hz);
     let ladder =
@@ -370,7 +370,7 @@ pub fn motion(raw: &Raw, mechanism: &Mechanism) -> Vec<Motion> {
     let Ok(pieces) = pieces(raw, "") else { return crude_motion(raw, mechanism) };
     let blur = |p: &Piece| mechanism.direction_blur.max(noise_blur(p.velocity_noise));
     for piece in &pieces {
-        // Samples before the piece (too short to filter, or in a gap) hold still.
+        // Samples before the segment (too short to filter, or in a gap) hold still.
         fill_still(raw, &mut out, piece.first);
         let end_s = piece.start_s + (piece.motion.len() - 1) as f64 * piece.period_s;
         while out.len() < n && raw.time_s[out.len()] <= end_s + 0.5 * piece.period_s {
@@ -390,7 +390,7 @@ fn fill_still(raw: &Raw, out: &mut Vec<Motion>, until: usize) {
     }
 }
 
-/// Linear interpolation between the two neighbouring samples of a piece.
+/// Linear interpolation between the two neighbouring samples of a segment.
 fn blend(motion: &[Motion], at: f64) -> Motion {
     let low = (at.floor().max(0.0) as usize).min(motion.len() - 1);
     let high = (low + 1).min(motion.len() - 1);

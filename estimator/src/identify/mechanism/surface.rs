@@ -1,4 +1,4 @@
-//! A tool that presses on a surface: what stands in the fit beside the constraint.
+//! A tool that presses on a surface: the content of the fit beside the constraint.
 
 use crate::estimate::{Constraint, ConstraintKind, Fit, Parameter};
 use haptics::recording::Recording;

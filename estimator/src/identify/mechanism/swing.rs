@@ -8,9 +8,9 @@ use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};
 use std::ops::Range;
 
-/// Most pieces that are integrated together: each brings two starting values.
+/// Largest number of segments that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
-/// Most samples that take part; longer records are thinned.
+/// Largest number of samples in the fit; longer records are thinned.
 const MAX_SAMPLES: usize = 4000;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
 const STEP_SHARE: f64 = 0.005;
@@ -18,15 +18,15 @@ const ITERATIONS: usize = 25;
 /// The refined motion must follow the measured one to this share of its size, or the regression stands.
 const ACCEPTED_SHARE: f64 = 0.05;
 
-/// Measured samples of one piece.
+/// Measured samples of one segment.
 struct Run {
     time_s: Vec<f64>,
     position: Vec<f64>,
     start: [f64; 2],
 }
 
-/// Refined ratios to the inertia, in the order of `terms`, as a fit with its covariance, and their errors by resampling; `None` when the integration does not
-/// follow the record better than the start, or not well.
+/// Refined ratios to the inertia, in the order of `terms`, as a fit with its covariance, and their errors by
+/// resampling. `None` if the integration does not follow the record better than the start, or not well.
 pub fn refine(raws: &[Raw], pieces: &[Piece], terms: &[Term], ratios: &[f64]) -> Option<(LinearFit, Option<Vec<f64>>)> {
     let runs = runs(raws, pieces)?;
     let p = terms.len();
@@ -80,7 +80,7 @@ fn centred(values: &[f64]) -> Vec<f64> {
     values.iter().map(|v| v - mean).collect()
 }
 
-/// The measured samples of every piece, thinned, with the filtered state at the first of them.
+/// The measured samples of every segment, thinned, with the filtered state at the first of them.
 fn runs(raws: &[Raw], pieces: &[Piece]) -> Option<Vec<Run>> {
     if pieces.len() > MAX_PIECES || raws.len() != 1 && raws.len() != pieces.len() {
         return None;

@@ -1,4 +1,4 @@
-//! The terms of the base model: which law each one is, what its parameter is called, and its regressor column.
+//! The terms of the base model: the law, the name of the parameter, and the regressor of each.
 
 use super::signals::Piece;
 use haptics::law::{
@@ -10,7 +10,7 @@ use haptics::recording::Meta;
 /// Relative error of the clock of a recording: 100 ppm, the usual tolerance of an uncompensated quartz.
 pub const CLOCK_TOLERANCE: f64 = 1e-4;
 
-/// One column of the fit.
+/// One regressor of the fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Term {
     /// Mass or moment of inertia.
@@ -68,7 +68,7 @@ impl Term {
         columns[index]
     }
 
-    /// The power of 1/time in the ratio of this term to the inertia: what a wrong clock does to it.
+    /// The power of 1/time in the ratio of this term to the inertia: the effect of a wrong clock on it.
     pub fn powers_of_time(self) -> f64 {
         match self {
             Self::Inertia => 0.0,
@@ -77,8 +77,8 @@ impl Term {
         }
     }
 
-    /// How the regressor answers to small errors of position, velocity and acceleration. The sign of the motion is left out:
-    /// its errors are weighted down instead.
+    /// Sensitivity of the regressor to small errors of position, velocity and acceleration. The sign of the motion is
+    /// left out: its errors are weighted down instead.
     pub fn slopes(self, position: f64) -> [f64; 3] {
         match self {
             Self::Inertia => [0.0, 0.0, 1.0],
@@ -90,8 +90,8 @@ impl Term {
         }
     }
 
-    /// The regressor along a piece, filtered like the force: what is a function of filtered motion is filtered already,
-    /// the sign of the motion is not.
+    /// The regressor along a segment, filtered like the force: functions of filtered motion are filtered already, the
+    /// sign of the motion is not.
     pub fn column(self, piece: &Piece) -> Vec<f64> {
         let at = |(motion, &direction): (&Motion, &f64)| self.regressor(&Motion { direction, ..*motion });
         let column: Vec<f64> = piece.motion.iter().zip(&piece.direction).map(at).collect();
@@ -99,7 +99,7 @@ impl Term {
     }
 }
 
-/// What the sidecar states about the mechanism: not to be estimated.
+/// Parameters that the sidecar states about the mechanism: not to be estimated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Known {
     /// Terms with their values.

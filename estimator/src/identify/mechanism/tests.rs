@@ -1,5 +1,5 @@
-//! Recovery: known parameters are simulated and must come back within their own stated uncertainty; what the motion cannot
-//! show must say so.
+//! Recovery: known parameters are simulated and must come back within their own stated uncertainty; parameters that the
+//! motion cannot show must be reported as such.
 
 use super::*;
 use haptics::recording::{Channel, Meta};
@@ -142,7 +142,8 @@ fn what_the_motion_does_not_show_is_not_given_a_number() {
     demand(&one_way, "viscous_N_s_m", 12.0, 0.1);
     demand(&one_way, "mass_kg", 3.0, 0.1);
 
-    // With stops: what holds there is anything up to the friction, and a filter rings back by a hair when the motion sets in.
+    // With stops: the holding force there is anything up to the friction, and a filter rings back by a hair when the
+    // motion sets in.
     let halting: Motion = |t| {
         let (w, turns) = (1.5, (1.5 * t / std::f64::consts::TAU).floor());
         let phase = w * t - std::f64::consts::TAU * turns;
@@ -233,7 +234,7 @@ fn scores(names: &[(&str, f64)], make: impl Fn(u64) -> Recording) -> Vec<Vec<f64
     all
 }
 
-/// Root mean square of one column of scores: 1 when the errors are what they say.
+/// Root mean square of one column of normalised errors: 1 if the stated errors are right.
 fn spread(scores: &[Vec<f64>], column: usize) -> f64 {
     (scores.iter().map(|s| s[column].powi(2)).sum::<f64>() / scores.len() as f64).sqrt()
 }
@@ -412,7 +413,7 @@ fn a_force_that_never_changes_shows_no_mass() {
             assert_eq!(fit.parameters.len(), 4, "{fit:?}");
         }
     }
-    // What is drawn by one force all the time moves as its mass tells, where nothing else is in the force.
+    // A mechanism under one constant force moves as its mass says, if nothing else is in the force.
     let mut drawn = constant(2.0, 1.0, 4);
     let time = drawn.time_s.clone().expect("a clock");
     drawn.channels[0].values = time.iter().map(|t| 0.5 * (2.0 - 0.4) / 3.0 * t * t).collect();

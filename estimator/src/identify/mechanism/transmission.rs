@@ -1,8 +1,8 @@
-//! From an input coordinate to an output one: ratio, play and give of a gear, a cable or a linkage.
+//! Ratio, play and give of a gear, a cable or a linkage: from an input coordinate to an output one.
 //!
-//! The output follows the input through a gap: it stays where it is until the input has crossed the gap, and from there on is
-//! pushed by one side or the other (the play operator; Nordin & Gutman, Automatica 38, 2002). What is left may follow the load.
-//! Half the gap is searched, everything else is linear.
+//! The output follows the input through a gap: it stays in place until the input has crossed the gap, and from there on
+//! is pushed by one side or the other (the play operator; Nordin & Gutman, Automatica 38, 2002). The residual may
+//! follow the load. Half the gap is searched, everything else is linear.
 
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
@@ -18,13 +18,13 @@ const TRIES: usize = 40;
 const CLOSER: usize = 24;
 /// The largest half gap, as a share of the input's way.
 const LARGEST: f64 = 0.25;
-/// Samples that take part, at most: slow motions are sampled far too often.
+/// Largest number of samples in the fit: slow motions are sampled far too often.
 const ROWS: usize = 3000;
 /// The share of the recording in which the gap's side is not known yet.
 const SETTLING: f64 = 0.02;
 /// The input must turn round this often to show a gap.
 const REVERSALS: usize = 2;
-/// A value counts as seen from so many standard errors on.
+/// Standard errors from zero from which a value counts as seen.
 const SEEN: f64 = 3.0;
 
 /// A value with its standard error by covariance and by resampling.
@@ -169,7 +169,7 @@ fn play(input: &[f64], half: f64) -> (Vec<f64>, Vec<f64>) {
         .unzip()
 }
 
-/// How often the input turns round by more than `least`.
+/// Number of reversals of the input by more than `least`.
 fn reversals(input: &[f64], least: f64) -> usize {
     let (mut extreme, mut forward, mut count) = (input[0], None, 0);
     for q in input {

@@ -41,7 +41,7 @@ fn effects(fit: &Fit) -> Vec<Effect> {
         effects.push(Effect::new(&ViscousFriction, &[viscous.max(0.0)]));
     }
     let coulomb = either("coulomb_N", "coulomb_Nm");
-    // Constant resistance that one direction cannot split: friction is what a mechanism at hand most likely has.
+    // Constant resistance that one direction cannot split: a mechanism at hand most likely has friction.
     if let Some(dry) = coulomb.or_else(|| either("resistance_N", "resistance_Nm").map(f64::abs)) {
         effects.push(Effect::new(&CoulombFriction, &[dry.max(0.0)]));
     }
@@ -60,11 +60,12 @@ const MOVES: f64 = 0.99;
 /// Dry friction is told to a tenth of itself where a stop or a turn leaves this share of its square open, as the fit weighs its samples.
 const LEFT_OPEN: f64 = 0.01;
 
-/// What the laws say that a measured motion needs.
+/// Prediction of the laws for a measured motion.
 pub struct Prediction {
     /// Force at every sample, N or N m.
     pub force: Vec<f64>,
-    /// Whether it is told there: where nothing moves, and as far about it as the filter reaches, dry friction holds whatever it is loaded with.
+    /// True for samples with a prediction: at rest, and as far around it as the filter reaches, dry friction holds any
+    /// load.
     pub is_told: Vec<bool>,
 }
 
@@ -79,8 +80,8 @@ pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Predictio
     Ok(Prediction { force: drive_forces(&mechanism.effects, &motion), is_told })
 }
 
-/// How much of the square of its dry friction each sample leaves open: near a stop or a turn the filter has mixed what friction held with what it
-/// braked. 0 where the motion is too short to be filtered.
+/// Uncertain share of each sample in the square of its dry friction: near a stop or a reversal the filter has mixed
+/// holding and braking friction. 0 if the motion is too short to be filtered.
 fn open_share(raw: &Raw) -> Vec<f64> {
     let mut open = vec![0.0; raw.time_s.len()];
     for piece in signals::pieces(raw, "").unwrap_or_default() {

@@ -1,4 +1,5 @@
-//! What a needle shows beyond the loading curve: the force at which it goes through, the drag of the hole, its own weight.
+//! Estimates of a needle beyond the loading curve: the force at which it goes through, the drag of the hole, its own
+//! weight.
 
 use super::signals::Along;
 use super::strokes::Push;
@@ -7,12 +8,13 @@ use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;
 
-/// A force is on the loading curve within so many times its noise, or this share of it: slow filters bend the curve a little.
+/// Largest distance of a force on the loading curve, in multiples of its noise, or as a share of it: slow filters bend
+/// the curve a little.
 const ON_CURVE_NOISES: f64 = 4.0;
 const ON_CURVE: f64 = 0.02;
-/// A filter that force and place went through makes a sheet give way so much earlier on the curve, s, if there is one.
+/// Lead of the puncture on the curve by a filter that force and place went through, s, if there is one.
 const FILTER_S: f64 = 2e-3;
-/// The speed of a push before it goes through is that of so long, s, and of one step between samples at least.
+/// Time over which the speed of a push before the puncture is taken, s; at least one step between samples.
 const BEFORE_S: f64 = 0.02;
 /// The place of a puncture on the curve is as uncertain as this share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
@@ -21,7 +23,7 @@ const HOLE_SHARE: f64 = 0.05;
 /// The level of the force on the way to the sheet is known to this share of its noise at best.
 const LEVEL_NOISE: f64 = 0.08;
 
-/// One going through, all in N: the force, the errors that the curve gives it by covariance and by resampling, and its own.
+/// One puncture, all in N: the force, its errors by the curve (by covariance and by resampling), and its own.
 struct Through {
     force: f64,
     curve: f64,
@@ -48,8 +50,9 @@ impl Sheet {
             .with_bootstrap(drawn.map(|sum| (sum / n).sqrt().hypot(own)))
     }
 
-    /// A sheet gives way between the last sample on the loading curve and the next one. That is where the needle was with the speed that it had: once it
-    /// is through, what pushed it lets it run ahead, and the force of that falls by and by.
+    /// A sheet yields between the last sample on the loading curve and the next one, at the place that the needle
+    /// reached with its speed. Once it is through, its driving spring lets it run ahead, and the force of that falls by
+    /// and by.
     fn through(&self, along: &Along, push: &Push) -> Option<Through> {
         let give = along.give_m_n.0;
         let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
@@ -73,7 +76,7 @@ impl Sheet {
         Some(Through { force, curve, resampled: self.loading.force_resampled_n(depth(at)), single })
     }
 
-    /// What a single tool is held with outside the sheet: where it goes up and down, its weight.
+    /// Holding force of a single tool outside the sheet: its weight, if it goes up and down.
     pub(super) fn held(&self, along: &Along) -> Option<Parameter> {
         if along.two_fingered || along.direction.y.abs() < 0.9 {
             return None;
@@ -91,7 +94,7 @@ impl Sheet {
         let drawn = median_error(&inwards).zip(median_error(&outwards)).map(|(a, b)| 0.5 * a.hypot(b));
         let (inwards, outwards) = (median(inwards)?, median(outwards)?);
         let value = 0.5 * (inwards - outwards);
-        // In and out need not be alike: their mean beside zero is what is not understood.
+        // In and out need not be alike: their mean beside zero is unexplained.
         let unlike = (0.25 * (inwards + outwards).abs()).hypot(HOLE_SHARE * value);
         let error = unlike.hypot(along.noise_n / (samples as f64).sqrt());
         let how = "half the difference of the forces in the hole on the way in and on the way out";
@@ -145,8 +148,8 @@ mod tests {
     use super::super::strokes::pushes;
     use super::*;
 
-    /// Pushed in by `step_m` a sample into a spring of 450 N/m that is pierced at 1.6 N, `later_m` beyond a sample; then what pushed it lets it run ahead, and
-    /// the force of that falls by and by.
+    /// Pushed in by `step_m` a sample into a spring of 450 N/m that is pierced at 1.6 N, `later_m` beyond a sample.
+    /// Then the driving spring lets it run ahead, and the force of that falls by and by.
     fn pierced(step_m: f64, later_m: f64) -> Along {
         let (mut depth_m, mut force_n) = (Vec::new(), Vec::new());
         let (mut at, mut left) = (later_m - step_m * (1.6 / 450.0 / step_m + 40.0).round(), None);

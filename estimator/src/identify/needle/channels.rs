@@ -1,5 +1,5 @@
-//! A needle recording as a hidden Markov model sees it: depth beyond the surface, force, speed inwards, and how much less than an
-//! untouched sheet presses back.
+//! Channels of a needle recording for a hidden Markov model: depth beyond the surface, force, speed inwards, and the
+//! deficit of the force against an untouched sheet.
 
 use super::strokes::{self, quiet_force};
 use super::{LEAST_LOADING, Sheet, phases, signals};
@@ -21,7 +21,7 @@ pub struct Channels {
     pub missing_n: Vec<f64>,
     /// White noise of the calmed force, N.
     pub noise_n: f64,
-    /// What the strokes say.
+    /// Phases of the strokes.
     pub phases: Vec<StrokePhase>,
 }
 

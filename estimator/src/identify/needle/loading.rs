@@ -1,6 +1,6 @@
 //! The loading curve of an untouched sheet: f = offset + k x + k₃ x³, x the way beyond the surface.
 //!
-//! The surface is where the curve bends, so it is searched for; all else is linear. The curve's columns are those of
+//! The surface is the bend of the curve, so it is searched for; all else is linear. The curve's regressors are those of
 //! [`MembraneLaw::loading_n`](haptics::law::object::MembraneLaw::loading_n).
 
 use crate::estimate::EstimateError;
@@ -17,7 +17,7 @@ const FINE: usize = 40;
 /// One sample of the loading: which offset it has, its depth, m, and its force, N.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// Which hold.
+    /// Index of the hold.
     pub hold: usize,
     /// Depth, m.
     pub depth_m: f64,
@@ -53,7 +53,7 @@ impl Loading {
         MembraneLaw { stiffness_n_m, cubic_n_m3, give: 0.0, puncture_n: f64::MAX, friction_n: 0.0, drag_n_s_m: 0.0 }
     }
 
-    /// Index of the stiffness among the columns of [`Self::around`].
+    /// Index of the stiffness among the regressors of [`Self::around`].
     pub fn stiffness_at(&self) -> usize {
         self.offset_n.len()
     }
@@ -91,7 +91,7 @@ pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
     if whole.around.identified[whole.stiffness_at() + 1] && whole.stiffness_n_m > 0.0 && whole.cubic_n_m3 >= 0.0 {
         return Ok(whole);
     }
-    // No sheet gets softer: what a curve that does would have said is noise, and goes into the errors.
+    // No sheet gets softer: the deviation of such a curve is noise, and goes into the errors.
     let mut straight = fit_with(points, holds, false)?;
     let mut errors = vec![0.0; straight.around.values.len()];
     errors[straight.stiffness_at()] = 0.5 * (whole.stiffness_n_m - straight.stiffness_n_m);
@@ -122,7 +122,7 @@ fn fit_with(points: &[Point], holds: usize, cubic: bool) -> Result<Loading, Esti
     };
     columns.push(points.iter().map(bend).collect());
     let force: Vec<f64> = points.iter().map(|p| p.force_n).collect();
-    // Around the answer the surface's own column asks for no change: what is left are the errors.
+    // Around the answer the surface's own regressor asks for no change: this fit serves the errors.
     let around = least_squares(&columns, &force, None)?;
     let resampled = block_bootstrap(&columns, &force, None, &around);
     let offset_n = values.iter().take(holds).copied().collect();

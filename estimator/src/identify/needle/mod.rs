@@ -1,8 +1,9 @@
-//! A needle pushed through a sheet (thesis, 5.3.2): the sheet's stiffness, where it lies, and the force at which it is pierced.
+//! A needle pushed through a sheet (thesis, 5.3.2): the sheet's stiffness, its place, and the force at which it is
+//! pierced.
 //!
-//! Only pushes into an untouched sheet follow the loading curve: a place that was pushed in before keeps a dent, one that was
-//! pierced a hole. Two fingers measure their tips, not the needle between their pads: the pads' give is read from how the grip's
-//! width follows its force, and what is not known of it joins the errors.
+//! Only pushes into an untouched sheet follow the loading curve: a place that was pushed in before keeps a dent, a
+//! pierced one a hole. Two fingers measure their tips, not the needle between their pads. The pads' give is read from
+//! the dependence of the grip's width on its force, and its uncertainty joins the errors.
 
 mod beyond;
 mod channels;
@@ -25,7 +26,7 @@ pub const OBJECT: &str = "needle";
 /// The force that a single tool is held with outside the sheet, N upwards.
 pub const HELD: &str = "held_force_N";
 
-/// What geometry and log leave unknown of a place, m: seats, resolution.
+/// Error of a place by geometry and log, m: seats, resolution.
 const PLACE_ERROR_M: f64 = 1e-5;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
@@ -58,7 +59,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     Ok(result)
 }
 
-/// The loading curve with what the pads' unknown give does to it.
+/// The loading curve with its change by the pads' unknown give.
 pub(crate) struct Sheet {
     pub(crate) loading: Loading,
     /// The same with pads that give one standard error more.
@@ -83,7 +84,7 @@ impl Sheet {
         own.hypot(of(&self.softer) - of(&self.loading))
     }
 
-    /// The same with the fit's own error by resampling, and what else is unknown of the value.
+    /// The same with the fit's own error by resampling, and the other errors of the value.
     fn resampled(&self, column: usize, other: f64, of: impl Fn(&Loading) -> f64) -> Option<f64> {
         self.loading.resampled.as_ref().map(|r| self.error(r[column].hypot(other), of))
     }
@@ -122,7 +123,7 @@ impl Sheet {
         let error = self.error(own, |l| l.surface_m);
         let (x, y) = (along.direction.x, along.direction.y);
         let point = if along.two_fingered { "the middle of the fingertips" } else { "the tool" };
-        // Where the needle met it: an axis that is a little askew must not count from far away.
+        // Meeting point of the needle: an axis that is a little askew must not count from far away.
         let far = |i: &usize| (along.depth_m[*i] - self.loading.surface_m).abs();
         let met = first.samples.clone().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(first.samples.start);
         let place = along.direction * self.loading.surface_m + Vec2::new(-y, x) * along.side_m[met];

@@ -1,5 +1,5 @@
-//! What the needle does when, and how stiff the sheet is against its history (thesis, figures 5.13 and 5.14); and whether there
-//! is a sheet at all: force along the motion that nothing else explains.
+//! Phases of the needle, and stiffness of the sheet against its history (thesis, figures 5.13 and 5.14); and a test for
+//! a sheet at all: force along the motion that nothing else explains.
 
 use super::loading::Loading;
 use super::signals::Along;
@@ -17,7 +17,7 @@ use std::ops::Range;
 const LEAST_DEPTH_M: f64 = 2e-4;
 /// The needle is drawn out once it has come back by this, m.
 const BACK_M: f64 = 0.3e-3;
-/// Most samples that take part in the test.
+/// Largest number of samples in the test.
 const MOST_ROWS: usize = 4000;
 
 /// Phases of every push, in order of time.
@@ -52,8 +52,8 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         add(Phase::Insertion, met..push.samples.end);
         let deepest = push.end.max(push.samples.end);
         let hold_end = along.holds[push.hold].end;
-        // A hand at rest trembles about the deepest point: it is drawn out once it has come back by more. That is the needle's own
-        // way: the pads give when the friction of the hole turns round.
+        // A hand at rest trembles about the deepest point: the needle counts as drawn out after it has come back by
+        // more. This is the needle's own way: the pads yield when the friction of the hole reverses.
         let depth_m = |i: usize| calm_m[i] - along.give_m_n.0 * calm_n[i];
         let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK_M;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);

@@ -1,4 +1,4 @@
-//! What a needle recording says along the needle's way: depth, force, and where it is held.
+//! Signals of a needle recording along the needle's way: depth, force, and the segments in which it is held.
 
 use crate::estimate::EstimateError;
 use crate::identify::pads::SHEAR_GIVE;
@@ -8,11 +8,11 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// A grip counts from this share of the strongest one …
+/// Least grip, as a share of the strongest one.
 const GRIP_SHARE: f64 = 0.15;
-/// … and from this many times its noise.
+/// Least grip, in multiples of its noise.
 const GRIP_NOISES: f64 = 8.0;
-/// Share of the largest forces whose mean direction is that of the needle, and so many samples at least.
+/// Share of the largest forces whose mean direction is that of the needle, and least number of those samples.
 const STRONGEST: f64 = 0.02;
 const LEAST_STRONG: usize = 5;
 /// Forces below this many times their noise show nothing.
@@ -35,11 +35,12 @@ pub struct Along {
     pub side_m: Vec<f64>,
     /// Unit vector of insertion in the world.
     pub direction: Vec2,
-    /// Stretches of samples in which the needle is held.
+    /// Segments of samples in which the needle is held.
     pub holds: Vec<Range<usize>>,
     /// Give of the pads between the measured tips and the needle, m/N, and its error.
     pub give_m_n: (f64, f64),
-    /// So many samples are averaged to one point of the loading curve: noise in the depth would flatten the bend of the curve.
+    /// Number of samples averaged to one point of the loading curve: noise in the depth would flatten the bend of the
+    /// curve.
     pub calm: usize,
     /// Usual time between two samples, s; 0 where there is no clock.
     pub period_s: f64,
@@ -97,7 +98,7 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
 /// Mean of the force well before the first hold and after the last, and its error.
 fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f64)> {
     let (first, last) = (holds.first()?.start, holds.last()?.end);
-    // The fingers close and open slowly: half of what lies outside is near a touch.
+    // The fingers close and open slowly: half of the samples outside is near a touch.
     let before = &force_n[..first / 2];
     let after = &force_n[last + (force_n.len() - last) / 2..];
     let n = before.len() + after.len();
@@ -110,7 +111,7 @@ fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f
     Some((mean, (noise_n / (n as f64).sqrt()).hypot(rounding)))
 }
 
-/// Stretches of samples with a grip.
+/// Segments of samples with a grip.
 fn holds(grip: &[f64]) -> Vec<Range<usize>> {
     let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
     let least = (GRIP_SHARE * most).max(GRIP_NOISES * white_noise(grip));

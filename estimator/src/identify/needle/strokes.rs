@@ -1,24 +1,25 @@
-//! Pushes of the needle into the sheet: which samples follow the first, untouched loading curve, and where the needle goes
-//! through.
+//! Pushes of the needle into the sheet: the samples on the first, untouched loading curve, and the place of the
+//! puncture.
 
 use super::signals::Along;
 use std::ops::Range;
 
-/// A turn of the motion counts from this share of its whole range …
+/// Least reversal of the motion, as a share of its whole range.
 const TURN_SHARE: f64 = 0.05;
-/// … and from this way, m.
+/// Least reversal of the motion, m.
 const TURN_M: f64 = 2e-4;
 /// Places closer than this are the same hole, m.
 const SAME_PLACE_M: f64 = 1e-3;
 /// Beyond an earlier dent by this much, the sheet is untouched again, m.
 pub const BEYOND_DENT_M: f64 = 1e-4;
-/// The needle is through when the force falls below this share of its peak …
+/// Share of its peak below which the force of a needle that is through falls.
 const FALLEN: f64 = 0.6;
-/// … while the needle has not been drawn back by more than this share of its depth in the sheet: a press that is let go falls with its depth.
+/// Largest return of the needle meanwhile, as a share of its depth in the sheet: the force of a released press falls
+/// with its depth.
 const DRAWN_BACK: f64 = 0.1;
 /// A force above this many times the noise is the sheet's.
 const TOUCHES: f64 = 8.0;
-/// The last of so many parts of the way to the sheet shows what the needle is held with.
+/// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 const LAST_PART: usize = 4;
 /// Peaks below this share of the strongest force are no push.
 const PUSH_SHARE: f64 = 0.15;
@@ -26,7 +27,7 @@ const PUSH_SHARE: f64 = 0.15;
 /// One push.
 #[derive(Clone, Debug)]
 pub struct Push {
-    /// Which hold it belongs to.
+    /// Index of the hold that it belongs to.
     pub hold: usize,
     /// Samples from the turning point outside up to the puncture or the deepest point.
     pub samples: Range<usize>,
@@ -130,15 +131,16 @@ fn strokes(depth: &[f64], range: &Range<usize>, turn_m: f64) -> Vec<Range<usize>
     found
 }
 
-/// Where the sheet is touched: the force rises out of quiet. A tool that is taken only then shows another force before, which is no sheet's: it is less
-/// than a push (`least_n`).
+/// First touch of the sheet: the force rises out of quiet. A tool that is taken only then shows another force before,
+/// which is not the sheet's: it is less than a push (`least_n`).
 fn touched(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> Option<usize> {
     let touches = |i: &usize| force(*i) > TOUCHES * along.noise_n;
     let quiet = stroke.clone().take_while(|i| force(*i) < least_n).find(|i| !touches(i)).unwrap_or(stroke.start);
     (quiet..stroke.end).find(touches)
 }
 
-/// The first sample of a stroke from which on the needle is held as it is on its way to the sheet: a tool that is taken up bears another load before.
+/// The first sample of a stroke from which the needle is held as on its way to the sheet: a tool that is taken up bears
+/// another load before.
 fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> usize {
     let Some(touched) = touched(along, stroke, force, least_n).filter(|_| !along.two_fingered) else {
         return stroke.start;
@@ -151,7 +153,8 @@ fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64,
     before.rev().find(other).map_or(stroke.start, |i| i + 1)
 }
 
-/// The last sample before the force falls although the needle goes on, and the first one after. `least_n`: what is less is no push.
+/// The last sample before the force falls although the needle moves on, and the first one after. `least_n`: a smaller
+/// force is no push.
 fn puncture(
     along: &Along,
     stroke: &Range<usize>,
@@ -169,7 +172,7 @@ fn puncture(
         if force(peak) >= least_n && force(i) < FALLEN * force(peak) && !drawn_back {
             return Some((peak, i));
         }
-        // What was let go this far begins anew.
+        // A push that was released this far begins again.
         if force(i) < TOUCHES * along.noise_n {
             peak = i;
         }

@@ -1,10 +1,11 @@
-//! A toggle switch captured as force against displacement, there and back (future work of the thesis; the way of Mac Lean 1996):
-//! how hard it asks to be pushed, where it snaps, how it falls off, and where its stops are.
+//! A toggle switch captured as force against displacement, there and back (future work of the thesis; the way of Mac
+//! Lean 1996): its actuation force, the place of the snap, the fall of the force, and its stops.
 //!
-//! Two fingers measure their tips, not the knob. How wide the knob is shows when one leaves it at rest and the other meets it.
-//! How much the pads give shows at the stops only, where knob and finger stand: a stop is taken as at least two thirds as stiff
-//! as a pad, and what that leaves open joins the errors of all places. The knob's path is taken as an arc about a lever twice as
-//! long as its travel, its axis below; what a straighter path would change joins the errors of the forces.
+//! Two fingers measure their tips, not the knob. The width of the knob is shown by one finger that leaves it at rest
+//! and the other that meets it. The give of the pads is seen at the stops only, where knob and finger stand. A stop is
+//! taken as at least two thirds as stiff as a pad, and the remaining uncertainty joins the errors of all places. The
+//! knob's path is taken as an arc about a lever twice as long as its travel, its axis below; the effect of a straighter
+//! path joins the errors of the forces.
 
 mod reading;
 mod report;
@@ -28,11 +29,12 @@ pub const LEVER_TRAVELS: f64 = 1.9;
 const LEVER_SPREAD: f64 = 0.5 * EVEN;
 /// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
 const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
-/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of what holds 95 %, and its error.
+/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of the 95 % range, and its
+/// error.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
-/// Where on its round side a knob is touched, m.
+/// Uncertainty of the place of a touch on the knob's round side, m.
 const TOUCHED_M: f64 = 3e-5;
-/// Where a knob that is held by friction stays when it is left, m.
+/// Uncertainty of the resting place of a knob held by friction, m.
 const RESTING_M: f64 = 5e-5;
 /// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
 const UNSEEN_TOUCH: f64 = 0.15;
@@ -66,10 +68,10 @@ pub fn height_m(recording: &Recording) -> Option<f64> {
     Signals::of(recording).ok().map(|s| s.height_m)
 }
 
-/// What is seen in both directions, to the right first, with one reading of the samples.
+/// Estimates in both directions, to the right first, with one reading of the samples.
 struct Curves {
     reading: Reading,
-    /// Middle of what was seen, m in the world.
+    /// Middle of the seen range, m in the world.
     top_m: f64,
     ways: [Option<Way>; 2],
     stops: [Option<Stop>; 2],
@@ -77,11 +79,11 @@ struct Curves {
     width_m: Option<f64>,
     /// The error of that median by resampling the throws, m; `None` for fewer than three.
     width_resampled_m: Option<f64>,
-    /// How well its place at rest is known, m.
+    /// Uncertainty of its place at rest, m.
     resting_m: f64,
 }
 
-/// With what systematic errors do to it.
+/// Estimates with the effects of systematic errors.
 struct Captured {
     curves: Curves,
     others: [Curves; 2],
@@ -127,13 +129,13 @@ impl Curves {
         self.middle_m(side, (way.values[3], way.around.std_errors[3]))
     }
 
-    /// Where the stop in a direction begins, m in the world.
+    /// Beginning of the stop in a direction, m in the world.
     fn end_m(&self, side: usize) -> Option<(f64, f64)> {
         self.middle_m(side, self.stops[side].as_ref()?.end_m)
     }
 
-    /// Slope of the rise or of the fall in a direction over the way across, N/m: along the arc over the same stretch, which the rise
-    /// begins at the stop behind and the fall ends as far beyond the top.
+    /// Slope of the rise or of the fall in a direction over the way across, N/m: along the arc over the same range. The
+    /// rise begins at the stop behind, and the fall ends as far beyond the top.
     fn slope_n_m(&self, side: usize, falling: bool) -> Option<(f64, f64)> {
         let way = self.ways[side].as_ref()?;
         let snap = way.values[3];
@@ -149,7 +151,7 @@ impl Curves {
         Some((right.0 - left.0, right.1.hypot(left.1).hypot(self.resting_m))).filter(|t| t.0 > 0.0)
     }
 
-    /// Half of what both directions ask for in the middle between the places where their forces vanish: friction, N.
+    /// Half of the force of both directions in the middle between the places where their forces vanish: friction, N.
     fn friction_n(&self) -> Option<(f64, f64)> {
         self.friction_by(|way| Some(&way.around.covariance))
     }
@@ -172,7 +174,7 @@ impl Curves {
 }
 
 impl Captured {
-    /// A value with `own` error, the fit's, and what softer pads and a straighter path would change.
+    /// A value with `own` error, the fit's, and the changes by softer pads and a straighter path.
     fn with_errors(&self, own: f64, of: impl Fn(&Curves) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
         let (value, fitted) = of(&self.curves)?;
         let change = |other: &Curves| of(other).map_or(0.0, |(v, _)| v - value);

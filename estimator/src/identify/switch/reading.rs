@@ -1,4 +1,4 @@
-//! What is assumed of geometry and pads when the samples of a switch are read.
+//! Assumptions about geometry and pads in reading the samples of a switch.
 
 /// A knob does not turn farther from the top of its arc than this sine.
 const FARTHEST_SINE: f64 = 0.95;

@@ -1,5 +1,5 @@
-//! The captured curves as parameters. Forces are those needed along the motion, the knob's own weight in them; places are the
-//! knob's middle in the world. What belongs to the way back (to the left) begins with `return_`.
+//! The captured curves as parameters. Forces are those needed along the motion, the knob's own weight in them; places
+//! are the knob's middle in the world. Names of parameters of the way back (to the left) begin with `return_`.
 
 use super::{Captured, Curves, OBJECT, PADS_IN_GIVE, TOUCHED_M};
 use crate::estimate::{Fit, Parameter};
@@ -91,7 +91,7 @@ impl Captured {
         ]
     }
 
-    /// What pushes from outside do not show.
+    /// Parameters that pushes from outside do not show.
     fn hidden(&self) -> Vec<Parameter> {
         let none = |name: &str, why: &str| self.parameter(name, None, "", why);
         let flight = "the knob snaps over without a finger on it; hold it between both while it is thrown slowly";

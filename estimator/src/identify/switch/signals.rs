@@ -1,4 +1,5 @@
-//! What a recording of a switch says: force along the knob's way against its displacement, one direction of travel at a time.
+//! Signals of a recording of a switch: force along the knob's way against its displacement, one direction of travel at
+//! a time.
 //!
 //! Fingers push and cannot pull. The one behind the knob presses it up to the top of the curve and follows it down until the force
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
@@ -19,11 +20,11 @@ const CALM_HALF_S: f64 = 0.004;
 const MOVING_HALF_S: f64 = 0.010;
 /// A knob is taken to move across with at least this share of its speed along the arc.
 const LEAST_COSINE: f64 = 0.31;
-/// A finger touches from this share of its strongest force on …
+/// Least force of a touching finger, as a share of its strongest force.
 const TOUCH_SHARE: f64 = 0.03;
-/// … and from this many times the noise of the averaged force.
+/// Least force of a touching finger, in multiples of the noise of the averaged force.
 const TOUCH_NOISES: f64 = 5.0;
-/// On a stop the force is at least this share of what it comes to: the knob lies there, and no friction carries it.
+/// Least force on a stop, as a share of its largest value there: the knob lies there, and no friction carries it.
 const STOP_SHARE: f64 = 0.3;
 /// A stop was pressed when the force there came to this many times the least one that counts as a touch.
 const STOP_TOUCHES: f64 = 2.0;
@@ -61,9 +62,9 @@ pub struct Signals {
     pub zero_error_n: f64,
     /// Mean height of the tips while they touch, m.
     pub height_m: f64,
-    /// Middle of what was seen, m.
+    /// Middle of the seen range, m.
     pub middle_m: f64,
-    /// How far the hand went in touch, m: about the knob's travel.
+    /// Travel of the hand in touch, m: about the knob's travel.
     pub range_m: f64,
     /// Force from which a touch is seen, N.
     pub touch_n: f64,
@@ -74,7 +75,7 @@ pub struct Signals {
 /// One sample of a direction of travel, turned so that the knob moves towards larger places.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Place of the knob along its arc, m from the middle of what was seen.
+    /// Place of the knob along its arc, m from the middle of the seen range.
     pub at_m: f64,
     /// Force that moves the knob on, N.
     pub force_n: f64,
@@ -84,7 +85,7 @@ pub struct Sample {
     pub acceleration: f64,
 }
 
-/// What the finger behind the knob sees in one direction, in order of time.
+/// Samples of the finger behind the knob in one direction, in order of time.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
     /// Noise of the samples' rate, m/s, and acceleration, m/s² (one standard deviation).
@@ -169,7 +170,7 @@ impl Signals {
             let Some(push) = self.push(side, stroke) else { continue };
             let settled_m = sample(push.start).at_m + SETTLED_M;
             seen.throws += 1;
-            // What a rate's window sees beyond the moment in which the knob leaves the finger is not the knob's.
+            // Samples of a rate's window beyond the moment in which the knob leaves the finger are not the knob's.
             let in_touch = push.start..push.end.saturating_sub(finger.reach).max(push.start);
             seen.way.extend(in_touch.map(sample).filter(|s| s.at_m > settled_m));
             let touches = |i: &usize| finger.touches[*i] && direction * finger.force[*i].x > 0.0;
@@ -183,7 +184,8 @@ impl Signals {
         seen
     }
 
-    /// From where the finger behind the knob meets it up to where it loses it: the first stretch in touch that moves the knob on.
+    /// From the sample at which the finger behind the knob meets it to the one at which it loses it: the first segment
+    /// in touch that moves the knob on.
     fn push(&self, side: usize, stroke: &Range<usize>) -> Option<Range<usize>> {
         let (finger, direction) = (&self.fingers[side], [1.0, -1.0][side]);
         let mut start = None;
@@ -275,7 +277,7 @@ impl Finger {
     }
 }
 
-/// Samples at which a finger touches nothing: the closest lying quarter of all forces, and what is within its noise.
+/// Samples at which a finger touches nothing: the closest lying quarter of all forces, and all within its noise.
 fn quiet(calm: &[f64], noise_n: f64) -> Vec<usize> {
     let mut sorted = calm.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -299,7 +301,7 @@ fn mean(values: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Stretches between turns of more than `turn_m`, with their direction.
+/// Segments between turns of more than `turn_m`, with their direction.
 fn strokes(x: &[f64], turn_m: f64) -> Vec<(f64, Range<usize>)> {
     let mut found: Vec<(f64, Range<usize>)> = Vec::new();
     let (mut start, mut far, mut direction) = (0, 0, 0.0_f64);

@@ -9,21 +9,21 @@ use nalgebra::{DMatrix, DVector};
 /// Steps of the search for the peak, and of the golden section after it.
 const SEARCH: usize = 60;
 const FINE: usize = 40;
-/// Most samples that take part.
+/// Largest number of samples in the fit.
 const MOST_ROWS: usize = 6000;
 /// Column of the rate, which that of the acceleration follows.
 const RATE: usize = 4;
 /// Fewest samples that show a rise and a fall.
 const LEAST_ROWS: usize = 24;
-/// Speed and mass of a knob on its way down add to the force what is not in the curve, N (one standard deviation) …
+/// Force by speed and mass of a knob on its way down that is not in the curve, N (one standard deviation).
 const FALLING_N: f64 = 0.025;
-/// … and up to the peak, where it moves slowly, N.
+/// The same up to the peak, where it moves slowly, N.
 const MOVING_N: f64 = 0.02;
 /// Fewest that show a stop.
 const LEAST_STOP: usize = 8;
 
-/// Rise and fall. Columns of `around`: force at the peak, rise, fall, place of the peak; then, where they can be told
-/// from the curve, what the knob's own motion asks for: damping, mass.
+/// Rise and fall. Regressors of `around`: force at the peak, rise, fall, place of the peak. If they can be told from
+/// the curve there follow the terms of the knob's own motion: damping, mass.
 #[derive(Clone, Debug)]
 pub struct Way {
     /// Force, N, slope before and after, N/m, at the peak's place, m along the arc in the direction of travel.
@@ -32,13 +32,14 @@ pub struct Way {
     pub around: LinearFit,
     /// The errors of force, slopes and place by a block bootstrap of the samples; `None` where they are too few.
     pub resampled: Option<Resampled>,
-    /// What the knob's own motion may add to the force at the peak and while it falls over, N, where it could not be fitted.
+    /// Force of the knob's own motion at the peak and while it falls over, N, if it could not be fitted.
     pub unmodelled_n: [f64; 2],
-    /// Samples that took part.
+    /// Number of samples in the fit.
     pub samples: usize,
 }
 
-/// Where the stop begins for the fingertip, m along the arc in the direction of travel, and what finger and stop give, m/N; with errors.
+/// Stop for the fingertip: its beginning, m along the arc in the direction of travel, and the give of finger and stop,
+/// m/N; with errors.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop {
     /// Place without force and its error, m.
@@ -61,7 +62,7 @@ impl Way {
         peak_n + fall * (at_m - place_m)
     }
 
-    /// Its standard error, N, with this covariance of the columns of `around`.
+    /// Its standard error, N, with this covariance of the regressors of `around`.
     pub fn falling_error_n(&self, at_m: f64, covariance: &DMatrix<f64>) -> f64 {
         let gradient = [1.0, 0.0, at_m - self.values[3], -self.values[2]];
         let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
@@ -79,12 +80,12 @@ pub fn way(seen: &Seen) -> Result<Option<Way>, EstimateError> {
     let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_ROWS)).collect();
     let still = way_with(&rows, None)?;
     let Some(moving) = way_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Way::assumed_slow)) };
-    // At one speed all the time, or in few samples, what the motion asks for cannot be told from the curve.
+    // At one speed all the time, or in few samples, the force of the motion cannot be told from the curve.
     let told = still.as_ref().is_none_or(|s| moving.around.std_errors[0] < s.around.std_errors[0].hypot(MOVING_N));
     Ok(if told { Some(moving) } else { still.map(Way::assumed_slow) })
 }
 
-/// `noise`: of rate and acceleration, where the knob's own motion takes part.
+/// `noise`: of rate and acceleration, if the knob's own motion is fitted.
 fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, EstimateError> {
     let moving = noise.is_some();
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s.at_m), h.max(s.at_m)));
@@ -112,7 +113,7 @@ fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, Est
         columns.push(rows.iter().map(|s| s.acceleration).collect());
     }
     let force: Vec<f64> = rows.iter().map(|s| s.force_n).collect();
-    // Around the answer the place's own column asks for no change: what is left are the errors.
+    // Around the answer the place's own regressor asks for no change: this fit serves the errors.
     let mut around = least_squares(&columns, &force, None)?;
     let mut resampled = block_bootstrap(&columns, &force, None, &around);
     let mut values = [peak, rise, fall, place];
@@ -122,7 +123,7 @@ fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, Est
         (0..2).for_each(|k| power[(RATE + k, RATE + k)] = rows.len() as f64 * noise[k] * noise[k]);
         let before = around.std_errors.clone();
         around = around.without_attenuation(&power, COLUMN_NOISE_UNCERTAINTY);
-        // What taking it out costs, it costs in either way.
+        // The correction enlarges both kinds of errors by the same factor.
         let costs: Vec<f64> = around.std_errors.iter().zip(before).map(|(after, before)| after / before).collect();
         resampled = resampled.map(|drawn| drawn.scaled(&costs));
         values = [around.values[0], around.values[1], around.values[2], place + around.values[3]];

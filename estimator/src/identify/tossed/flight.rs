@@ -3,15 +3,15 @@
 use super::pose::Track;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// So much at the beginning tells what flight looks like, s.
+/// Time at the beginning that shows undisturbed flight, s.
 const FIRST_S: f64 = 0.068;
-/// Second differences are taken over so much on either side, s: a blow shows more, noise does not.
+/// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
 const REACH_S: f64 = 0.020;
-/// A flight that strays from its parabola by so many times what flights usually do is left out.
+/// Deviation of a flight from its parabola, in multiples of the usual one, above which it is left out.
 const BENT: f64 = 3.0;
-/// A blow changes the second difference by so many times what it usually scatters …
+/// Least change of the second difference by a blow, in multiples of its usual scatter.
 const BLOW_NOISES: f64 = 5.0;
-/// … and by this velocity, m/s.
+/// Least change of the velocity by a blow, m/s.
 const BLOW_M_S: f64 = 0.15;
 /// Samples left out before a blow.
 const GUARD: usize = 1;
@@ -24,7 +24,7 @@ pub(crate) fn least(track: &Track) -> usize {
     LEAST.max(track.steps(LEAST_S) + 1)
 }
 
-/// What all flights have in common.
+/// Parameters common to all flights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fall {
     pub down_m_s2: f64,
@@ -88,7 +88,7 @@ fn flights(tracks: &[Track]) -> Option<Vec<(&Track, usize)>> {
 /// Columns and right sides of one coordinate of one flight.
 type Block = (DMatrix<f64>, DVector<f64>);
 
-/// Covariance of the values by how unlike flights are: what happens within one hangs together.
+/// Covariance of the values by the differences between flights: samples of one flight are correlated.
 fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> DMatrix<f64> {
     let size = values.len();
     let mut scatter = DMatrix::zeros(size, size);
@@ -101,7 +101,7 @@ fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) ->
     inverse * scatter * inverse * (count / (count - 1.0).max(1.0))
 }
 
-/// The same where there is one flight, by what its samples leave, and how many of them are free; `None` where none is.
+/// The same for one flight, by the residuals of its samples, and the number of free ones; `None` if none is.
 fn by_sample(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     /// Neighbours are no more alike than this.
     const MOST_ALIKE: f64 = 0.9;
@@ -110,7 +110,7 @@ fn by_sample(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) ->
     // Each coordinate has its own place and speed beside.
     let rows: usize = left.iter().map(|r| r.len() - 2).sum();
     let free = rows.checked_sub(values.len()).filter(|free| *free > 0)? as f64;
-    // Trackers smooth. What was fitted makes neighbours less alike than they are, by about its share of the samples.
+    // Trackers smooth. The fit makes neighbours less alike than they are, by about its share of the samples.
     let together: f64 = left.iter().map(|r| r.iter().zip(r.iter().skip(1)).map(|(a, b)| a * b).sum::<f64>()).sum();
     let samples: usize = left.iter().map(DVector::len).sum();
     let alike = (together / rss.max(f64::MIN_POSITIVE) + 1.0 - free / samples as f64).clamp(0.0, MOST_ALIKE);

@@ -1,9 +1,9 @@
-//! A body that is thrown and slides out: free fall measures the scale of the positions, sliding its friction.
+//! A body that is thrown and slides out: free fall measures the scale of the positions, sliding measures its friction.
 //!
-//! Nothing of the body's shape is needed. While it flies, every point of it that a tracker follows moves on a parabola (plus
-//! the turning of that point about the centre of mass, which is fitted where orientations were recorded); the parabola's
-//! acceleration is g times the scale of the positions. While it slides flat, it slows down by μ g in the same scale, so that
-//! their ratio is free of it.
+//! Nothing of the body's shape is needed. In flight, every point of it that a tracker follows moves on a parabola (plus
+//! the turning of that point about the centre of mass, which is fitted if orientations were recorded). The parabola's
+//! acceleration is g times the scale of the positions. A body that slides flat slows down by μ g in the same scale, so
+//! that their ratio is free of it.
 
 pub(crate) mod flight;
 pub(crate) mod pose;
@@ -17,15 +17,15 @@ use pose::Track;
 
 /// The object's name.
 const BODY: &str = "body";
-/// A throw's acceleration is that of gravity within this share: a scale or a clock that is off by more is an error of another
-/// kind, and what falls more slowly is held by something.
+/// Largest relative difference of a throw's acceleration from gravity. A larger error of scale or clock is of another
+/// kind, and a body that falls more slowly is held by something.
 const LIKE_GRAVITY: f64 = 0.2;
 /// Share of the recordings that must begin with a fall.
 const FALLING_SHARE: f64 = 0.5;
-/// A scale is said to be off from so many standard errors on.
+/// Standard errors of a scale from 1 from which it is said to be off.
 const OFF: f64 = 3.0;
 
-/// What recordings of one thrown body show of it.
+/// Estimates from recordings of one thrown body.
 pub(crate) struct Tossed {
     /// One a recording.
     pub(crate) tracks: Vec<Track>,
@@ -60,7 +60,7 @@ pub(crate) fn tossed(recordings: &[Recording]) -> Option<Tossed> {
     Some(Tossed { tracks, fall, slides })
 }
 
-/// Whether this is how bodies fall.
+/// True if this is the acceleration of falling bodies.
 fn falls_like(tracks: &[Track], fall: &Fall, gravity_m_s2: f64) -> bool {
     let like = |fall: &Fall| {
         (fall.down_m_s2 / gravity_m_s2 - 1.0).abs() < LIKE_GRAVITY && fall.aside_m_s2 < LIKE_GRAVITY * gravity_m_s2

@@ -42,7 +42,7 @@ impl Track {
         }
     }
 
-    /// Samples that come nearest to a time, one at least: what is looked for has a duration, whatever the rate.
+    /// Samples that come nearest to a time, one at least: the event has a duration, whatever the rate.
     pub(crate) fn steps(&self, seconds: f64) -> usize {
         /// More than any track has: a clock that stands has no end of samples in a second.
         const MOST: f64 = 1e9;

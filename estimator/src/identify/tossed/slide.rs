@@ -4,26 +4,26 @@ use super::pose::Track;
 use crate::signal::derive::polynomial;
 use nalgebra::Vector3;
 
-/// Velocities are told over so much on either side, s.
+/// Time on either side over which velocities are taken, s.
 const REACH_S: f64 = 0.0135;
 /// Slower than this it may stick or creep, m/s.
 const SLOW_M_S: f64 = 0.05;
 /// Turning faster than this it rolls or spins, rad/s.
 const TURNING_RAD_S: f64 = 0.6;
-/// Rising or falling faster than this it is not flat, m/s …
+/// Largest speed of rising or falling in a flat slide, m/s.
 const RISING_M_S: f64 = 0.03;
-/// … and all of a slide lies within this height, m.
+/// Largest range of heights in a slide, m.
 const LEVEL_M: f64 = 2e-3;
-/// Both may be so many times what noise makes of them, and so many times as large for that at most.
+/// Limits by noise: in multiples of its effect, but at most `LOOSER` times the plain limits.
 const NOISES: f64 = 3.5;
 const LOOSER: f64 = 2.0;
 /// Its edge turns no faster than this share of the speed: friction then still goes against the speed, all but 4 % of it.
 const SPINNING: f64 = 0.4;
-/// Where a body touches, from its axis: between what an even pressure (0.8) and four corners (1.4) make of a cube, in half widths; and where those
-/// are not known, m: hands throw what is about a decimetre wide.
+/// Distance of the contact from a body's axis, in half widths: between that of an even pressure (0.8) and four corners
+/// (1.4) of a cube. If those are unknown it is in m: hands throw bodies about a decimetre wide.
 const FOOT: f64 = 1.1;
 const FOOT_M: f64 = 0.055;
-/// What the two make different of the friction that does not go against the speed, as a share of it.
+/// Relative difference between the two of the friction that does not go against the speed.
 const FOOT_ERROR: f64 = 0.6;
 /// A shorter slide tells nothing, samples and s.
 const LEAST: usize = 5;
@@ -36,7 +36,7 @@ pub(crate) struct Slide {
     /// Share of the friction that goes against the motion of the middle, a sample: the rest stops the turning.
     pub direct: Vec<f64>,
     pub samples: usize,
-    /// Which track, and its first sample there.
+    /// Index of the track, and the first sample in it.
     pub track: usize,
     pub first: usize,
 }
@@ -58,7 +58,7 @@ pub(crate) fn unknown_of_foot(slides: &[Slide]) -> f64 {
     FOOT_ERROR * indirect / slides.len().max(1) as f64
 }
 
-/// What counts as flat.
+/// Limits of a flat slide.
 struct Flat {
     foot_m: f64,
     rising_m_s: f64,
@@ -82,7 +82,7 @@ pub(crate) fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> 
     all.flat_map(|(k, track)| of_track(track, &flat).into_iter().map(move |s| Slide { track: k, ..s })).collect()
 }
 
-/// How fast the edge spins beside the speed of the middle at a sample; `None` where the body does not slide flat.
+/// Speed of the edge's spin relative to the speed of the middle at a sample; `None` if the body does not slide flat.
 fn spinning(track: &Track, i: usize, flat: &Flat) -> Option<f64> {
     let reach = track.steps(REACH_S);
     let (velocity, spin) = (track.velocity(i, reach), track.spin(i, reach));
@@ -111,7 +111,7 @@ fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
         match (start, goes_on) {
             (None, true) => start = Some(i),
             (Some(first), false) => {
-                // Both ends still see what came before and after.
+                // Both ends still see samples before and after.
                 found.extend(slide(track, first + reach, i.saturating_sub(reach), &spins));
                 start = None;
             }
@@ -121,7 +121,8 @@ fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
     found
 }
 
-/// The share of friction that goes against the motion of the middle: what slides about a ring of the foot's size, to second order.
+/// The share of friction that goes against the motion of the middle, for contact on a ring of the foot's size, to
+/// second order.
 fn direct(spinning: f64) -> f64 {
     1.0 - 0.25 * spinning * spinning
 }

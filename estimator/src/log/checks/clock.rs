@@ -10,7 +10,7 @@ const GAP_PERIODS: f64 = 10.0;
 const DROPPED_PERIODS: f64 = 1.9;
 /// Samples on either side of a jump that show how fast a position moves.
 const AROUND: usize = 16;
-/// Fewer steps say nothing about what is usual.
+/// Fewer steps do not show the usual one.
 const MIN_STEPS: usize = 8;
 
 /// Median step of a clock, and one that only few exceed; `None` where there are too few.
@@ -24,7 +24,7 @@ fn usual_steps(time_s: &[f64]) -> Option<(f64, f64)> {
     Some((ordered[ordered.len() / 2], ordered[ordered.len() * 95 / 100]))
 }
 
-/// A step that is longer than this, s, is a gap in the time, or a jump of the clock; `None` where too few steps tell what is usual.
+/// Step above which there is a gap in the time, or a jump of the clock, s; `None` if too few steps show the usual one.
 pub fn gap_above_s(time_s: &[f64]) -> Option<f64> {
     usual_steps(time_s).map(|(median, high)| (GAP_PERIODS * median).max(5.0 * high))
 }
@@ -36,11 +36,11 @@ pub fn gaps(time_s: &[f64]) -> Vec<usize> {
     steps.filter(|(_, pair)| pair[1] - pair[0] > above_s).map(|(i, _)| i).collect()
 }
 
-/// What the time column shows.
+/// Warnings about the time column.
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
     let Some(time) = &recording.time_s else { return Vec::new() };
     let Some((median, high)) = usual_steps(time) else { return Vec::new() };
-    // On an uneven clock only what is far outside its own spread counts.
+    // On an uneven clock only a step far outside its own spread counts.
     let even = high <= 1.3 * median;
     let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
     let gap_above = (GAP_PERIODS * median).max(5.0 * high);
@@ -118,7 +118,7 @@ fn continues(recording: &Recording, i: usize, period: f64, step: f64) -> bool {
         let total = |part: &[f64]| part.windows(2).map(|w| (w[1] - w[0]).abs()).sum::<f64>();
         let speed = 0.5 * (net(before) + net(after)) / AROUND as f64;
         let jitter = 0.5 * (total(before) + total(after)) / AROUND as f64;
-        // Only what moves beyond its noise can show whether time went by.
+        // Only motion beyond its noise can show whether time went by.
         if speed <= 0.0 || speed * (AROUND as f64) < 4.0 * jitter {
             continue;
         }

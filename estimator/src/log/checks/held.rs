@@ -6,17 +6,19 @@ use crate::log::units::{self, Dimension};
 use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::recording::{Channel, Recording, Span, Warning};
 
-/// Plateau at the extreme value: at least this many samples (`facts/diagnosis.md`, step 0).
+/// Least number of samples of a plateau at the extreme value (`facts/diagnosis.md`, step 0).
 const PLATEAU_SAMPLES: usize = 8;
-/// … and this many times as many as at any of the next values: a smooth peak without noise holds 2.4 times as many …
+/// Least ratio of that number to the one at any of the next values: a smooth peak without noise holds 2.4 times as
+/// many.
 const PLATEAU_EXCESS: f64 = 4.0;
-/// … or this many times where noise is larger than the steps, so that a peak thins out towards its top …
+/// The same ratio for noise larger than the steps, which thins a peak out towards its top.
 const NOISY_EXCESS: f64 = 1.5;
-/// … and then more than the mean of the next values by this many of its standard deviations (counts by chance).
+/// Least excess of that number over the mean of the next values with such noise, in its standard deviations (counts by
+/// chance).
 const EXCESS_SIGMAS: f64 = 4.5;
-/// … which is so where the noise is this many steps.
+/// Noise in steps from which it counts as larger than them.
 const NOISY_STEPS: f64 = 1.0;
-/// … of which so many are looked at: the last quanta of a noisy peak hold few samples each.
+/// Number of next values that are compared: the last quanta of a noisy peak hold few samples each.
 const NEXT_VALUES: usize = 4;
 /// A channel that normally changes from sample to sample and then holds for this many samples is stuck.
 const STUCK_SAMPLES: usize = 25;
@@ -24,7 +26,7 @@ const STUCK_SAMPLES: usize = 25;
 const QUIET_SHARE: f64 = 0.2;
 /// Share of a force channel that may stand at its limit; more is a channel that does not work.
 const SATURATED_SHARE: f64 = 0.9;
-/// … and of a voltage or current, which may be switched.
+/// The same share of a voltage or current, which may be switched.
 const SWITCHED_SHARE: f64 = 0.5;
 /// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
 /// (quantum/√12) is then above 1 % of that range.
@@ -106,8 +108,8 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
     Some(about("saturation", channel, spans, text))
 }
 
-/// Spans where `side`·value is exactly `top`, the largest, when they are too many for chance: in this channel on this side, or in all
-/// that stop at the very same value.
+/// Spans in which `side`·value is exactly `top`, the largest, if they are too many for chance: in this channel on this
+/// side, or in all that stop at the very same value.
 fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share: f64) -> Option<Vec<Span>> {
     let values = &channel.values;
     let own: [(&[f64], f64); 1] = [(values, side)];
@@ -144,7 +146,7 @@ fn stopping_at<'a>(recording: &'a Recording, channel: &Channel, top: f64) -> Vec
     sides.filter(|(values, side)| values.iter().map(|v| side * v).fold(f64::NEG_INFINITY, f64::max) == top).collect()
 }
 
-/// Whether more samples stand at exactly `top`, the largest on these sides, than chance puts there.
+/// True if more samples stand at exactly `top`, the largest on these sides, than chance puts there.
 fn piles_up(sides: &[(&[f64], f64)], top: f64) -> bool {
     let at_top = count(sides, top);
     if at_top < PLATEAU_SAMPLES {

@@ -1,8 +1,9 @@
-//! What looks wrong in a recording that can be read all the same: gaps, stuck and copied channels, plateaus, jumps, spikes,
+//! Faults in a recording that can be read all the same: gaps, stuck and copied channels, plateaus, jumps, spikes,
 //! units.
 //!
-//! The thresholds are set so that what real encoders and sensors do (dwelling at a stop, coarse quanta, one late cycle) is
-//! not reported: a warning that is often wrong is not read when it is right. `tests/tests/logs.rs` measures both.
+//! The thresholds are set so that the behaviour of real encoders and sensors (dwelling at a stop, coarse quanta, one
+//! late cycle) is not reported: a warning that is often wrong is not read when it is right. `tests/tests/logs.rs`
+//! measures both.
 
 mod clock;
 mod held;
@@ -94,7 +95,7 @@ fn about(kind: &str, channel: &Channel, spans: Vec<Span>, text: String) -> Warni
     Warning { kind: kind.to_owned(), column: Some(channel.name.clone()), spans, text }
 }
 
-/// Where a sample is, for people.
+/// Place of a sample, for people.
 fn place(recording: &Recording, sample: usize) -> String {
     match recording.time_s.as_ref().and_then(|t| t.get(sample)) {
         Some(time) => format!("{time:.3} s (sample {sample})"),

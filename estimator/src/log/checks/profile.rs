@@ -1,8 +1,8 @@
-//! What several checks need to know about a channel, taken once.
+//! Properties of a channel that several checks need, computed once.
 
 use haptics::recording::Span;
 
-/// At most so many samples are sorted: quantiles of a million samples are not needed to the last digit.
+/// Largest number of samples that are sorted: quantiles of a million samples are not needed to the last digit.
 const SORTED: usize = 8192;
 
 /// Extremes, quantiles, and how often the channel does not change.
@@ -72,8 +72,8 @@ fn extremes(values: &[f64]) -> (f64, f64, usize) {
     (low, high, unchanged)
 }
 
-/// Indices of samples that stand for all `n`, increasing: one out of each equal piece, not always at the same place in it,
-/// so that a periodic signal is not always met in the same phase.
+/// Indices of samples that stand for all `n`, increasing: one out of each equal block, not always at the same place in
+/// it. A periodic signal is therefore not always met in the same phase.
 pub fn thinned(n: usize) -> impl Iterator<Item = usize> {
     let count = n.min(SORTED);
     (0..count).map(move |k| {

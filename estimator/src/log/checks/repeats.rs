@@ -8,9 +8,9 @@ use haptics::recording::{Channel, Recording, Span, Warning};
 
 /// More equal rows than this in a row are a rest or a stuck recorder, not a repeated sample.
 const MOST_REPEATS: usize = 5;
-/// A copy is equal over at least so many samples …
+/// Least number of samples over which a copy is equal.
 const COPY_SAMPLES: usize = 100;
-/// … of which this share moves.
+/// Least share of those samples that move.
 const COPY_MOVES: f64 = 0.5;
 /// Rows that are compared before looking closer: one in so many.
 const STRIDE: usize = 16;
@@ -41,13 +41,13 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
 const AROUND: usize = 8;
 /// Classes of liveliness: powers of two below the liveliest.
 const CLASSES: usize = 24;
-/// So many repeats may be taken for faults by chance in a whole recording.
+/// Expected number of repeats by chance in a whole recording that may be taken for faults.
 const BY_CHANCE: f64 = 0.02;
 
-/// How likely a channel repeats a value by itself, given how lively it is just there.
+/// Probability that a channel repeats a value by itself, given its liveliness just there.
 ///
-/// A slow, quantised channel repeats often and a fast or noisy one never: the share of repeats among all samples of the recording
-/// where the channel is about as lively tells which.
+/// A slow, quantised channel repeats often and a fast or noisy one never. The estimate is the share of repeats among
+/// all samples of the recording with about the same liveliness of the channel.
 struct Habit {
     class: Vec<u8>,
     chance: [f64; CLASSES],
@@ -109,7 +109,7 @@ fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -
     Some(Warning { kind: "duplicate-samples".to_owned(), column: None, spans: limited(spans), text })
 }
 
-/// Where channels were met with equal values that move: one look at all of them, place by place, instead of one a pair.
+/// Places of equal, moving values of two channels: one look at all of them, place by place, instead of one a pair.
 struct Pairs {
     count: usize,
     places: Vec<Vec<usize>>,
@@ -173,7 +173,7 @@ fn copy(recording: &Recording, one: &Channel, other: &Channel, equal: &[usize]) 
     Some(warning(Span { first: 0, end: b.len() }, &how))
 }
 
-/// The longest stretch in which `a` and `b` are equal and move, out of those that hold one of `probes`.
+/// The longest segment in which `a` and `b` are equal and move, out of those that hold one of `probes`.
 fn equal_stretch(a: &[f64], b: &[f64], probes: &[usize]) -> Option<Span> {
     let n = a.len().min(b.len());
     let mut best: Option<Span> = None;
@@ -224,7 +224,7 @@ fn same_noise(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     if n < COPY_SAMPLES {
         return None;
     }
-    // A piece first: nearly all pairs end here.
+    // A part first: nearly all pairs end here.
     let first = (n - piece) / 2;
     line(&a[first..first + piece], &b[first..first + piece])?;
     line(&a[..n], &b[..n])

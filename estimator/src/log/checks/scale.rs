@@ -11,23 +11,23 @@ const FACTORS: [(f64, &str); 3] = [(1000.0, "1000"), (100.0, "100"), (180.0 / st
 const TOLERANCE: f64 = 1.2;
 /// Below this correlation over the windows, position and velocity say too little about each other.
 const CORRELATED: f64 = 0.9;
-/// Windows over which displacement and mean velocity are compared.
+/// Largest number of windows over which displacement and mean velocity are compared.
 const WINDOWS: usize = 200;
-/// … which must have at least so many samples each …
+/// Least number of samples in each window.
 const WINDOW_SAMPLES: usize = 4;
-/// … and be at least so many.
+/// Least number of windows.
 const FEWEST_WINDOWS: usize = 10;
-/// Tips and joints of a hand with links ten times longer than stated do not get further, in reaches of the hand.
+/// Largest distance of the tips, in reaches of the hand, with links up to ten times longer than stated.
 const FARTHEST_REACHES: f64 = 20.0;
-/// … and a hand that works moves more than this share of its reach.
+/// Least motion of a working hand, as a share of its reach.
 const NEAREST_REACHES: f64 = 1.0 / 500.0;
-/// A joint of the hand never turns further than this from zero, rad: three turns.
+/// Largest angle of a joint of the hand from zero, rad: three turns.
 const FARTHEST_JOINT_RAD: f64 = 19.0;
-/// … and a working hand has a joint beyond this, rad.
+/// Least angle that some joint of a working hand passes, rad.
 const NEAREST_JOINT_RAD: f64 = 0.05;
-/// No finger pushes harder, N.
+/// Largest force of a finger, N.
 const LARGEST_FINGER_N: f64 = 500.0;
-/// … and fingers that hold anything push harder than this, N.
+/// Least largest force of fingers that hold anything, N.
 const SMALLEST_FINGER_N: f64 = 0.01;
 /// Forces on an object of known weight lie within this factor of it.
 const WEIGHT_FACTOR: f64 = 200.0;
@@ -88,8 +88,8 @@ fn position_of<'a>(recording: &'a Recording, velocity: &Channel) -> Option<&'a C
     recording.channels.iter().find(|c| units::split(&c.name).is_some_and(|(q, u)| q == stem && u.si == unit))
 }
 
-/// How many times faster the position changes than the velocity says, by least squares over windows long enough that noise
-/// averages out; `None` where the two hardly go together.
+/// Ratio of the rate of the position to the stated velocity, by least squares over windows long enough that noise
+/// averages out; `None` if the two are hardly correlated.
 fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
     let n = time.len();
     let window = (n / WINDOWS).max(WINDOW_SAMPLES);
@@ -107,7 +107,7 @@ fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
     (count >= FEWEST_WINDOWS && together && vv > 0.0).then(|| (pv / vv).abs())
 }
 
-/// Positions, angles and forces against what a hand can do.
+/// Positions, angles and forces against the abilities of a hand.
 fn ranges(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     let hand = recording.meta.hand();
     let reach_m = 2.0 * hand.fingers[0].link_m.max(hand.fingers[1].link_m)

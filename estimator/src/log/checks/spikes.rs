@@ -5,23 +5,23 @@ use super::{about, is_position, limited, place};
 use crate::log::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
-/// A value this many times the spread of the others away from them is no measurement …
+/// Distance of a value from the others, in multiples of their spread, from which it is no measurement.
 const OUTLIER_SPREADS: f64 = 1e6;
-/// … nor is one of this size in m, rad, N, or their rates.
+/// Size in m, rad, N, or their rates from which a value is no measurement.
 const IMPOSSIBLE: f64 = 1e9;
-/// A spike leaps away and back by this many times the largest other step around it …
+/// Least leap of a spike, away and back, in multiples of the largest other step around it.
 const SPIKE_STEPS: f64 = 5.0;
-/// … within so many samples on either side …
+/// Number of samples on either side that are compared.
 const AROUND: usize = 32;
-/// … where so many other steps may be as large, for another spike or two …
+/// Number of other steps that may be as large, for another spike or two.
 const FORGIVEN: usize = 4;
 /// Steps of less than this many times the mean of the steps around need no closer look.
 const WORTH_A_LOOK: f64 = 2.5;
 /// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
 const FELT_STEPS: f64 = 2.0;
-/// A spike comes back to within this share of its height …
+/// Largest distance to which a spike comes back, as a share of its height.
 const RETURN_SHARE: f64 = 0.3;
-/// … and is at least this share of the channel's usual range high.
+/// Least height of a spike, as a share of the channel's usual range.
 const SPIKE_SHARE: f64 = 0.01;
 
 /// Values that no hand and no mechanism reach, in SI units, or too far beyond the channel's own spread.
@@ -47,7 +47,7 @@ pub fn impossible(channel: &Channel, profile: &Profile) -> Option<Warning> {
     Some(about("outlier", channel, limited(spans), text))
 }
 
-/// Single samples that leap away from a signal that goes on as if nothing had happened.
+/// Single samples that leap away from a signal that continues as if nothing had happened.
 pub fn warning(
     recording: &Recording,
     channel: &Channel,
@@ -56,7 +56,8 @@ pub fn warning(
 ) -> Option<Warning> {
     let least = SPIKE_SHARE * profile.spread();
     let mut found = spikes(&channel.values, is_position(channel), least);
-    // What is impossible has been said already; what other channels feel too is a blow, and no fault of a sensor.
+    // Impossible values have been reported already; a leap that other channels feel too is a blow, and no fault of a
+    // sensor.
     found.retain(|&i| {
         impossible.is_none_or(|w| w.spans.iter().all(|s| s.first != i)) && !felt_elsewhere(recording, channel, i)
     });
@@ -135,7 +136,7 @@ fn is_spike(values: &[f64], at: usize, position: bool, least: f64) -> bool {
     rest && height > SPIKE_STEPS * usual
 }
 
-/// The largest step around a sample, but for those to and from it and a few that are forgiven.
+/// The largest step around a sample, but for those to and from it and `FORGIVEN` others.
 fn usual_step(values: &[f64], at: usize) -> f64 {
     let mut others = [0.0; FORGIVEN + 1];
     let (first, end) = (at.saturating_sub(AROUND), (at + AROUND).min(values.len() - 1));

@@ -1,4 +1,4 @@
-//! Each fault once, and what must not be taken for one.
+//! Each fault once, and signals that must not be taken for one.
 
 use super::*;
 
@@ -69,7 +69,7 @@ fn an_impossible_value_is_named_with_its_row() {
     let found = warnings(&recording(time.clone(), vec![channel("fx1_N", force)]));
     assert_eq!(kinds(&found), ["outlier"]);
     assert!(found[0].text.contains("fx1_N is 1e300 in row 51"), "{}", found[0].text);
-    // Mostly zero, then a blow: that is what contact looks like.
+    // Mostly zero, then a blow, as in contact.
     let blow: Vec<f64> = (0..1000).map(|i| if i > 980 { 30.0 + f64::from(i % 7) } else { 0.0 }).collect();
     assert!(!kinds(&warnings(&recording(time, vec![channel("fx1_N", blow)]))).contains(&"outlier"));
 }
@@ -100,7 +100,7 @@ fn steps_that_noise_crosses_are_not_coarse() {
     use rand::{RngExt, SeedableRng};
     let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
     let mut rng = rand::rngs::StdRng::seed_from_u64(5);
-    // Steps of an eighth of what a slow force ranges over, behind noise of so many steps.
+    // Steps of an eighth of a slow force's range, behind noise of a number of steps.
     let mut kinds_behind = |noise: f64| {
         let mut reading = |i: i32| {
             let spread = 3.0_f64.sqrt() * noise;
@@ -119,7 +119,8 @@ fn steps_that_noise_crosses_are_not_coarse() {
 #[test]
 fn a_limit_that_two_sensors_reach_on_both_sides_is_seen_in_all_of_them_together() {
     let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
-    // A slow force with a steep stroke wherever `strokes` says so: up to its side of ±2 N, and held there for so many samples.
+    // A slow force with a steep stroke wherever `strokes` says so: up to its side of ±2 N, and held there for a number
+    // of samples.
     let force = |strokes: &[(usize, f64, usize)]| {
         let mut values: Vec<f64> = wave(2000).iter().map(|v| 0.4 * v).collect();
         for (k, (at, side, held)) in strokes.iter().enumerate() {

@@ -4,12 +4,12 @@ use super::plain::{BATCH, is_skippable};
 use super::simd;
 use crate::log::plan::Use;
 
-/// How a cell is written.
+/// Notation of a cell.
 #[derive(Clone, Copy, Debug)]
 struct Format {
-    /// What stands behind it …
+    /// Delimiter or line end behind the cell.
     mark: u8,
-    /// … so many bytes before the delimiter or line end.
+    /// Number of bytes between the cell and that mark.
     less: u32,
     /// Unit conversion, scale and sign; NaN for a cell that is not read.
     factor: f64,
@@ -93,7 +93,7 @@ fn row_avx2<const COMMA: bool>(
     const BEFORE: u32 = simd::REACH as u32 - 1;
     let mut met = simd::Digits::none();
     for (((cell, &end), written), factor) in cells.iter().zip(ends).zip(row).zip(factors) {
-        // Where the block begins this goes beyond its end.
+        // For the first cells of the block this goes beyond its end.
         let first = end.wrapping_sub(BEFORE + cell.less) as usize;
         let around: &[u8; simd::REACH] = bytes.get(first..first + simd::REACH)?.first_chunk()?;
         if around[simd::REACH - 1] != cell.mark {

@@ -18,7 +18,7 @@ pub enum Stop {
     Endless(bool),
 }
 
-/// Cuts what `source` gives.
+/// Cuts the bytes of `source`.
 #[derive(Debug)]
 pub struct Blocks<R> {
     source: Take<R>,

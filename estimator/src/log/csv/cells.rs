@@ -1,4 +1,4 @@
-//! Cells and records: where one ends, and what number it holds.
+//! Cells and records: their ends, and the number in a cell.
 
 use memchr::{memchr, memchr2};
 
@@ -18,7 +18,7 @@ pub fn number(cell: &[u8], delimiter: u8) -> Option<f64> {
     fast_float2::parse(&point).ok()
 }
 
-/// Where a record stands in its quotes.
+/// Place of a character of a record relative to its quotes.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
     /// At the start of a cell: only here does a quote open.
@@ -44,7 +44,7 @@ impl Place {
     }
 }
 
-/// Index of the line end that ends the record starting at `from`; `None` when it goes on behind `bytes`.
+/// Index of the line end that ends the record starting at `from`; `None` if it extends beyond `bytes`.
 pub fn record_end(bytes: &[u8], from: usize, delimiter: u8) -> Option<usize> {
     let line_end = memchr(b'\n', &bytes[from..]).map(|at| from + at);
     let line = &bytes[from..line_end.unwrap_or(bytes.len())];
@@ -61,7 +61,7 @@ pub fn record_end(bytes: &[u8], from: usize, delimiter: u8) -> Option<usize> {
     None
 }
 
-/// The cells of one record. Those of a record without quotes lie in the record itself, others are copied.
+/// The cells of one record. Cells of a record without quotes lie in the record itself, others are copied.
 #[derive(Debug, Default)]
 pub struct Cells {
     ranges: Vec<(usize, usize)>,
@@ -105,7 +105,7 @@ impl Cells {
         self.ranges.push((first, self.unquoted.len()));
     }
 
-    /// How many there are.
+    /// Number of cells.
     pub fn len(&self) -> usize {
         self.ranges.len()
     }
@@ -168,7 +168,7 @@ mod tests {
     }
 
     proptest! {
-        /// The library's parser accepts what the standard library accepts, to the bit.
+        /// The library's parser accepts the same texts as the standard library, to the bit.
         #[test]
         fn numbers_are_those_of_the_standard_library(bits in any::<u64>(), digits in "[+-]?[0-9]{0,25}\\.?[0-9]{0,25}([eE][+-]?[0-9]{1,3})?") {
             let value = f64::from_bits(bits);

@@ -10,13 +10,13 @@ use crate::log::table::{Group, Table};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// How many values of a selected column a sentence lists.
+/// Number of values of a selected column that a sentence lists.
 const SHOWN_VALUES: usize = 6;
 
 /// Takes parts in any order and keeps those that are early.
 #[derive(Debug)]
 pub struct Join<'a> {
-    /// What is joined.
+    /// The joined table.
     pub table: Table,
     /// Bytes joined.
     pub bytes: usize,
@@ -54,8 +54,8 @@ impl<'a> Join<'a> {
         }
     }
 
-    /// Takes the part of block `index`, and joins what has its turn; an error for the first row that is wrong. Gives back the columns
-    /// of what was joined, empty.
+    /// Takes the part of block `index`, and joins all parts whose turn has come; an error for the first row that is
+    /// wrong. Returns the columns of the joined parts, emptied.
     pub fn take(&mut self, index: usize, part: Part) -> Result<Vec<Vec<Vec<f64>>>, LogError> {
         self.early.insert(index, part);
         let mut spare = Vec::new();
@@ -102,7 +102,7 @@ impl<'a> Join<'a> {
         Ok(part.columns)
     }
 
-    /// Shows what has been joined, of tables with one recording.
+    /// Shows the joined rows, of tables with one recording.
     fn show(&self) {
         let (Some(preview), [(_, group)], None) = (self.preview, self.table.groups.as_slice(), self.plan.trial) else {
             return;

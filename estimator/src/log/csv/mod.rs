@@ -29,22 +29,22 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 
-/// How many bytes are looked at to tell a table from something else.
+/// Number of bytes that are looked at to tell a table from something else.
 const SNIFF_BYTES: usize = 1 << 16;
 /// More threads gain nothing: the parts are joined one after the other.
 const MAX_THREADS: usize = 8;
 /// Parts that may wait for an earlier one before a thread pauses.
 const MAX_WAITING: usize = 16;
 
-/// What the first bytes of a file say about it.
+/// Properties of a file told by its first bytes.
 #[derive(Debug)]
 pub struct Dialect {
     delimiter: u8,
     /// Column names as they stand in the file, trimmed.
     pub headers: Vec<String>,
-    /// Where the first row starts, bytes.
+    /// Start of the first row, bytes.
     start: u64,
-    /// … and on which line, from 1.
+    /// Line of the first row, from 1.
     line: u64,
 }
 
@@ -134,17 +134,17 @@ pub fn read(path: &Path, dialect: &Dialect, plan: &Plan, size: u64, watch: &Watc
     Reading::new(file, path, dialect, plan, size, *watch, split).run()
 }
 
-/// How the work is divided.
+/// Division of the work.
 #[derive(Clone, Copy, Debug)]
 struct Split {
     threads: usize,
     block_bytes: usize,
 }
 
-/// What the threads share.
+/// State shared by the threads.
 struct Reading<'a, R> {
     blocks: Mutex<Blocks<R>>,
-    /// Whoever has it joins for all: a thread that finds it taken parses on.
+    /// Held by the thread that joins for all: a thread that finds it taken parses on.
     join: Mutex<Join<'a>>,
     parts: Mutex<Parts>,
     /// Told after parts were joined, and when the work stops.
@@ -165,7 +165,7 @@ struct Reading<'a, R> {
 #[derive(Debug, Default)]
 struct Parts {
     parsed: Vec<(usize, Part)>,
-    /// Those handed in that have not been joined.
+    /// Number of parts handed in that have not been joined.
     waiting: usize,
     /// Memory of columns that have been joined.
     spare: Vec<Vec<Vec<f64>>>,
@@ -187,7 +187,7 @@ impl<R> Drop for StopOnDrop<'_, '_, R> {
 }
 
 impl<R> Reading<'_, R> {
-    /// Nobody takes another block.
+    /// Stops all threads from taking another block.
     fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
         // Under the lock, so that no thread has looked at the flag and not yet begun to wait.
@@ -279,7 +279,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             Ok(Some(block)) => block,
             Ok(None) => return false,
             Err(stop) => {
-                // The blocks before it are still being parsed: what is wrong in one of them comes first.
+                // The blocks before it are still being parsed: a fault in one of them comes first.
                 lock(&self.refused).get_or_insert(stop);
                 return false;
             }
@@ -296,7 +296,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         }
     }
 
-    /// Joins what has been parsed, if no other thread is at it.
+    /// Joins the parsed parts, if no other thread is at it.
     fn join_parsed(&self) -> Result<(), LogError> {
         // Looked at again after the join is free: a part that comes in between found it taken.
         while !lock(&self.parts).parsed.is_empty() {

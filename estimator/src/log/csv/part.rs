@@ -1,4 +1,4 @@
-//! One block of a table, parsed by itself: what it says about places counts from its own start.
+//! One block of a table, parsed by itself: places count from its own start.
 
 use super::cells::{Cells, number, record_end};
 use super::plain::{self, Plain};
@@ -7,17 +7,17 @@ use crate::log::plan::{Plan, Use};
 use haptics::recording::Labels;
 use memchr::memchr;
 
-/// How many values of a selected column are remembered for the sentence that nothing was selected.
+/// Number of values of a selected column that are remembered for the sentence that nothing was selected.
 const SEEN_VALUES: usize = 6;
 
-/// What every block needs to know.
+/// Information for every block.
 #[derive(Clone, Debug)]
 pub struct Layout<'a> {
     /// Between cells.
     pub delimiter: u8,
     /// Cells in a row.
     pub width: usize,
-    /// What each column is for.
+    /// Use of each column.
     pub plan: &'a Plan,
     /// The plan's uses, less the columns that turned out to hold text.
     pub uses: Vec<Use>,
@@ -25,16 +25,16 @@ pub struct Layout<'a> {
     pub undecided: bool,
     /// In the block before; 0 before the first.
     pub bytes_a_row: usize,
-    /// Where the cells of the block end, where it is known beforehand.
+    /// Ends of the cells of the block, if they are known beforehand.
     pub ends: Vec<u32>,
 }
 
-/// What is wrong with a record.
+/// Fault of a record.
 #[derive(Debug, PartialEq)]
 pub enum Fault {
     /// Number of cells.
     Unequal(usize),
-    /// Column, and what stands there.
+    /// Column, and the text of the cell.
     Cell(usize, String),
 }
 
@@ -49,7 +49,7 @@ pub struct Run {
     pub place: (usize, u64),
 }
 
-/// What a block holds.
+/// Content of a block.
 #[derive(Debug)]
 pub struct Part {
     /// One vector a column of the file; empty where it is not read.
@@ -236,7 +236,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             return Ok(());
         }
         if !required && self.layout.undecided && value.is_none() {
-            // The first cell is text: a column of text that nobody asked for.
+            // The first cell is text: a text column without a use.
             self.layout.uses[column] = Use::Ignore;
             self.part.text_columns.push(column);
             return Ok(());
@@ -250,7 +250,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         Err(Fault::Cell(column, what))
     }
 
-    /// Leaves what the comparison of trials needs.
+    /// Leaves the marks for the comparison of trials.
     fn mark(&mut self, record: &[u8], cells: &Cells) {
         let plan = self.layout.plan;
         if plan.watched.is_empty() {

@@ -9,12 +9,12 @@ use memchr::memchr;
 /// Rows that are read before they are distributed to the columns.
 pub const BATCH: usize = 64;
 
-/// What plain rows are read with.
+/// State for reading plain rows.
 #[derive(Debug)]
 pub struct Plain<'a> {
     /// Between cells.
     delimiter: u8,
-    /// What each column is for.
+    /// Use of each column.
     uses: &'a [Use],
     /// One vector a column; all that are read have the same length.
     columns: &'a mut [Vec<f64>],
@@ -25,7 +25,7 @@ pub struct Plain<'a> {
     batch: Option<Batch>,
 }
 
-/// Finds what [`Plain::ends`] needs to know; nothing on processors that make no use of it.
+/// Finds the ends for [`Plain::ends`]; nothing on processors that make no use of it.
 pub fn find_ends(bytes: &[u8], delimiter: u8, ends: &mut Vec<u32>) {
     ends.clear();
     #[cfg(target_arch = "x86_64")]
@@ -39,8 +39,8 @@ pub fn find_ends(bytes: &[u8], delimiter: u8, ends: &mut Vec<u32>) {
 }
 
 impl<'a> Plain<'a> {
-    /// Reads into `columns`, one for each of `uses`; those that are read have the same length. `ends`: what [`find_ends`] found in the
-    /// block.
+    /// Reads into `columns`, one for each of `uses`; those that are read have the same length. `ends`: result of
+    /// [`find_ends`] for the block.
     pub fn new(delimiter: u8, uses: &'a [Use], columns: &'a mut [Vec<f64>], ends: &'a [u32]) -> Self {
         #[cfg(target_arch = "x86_64")]
         return Self { delimiter, uses, columns, ends, batch: None };
@@ -57,7 +57,7 @@ impl<'a> Plain<'a> {
         loop {
             let more;
             (more, at) = self.quick_rows(bytes, at);
-            // Where the quick way understands nothing it is asked less and less often.
+            // A block that the quick way cannot read is tried with it less and less often.
             patience = if more > 0 { 1 } else { (2 * patience).clamp(1, BATCH) };
             rows += more;
             for _ in 0..patience {
@@ -98,7 +98,7 @@ impl<'a> Plain<'a> {
         self.columns.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// What was taken of a row goes again.
+    /// Drops the values of a row that was not read to its end.
     fn forget(&mut self, known: usize) {
         self.columns.iter_mut().for_each(|c| c.truncate(known));
     }

@@ -1,8 +1,9 @@
-//! Plain numbers with vector instructions: the 32 characters before a cell's end become an integer in a dozen steps, whatever the
-//! number's length, and the decimal point becomes one division, corrected by what it leaves.
+//! Plain numbers with vector instructions. The 32 characters before a cell's end become an integer in a dozen steps,
+//! whatever the number's length. The decimal point becomes one division, corrected by its remainder.
 //!
-//! What is not `-`, digits and at most one decimal point, or cannot be rounded with certainty, is left to the careful parser:
-//! results are those of `str::parse::<f64>` to the bit. Only processors with AVX2 and FMA come here; others parse everything carefully.
+//! Anything but `-`, digits and at most one decimal point, and any number that cannot be rounded with certainty, is
+//! left to the careful parser: results are those of `str::parse::<f64>` to the bit. Only processors with AVX2 and FMA
+//! come here; others parse everything carefully.
 
 use std::arch::x86_64::{
     __m256d, __m256i, _CMP_EQ_OQ, _CMP_NLT_UQ, _mm_madd_epi16, _mm_packus_epi32, _mm_set1_epi32, _mm256_add_epi8,
@@ -17,7 +18,7 @@ use std::arch::x86_64::{
 
 /// Characters that are looked at: a longer cell is no plain number.
 const WINDOW: usize = 32;
-/// … with the one before them, and the mark behind.
+/// `WINDOW` with the character before it, and the mark behind.
 pub const REACH: usize = WINDOW + 2;
 
 /// 10⁰ … 10²², all exact, and their inverses, rounded.
@@ -61,7 +62,7 @@ static EDGE: Edge = {
     Edge(edge)
 };
 
-/// True when the processor has what the functions here are compiled with.
+/// True if the processor has the features that the functions here are compiled with.
 pub fn is_at_home() -> bool {
     use std::arch::is_x86_feature_detected as has;
     has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") && has!("fma")
@@ -146,8 +147,8 @@ pub type Written = [f64; 4];
 /// 0.
 pub const ZERO: Written = [0.0, 0.0, 1.0, 1.0];
 
-/// The number of a cell of `length` characters, which ends one before the end of `around`, and its sign bit; `None` when another
-/// parser must look at it, and worth nothing when `met` was not only digits. `COMMA`: a decimal comma counts too.
+/// The number of a cell of `length` characters, which ends one before the end of `around`, and its sign bit. `None` if
+/// another parser must look at it; worthless if `met` was not only digits. `COMMA`: a decimal comma counts too.
 #[inline]
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,fma")]
 pub fn number<const COMMA: bool>(around: &[u8; REACH], length: usize, met: &mut Digits) -> Option<(Written, u64)> {
@@ -176,7 +177,8 @@ pub fn number<const COMMA: bool>(around: &[u8; REACH], length: usize, met: &mut 
     Some(([front, back, ten, tenth], u64::from(negative) << 63))
 }
 
-/// What is `written`, each rounded once by division and once by its factor; NaN where the first is not certain. True when all are.
+/// Values of `written`, each rounded once by division and once by its factor; NaN if the first is not certain. True if
+/// all are.
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,fma")]
 pub fn quotients(written: &[[Written; 4]], factors: &[[f64; 4]], values: &mut [[f64; 4]]) -> bool {
     let mut certain = _mm256_castsi256_pd(_mm256_set1_epi8(-1));
@@ -220,7 +222,7 @@ fn quotients_of_four(written: &[Written; 4]) -> (__m256d, __m256d) {
     if _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLT_UQ>(near, _mm256_set1_pd(EXACT))) == 0 {
         return (quotient, fits);
     }
-    // What sum and division have left: all differences are exact, and the true quotient is `quotient` + rest/ten.
+    // Remainders of sum and division: all differences are exact, and the true quotient is `quotient` + rest/ten.
     let lost = _mm256_sub_pd(lower, _mm256_sub_pd(near, upper));
     let missing = _mm256_mul_pd(_mm256_add_pd(_mm256_fnmadd_pd(quotient, tens, near), lost), tenths);
     // Rounding is monotonic: where both bounds round to the same, so does the true quotient.

@@ -9,7 +9,7 @@ use rand::seq::IndexedRandom as _;
 use rand::{RngExt, SeedableRng};
 use std::sync::atomic::AtomicUsize;
 
-/// How a table is written.
+/// Notation of a table.
 struct Style {
     delimiter: char,
     line_end: &'static str,
@@ -18,7 +18,7 @@ struct Style {
     quoted: bool,
 }
 
-/// A table and what it says.
+/// A table and its expected content.
 struct Drawn {
     text: String,
     meta: String,

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Largest attachment that is read, bytes: a world takes thousands.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// What is attached under a name; `None` where nothing is, the file is no MCAP file, or it breaks off before.
+/// Attachment with a name; `None` if there is none, the file is no MCAP file, or it breaks off before.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(read("world.json").as_deref(), Some(&b"{}"[..]));
         assert_eq!(read("a").as_deref(), Some(&b"first"[..]));
         assert_eq!(read("b"), None);
-        // Cut at any place it says nothing, or what was whole.
+        // Cut at any place it returns nothing, or the whole attachment.
         let bytes = std::fs::read(&file).expect("there");
         for end in (0..bytes.len()).step_by(7) {
             std::fs::write(&file, &bytes[..end]).expect("written");

@@ -1,13 +1,14 @@
 //! ROS 2 messages in CDR, as their `ros2msg` schema lays them out.
 //!
 //! Plain CDR version 1 (OMG DDSI-RTPS 10.2): four bytes of header, the second of which tells the byte order, then every
-//! primitive aligned to its own size from the end of the header; a string has its length with the closing zero before it.
+//! primitive aligned to its own size from the end of the header. A string has its length with the closing zero before
+//! it.
 
 use super::rosmsg::{Count, Definitions, Field, Kind, Primitive};
 use super::topic::{MAX_DEPTH, MAX_ITEMS, Topic};
 use std::fmt::Write as _;
 
-/// Lists may nest without holding anything; so many of such items are followed.
+/// Number of empty items that are followed: lists may nest without holding anything.
 const MAX_EMPTY_ITEMS: usize = 10_000;
 
 /// Puts one message into the current row of `topic`.

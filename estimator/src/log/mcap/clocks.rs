@@ -1,4 +1,4 @@
-//! Which clock the table gets, and how topics with different clocks come onto one.
+//! Clock of the table, and resampling of topics with different clocks onto it.
 
 use super::names::{self, Name};
 use super::topic::Topic;
@@ -8,7 +8,7 @@ use crate::log::raw::{Cells, Raw};
 use haptics::recording::{Meta, Warning};
 use std::path::Path;
 
-/// Where a stamp stands in a message: seconds and nanoseconds (ROS, Foxglove's schemas in JSON and in protobuf).
+/// Fields of a stamp in a message: seconds and nanoseconds (ROS, Foxglove's schemas in JSON and in protobuf).
 const STAMPS: [(&str, &str); 6] = [
     ("header.stamp.sec", "header.stamp.nanosec"),
     ("header.stamp.sec", "header.stamp.nsec"),
@@ -36,7 +36,7 @@ enum Clock {
     Field,
     /// The stamp in the message's header.
     Stamp,
-    /// When the recorder wrote it.
+    /// Time at which the recorder wrote the message.
     Log,
 }
 
@@ -59,7 +59,7 @@ pub fn one_table(
         let needed = names.iter().any(|n| is_needed(n, meta));
         parts.push(Part { source, names, stamps_ns, needed });
     }
-    // Topics that nobody needs give way; where none is needed, all are shown.
+    // Topics that are not needed are dropped; if none is needed, all are shown.
     if parts.iter().all(|p| !p.needed) {
         for part in &mut parts {
             part.needed = true;
@@ -92,7 +92,7 @@ fn take_stamps(topic: &mut Topic) -> Option<Vec<i64>> {
         });
         let stamps: Option<Vec<i64>> = both.collect();
         topic.forget(|field| field == seconds || field == nanos);
-        // Stamps that nobody set are all zero.
+        // Stamps that were never set are all zero.
         return stamps.filter(|s| is_increasing(s));
     }
     None

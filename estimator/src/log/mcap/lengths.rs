@@ -1,11 +1,11 @@
-//! Do the lengths inside a record lie within it? Asked before the library reserves what they claim.
+//! Check that the lengths inside a record lie within it, before the library reserves room for them.
 
 use mcap::records::op;
 
 /// One field of a record, as the specification of MCAP lists them.
 #[derive(Clone, Copy)]
 enum Field {
-    /// So many bytes.
+    /// Fixed number of bytes.
     Fixed(usize),
     /// Length in four bytes, then text, bytes, or a table of texts.
     Short,
@@ -32,7 +32,7 @@ fn fields(opcode: u8) -> &'static [Field] {
     }
 }
 
-/// True when every length in the record lies within what is left of it.
+/// True if every length in the record lies within the rest of it.
 pub fn fit(opcode: u8, body: &[u8]) -> bool {
     let mut rest = body;
     fields(opcode).iter().all(|&field| {

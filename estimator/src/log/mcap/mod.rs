@@ -35,16 +35,17 @@ pub(in crate::log) const STREAMED: &str = "streamed";
 pub(in crate::log) const COLUMNS: &str = "touchstone.columns";
 pub(in crate::log) const CLOCKLESS: &str = "touchstone.clockless";
 
-/// The table may take this much memory in any case …
+/// Memory that the table may take in any case, bytes.
 const TABLE_BYTES: u64 = 256 << 20;
-/// … and so many times the size of the file: real logs stay far below, packed nonsense does not.
+/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
+/// not.
 const TABLE_TIMES_FILE: u64 = 32;
-/// The memory is asked for after so many messages.
+/// Number of messages after which the memory is checked.
 const CHECK_EVERY: u64 = 1024;
-/// … and what has been decoded is shown after so many.
+/// Number of messages after which the decoded values are shown.
 const SHOW_EVERY: u64 = 8192;
 
-/// How the messages of a channel are read.
+/// Decoder of the messages of a channel.
 enum Decoder {
     Json,
     Protobuf(Box<protobuf::Shape>),
@@ -96,7 +97,7 @@ pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Log, LogError> 
 }
 
 impl Log {
-    /// One table on one clock, with what the reader should know about it.
+    /// One table on one clock, with notes for the reader.
     pub fn columns(self, meta: &Meta) -> Result<(Raw, Vec<Warning>), LogError> {
         let mut notes = Vec::new();
         if let End::CutOff(why) = &self.end {
@@ -268,7 +269,7 @@ impl<'a> Reading<'a> {
         if self.messages.is_multiple_of(CHECK_EVERY) { self.check_memory() } else { Ok(()) }
     }
 
-    /// Shows what has been decoded, by the log's own time.
+    /// Shows the decoded rows, by the log's own time.
     fn show(&mut self) {
         let Some(preview) = self.preview else { return };
         let start = self.sources.iter().filter_map(|s| s.topic.log_ns.first().copied()).min().unwrap_or(0);

@@ -6,17 +6,17 @@ use std::collections::HashMap;
 
 /// A column's name in the program, and its full name `topic.field`.
 pub struct Name {
-    /// What it is called.
+    /// Name in the table.
     pub short: String,
-    /// What it may be called as well.
+    /// Full name, which is accepted as well.
     pub full: String,
 }
 
 /// Names of every field of every source.
 ///
-/// The full name is `topic.field.part`, as in Foxglove's message paths. It is shortened to the field where that is plain: in
-/// files of our own, in a file with a single flat topic, and where a field has a name of the program (`fx1_N`) that no other
-/// topic has.
+/// The full name is `topic.field.part`, as in Foxglove's message paths. It is shortened to the field in files of our
+/// own, in a file with a single flat topic, and for a field with a name of the program (`fx1_N`) that no other topic
+/// has.
 pub fn of(sources: &[Source]) -> Vec<Vec<Name>> {
     let mut count: HashMap<&str, usize> = HashMap::new();
     for field in sources.iter().flat_map(|s| &s.topic.fields) {
@@ -51,7 +51,7 @@ pub fn quantity(name: &str) -> Option<&str> {
         .map(|(q, _)| q)
 }
 
-/// True for a name of a position or an angle: whoever measures it has the clock of the motion.
+/// True for a name of a position or an angle: its source has the clock of the motion.
 pub fn is_motion(name: &str) -> bool {
     quantity(name).is_some_and(|q| matches!(q.trim_end_matches(['1', '2']), "x" | "y" | "z" | "q" | "qb" | "qt"))
 }

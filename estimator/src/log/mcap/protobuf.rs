@@ -7,7 +7,7 @@ use super::topic::{MAX_DEPTH, MAX_FIELDS, MAX_ITEMS, Topic};
 use prost_reflect::{Cardinality, DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
 use std::collections::HashSet;
 
-/// What a field's value becomes.
+/// Destination of a field's value.
 enum Node {
     /// A number in this column.
     Number(Kind, usize),
@@ -15,7 +15,7 @@ enum Node {
     Text(usize),
     /// A message of its own.
     Message(Box<Shape>),
-    /// A list: its path, what it holds, and the items met so far.
+    /// A list: its path, the kind of its items, and the items met so far.
     List(String, Kind, Vec<Node>),
     /// Bytes, maps: not read.
     Skip,
@@ -93,7 +93,7 @@ impl Shape {
         Ok(())
     }
 
-    /// What the message left out because it is zero.
+    /// Adds the values that the message left out because they are zero.
     fn fill(&self, topic: &mut Topic) {
         for &column in &self.zeros {
             topic.number(column, 0.0);

@@ -1,7 +1,7 @@
 //! Walks through the records of an MCAP file, chunk by chunk, in bounded memory.
 //!
-//! The record layouts come from the crate `mcap`; the walk is our own because untrusted lengths are checked here against
-//! what the file can hold, before anything is allocated for them.
+//! The record layouts come from the crate `mcap`; the walk is our own because untrusted lengths are checked here
+//! against the size of the file, before anything is allocated for them.
 
 use super::lengths;
 use crate::log::errors::LogError;
@@ -13,12 +13,12 @@ use std::path::Path;
 
 /// Largest block that is unpacked in any case, bytes; beyond it, four times the size of the file.
 const CHUNK_BYTES: u64 = 32 << 20;
-/// The caller hears of the progress, and may end it, every so many bytes.
+/// Number of bytes from one report of the progress to the next; at each the caller may end the walk.
 const WATCH_BYTES: u64 = 1 << 20;
 /// Op code and length before every record.
 pub(super) const PREFIX: usize = 9;
 
-/// What the walk meets. Everything else in a file (indices, attachments, statistics) is passed over.
+/// Item met by the walk. Everything else in a file (indices, attachments, statistics) is passed over.
 pub enum Event<'a> {
     /// A schema, a channel or metadata.
     Record(Record<'a>),
@@ -26,7 +26,7 @@ pub enum Event<'a> {
     Message(u16, u64, &'a [u8]),
 }
 
-/// How the file ended.
+/// End of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
     /// With its footer.
@@ -152,7 +152,8 @@ impl Walk<'_> {
         }
     }
 
-    /// A record as the library sees it, once its lengths have been found to lie within it: the library reserves what they claim.
+    /// A record as the library sees it, once its lengths have been found to lie within it: the library reserves room
+    /// for them.
     fn parsed<'b>(&self, opcode: u8, body: &'b [u8]) -> Result<Record<'b>, LogError> {
         if !lengths::fit(opcode, body) {
             return Err(self.damaged("a record with a text or a table longer than itself"));

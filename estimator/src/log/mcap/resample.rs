@@ -6,9 +6,9 @@ use haptics::recording::Labels;
 
 /// A channel that is this much faster than the clock is low-passed first.
 const FASTER: f64 = 1.2;
-/// Cut-off of that low-pass (−6 dB), as a share of the clock's rate: what would fold is down to a tenth.
+/// Cut-off of that low-pass (−6 dB), as a share of the clock's rate: the part that would fold is down to a tenth.
 const CUTOFF_SHARE: f64 = 0.4;
-/// A step of so many periods is a gap across which values are made up.
+/// Step in periods from which there is a gap across which values are made up.
 const GAP_PERIODS: f64 = 10.0;
 
 /// Median time between samples, s.
@@ -25,7 +25,7 @@ fn goes_down(from: &[f64], to: &[f64]) -> bool {
     period(to) > FASTER * period(from)
 }
 
-/// What is done, for people.
+/// Description of the resampling, for people.
 pub fn describe(name: &str, from: &[f64], to: &[f64]) -> String {
     let (old, new) = (1.0 / period(from), 1.0 / period(to));
     let filter = if goes_down(from, to) {
@@ -58,9 +58,9 @@ pub fn gaps(name: &str, from: &[f64], to: &[f64]) -> Option<String> {
 
 /// Puts a channel with samples at `from` onto the times `to`, which lie within `from`.
 ///
-/// Numbers: low-passed forward and backward when they are faster than the clock, then a cubic through four neighbours
-/// (Hermite with the slopes of the parabolas through three, so that uneven steps keep their place). A sample at the very time
-/// is taken as it is when nothing is filtered. Text: the last one before.
+/// Numbers: low-passed forward and backward if they are faster than the clock, then a cubic through four neighbours
+/// (Hermite with the slopes of the parabolas through three, so that uneven steps keep their place). A sample at the
+/// very time is taken as it is if nothing is filtered. Text: the last one before.
 pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
     if to == from {
         return cells.clone();
@@ -145,7 +145,7 @@ mod tests {
     fn what_would_fold_is_taken_out() {
         let from = times(8000, 2000.0, 0.0);
         let to = times(380, 200.0, 1.0);
-        // 190 Hz would come out at 10 Hz.
+        // 190 Hz would appear as 10 Hz.
         let made = numbers(onto(&to, &from, &Cells::Numbers(from.iter().map(|t| (TAU * 190.0 * t).sin()).collect())));
         assert!(made.iter().all(|v| v.abs() < 0.02), "{:?}", made.iter().fold(0.0_f64, |m, v| m.max(v.abs())));
     }

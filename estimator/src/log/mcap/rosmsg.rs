@@ -1,5 +1,5 @@
-//! ROS 2 message definitions as they stand in an MCAP schema (`ros2msg`): the message, then the messages it is made of, each
-//! under a line of `=` and `MSG: package/Name`. Syntax: docs.ros.org, "About ROS 2 interfaces".
+//! ROS 2 message definitions as they stand in an MCAP schema (`ros2msg`): the message, then the messages it contains,
+//! each under a line of `=` and `MSG: package/Name`. Syntax: docs.ros.org, "About ROS 2 interfaces".
 
 use std::collections::HashMap;
 
@@ -37,7 +37,7 @@ pub enum Primitive {
     WideText,
 }
 
-/// What a field is.
+/// Kind of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// A primitive.
@@ -62,9 +62,9 @@ pub enum Count {
 pub struct Field {
     /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Content of the field.
     pub kind: Kind,
-    /// How many.
+    /// Number of values.
     pub count: Count,
 }
 

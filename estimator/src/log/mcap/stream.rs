@@ -14,15 +14,15 @@ use std::time::{Duration, Instant};
 /// A block is ended and handed to the system at least this often while rows come, so that a killed process loses less than
 /// a second.
 const FLUSH_EVERY: Duration = Duration::from_millis(500);
-/// Name of the column of texts.
+/// Name of the text column.
 const LABEL: &str = "label";
 
 /// Writes rows to an MCAP file as they come.
 ///
-/// What was handed to the system survives the end of the process, however it ends; [`super::super::load`] reads such a file
-/// up to its last whole block, with a warning. When the disk refuses (it is full, for instance) the file is cut back to its last
-/// whole block and takes no more. Memory: one block, and about a hundred bytes for every block written (15 MB in 24 hours). Not
-/// for the servo: it allocates and writes.
+/// Rows handed to the system survive the end of the process, however it ends; [`super::super::load`] reads such a file
+/// up to its last whole block, with a warning. If the disk refuses (it is full, for instance) the file is cut back to
+/// its last whole block and takes no more. Memory: one block, and about a hundred bytes for every block written (15 MB
+/// in 24 hours). Not for the servo: it allocates and writes.
 pub struct McapStream {
     sink: Option<Sink>,
     /// The same file, to look at its length and to cut it.
@@ -176,11 +176,11 @@ impl McapStream {
         facts.and_then(|()| sink.finish()).map_err(|error| self.give_up(&error))
     }
 
-    /// Takes no more, and cuts what is left of a half-written block: behind it a reader would take the file for damaged.
+    /// Takes no more, and cuts off a half-written block: behind it a reader would take the file for damaged.
     fn give_up(&mut self, error: &McapError) -> LogError {
         // It tries to write its end, on a disk that may have room again.
         drop(self.sink.take());
-        // Should this fail too there is nothing left to try; readers then say what they meet.
+        // If this fails too there is nothing left to try; readers then report the damage.
         let _ = self.file.set_len(self.whole);
         failure(error, &self.path)
     }

@@ -317,7 +317,7 @@ fn no_flipped_bit_panics_or_goes_unseen_in_a_block() {
             }
         }
     }
-    // What may change unseen: indices, statistics, names without a checksum.
+    // Parts that may change unseen: indices, statistics, names without a checksum.
     assert!(2 * refused > bytes.len(), "{refused} of {} flips were seen", bytes.len());
 }
 

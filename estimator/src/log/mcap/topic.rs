@@ -38,7 +38,7 @@ impl Topic {
         self.next = 0;
     }
 
-    /// Fills what the message did not mention.
+    /// Fills the fields that the message did not mention.
     pub fn end(&mut self) {
         let rows = self.log_ns.len();
         for column in &mut self.columns {

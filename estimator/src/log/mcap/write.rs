@@ -38,8 +38,8 @@ impl Sink {
         let library = concat!("touchstone ", env!("CARGO_PKG_VERSION"));
         let mut options = WriteOptions::new().library(library);
         if metadata.contains_key(STREAMED) {
-            // A block goes to the file in one piece when it is whole, so that no killed process leaves one with an empty head. A
-            // thousand rows a second need no threads beside their own.
+            // A block goes to the file as a whole, so that no killed process leaves one with an empty head. A thousand
+            // rows a second need no threads beside their own.
             options = options.disable_seeking(true).compression_threads(0);
         }
         let mut writer = options.create(file)?;
@@ -90,7 +90,7 @@ impl Sink {
     }
 }
 
-/// What travels with the samples: the sidecar as a whole, and its facts one by one for people.
+/// Metadata that travels with the samples: the sidecar as a whole, and its facts one by one for people.
 pub(super) fn metadata(meta: &Meta) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     if let Ok(serde_json::Value::Object(facts)) = serde_json::to_value(meta) {

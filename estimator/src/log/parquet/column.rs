@@ -11,7 +11,7 @@ use parquet::schema::types::ColumnDescriptor;
 /// Rows that are decoded at a time.
 const BATCH: usize = 1 << 14;
 
-/// What the numbers of a column are.
+/// Meaning of the numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Meaning {
     /// Numbers as they stand.
@@ -24,7 +24,7 @@ pub enum Meaning {
     Text,
 }
 
-/// What a column holds, or why it is not read.
+/// Content of a column, or the reason for not reading it.
 pub fn meaning(column: &ColumnDescriptor) -> Result<Meaning, &'static str> {
     if column.max_rep_level() > 0 {
         return Err("it holds lists");

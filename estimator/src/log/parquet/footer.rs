@@ -1,5 +1,5 @@
-//! What a Parquet file's footer claims, looked through before its library believes it: that one reserves room for as many columns as a
-//! footer says that there are, and goes as deep as they are nested.
+//! Check of a Parquet file's footer before its library believes it: the library reserves room for as many columns as
+//! the footer claims, and goes as deep as they are nested.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -13,7 +13,7 @@ const DEEPEST: usize = 64;
 const SCHEMA: i64 = 2;
 const CHILDREN: i64 = 5;
 
-/// Nothing, or what is wrong with the claims of the footer. A file without one is left to the library.
+/// Fault of the footer's claims, if there is one. A file without a footer is left to the library.
 pub fn fault(file: &mut File, size: u64) -> std::io::Result<Option<String>> {
     if size < TAIL_BYTES {
         return Ok(None);
@@ -53,7 +53,7 @@ fn claims(footer: &[u8]) -> Result<(), String> {
     tree(&columns)
 }
 
-/// Whether the columns, each with the number that it is made of, make one tree that is not too deep.
+/// Checks that the columns, each with the number of its children, make one tree that is not too deep.
 fn tree(columns: &[i64]) -> Result<(), String> {
     let mut open: Vec<i64> = Vec::new();
     for &children in columns {
@@ -79,7 +79,7 @@ const FALSE: u8 = 2;
 const LIST: u8 = 9;
 const STRUCT: u8 = 12;
 
-/// What is not read yet.
+/// Unread rest of the footer.
 struct Rest<'a>(&'a [u8]);
 
 impl Rest<'_> {
@@ -117,7 +117,7 @@ impl Rest<'_> {
         Ok((coded >> 1).cast_signed() ^ -(coded & 1).cast_signed())
     }
 
-    /// The kind of the next field, whose number goes on from `id`; none at the end of the structure.
+    /// The kind of the next field, whose number follows `id`; none at the end of the structure.
     fn field(&mut self, id: &mut i64) -> Result<Option<u8>, String> {
         let head = self.byte()?;
         if head == 0 {

@@ -22,7 +22,7 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
         }));
     });
     let outer = GUARDED.replace(true);
-    // What `work` was building is dropped with the panic: nobody sees it half made.
+    // A half-made result of `work` is dropped with the panic, unseen.
     let done = catch_unwind(AssertUnwindSafe(work)).ok();
     GUARDED.set(outer);
     done

@@ -10,7 +10,7 @@ mod write;
 pub use read::{Columns, read};
 pub use write::write;
 
-/// How the name of a program that wrote a file begins where it was this one.
+/// Beginning of the writer's name in the files of this program.
 const CREATED_BY: &str = "touchstone ";
 
 /// Keys of the file's metadata: the sidecar, the units by column, and whether the rows have a clock.

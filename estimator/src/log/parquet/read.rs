@@ -14,12 +14,13 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
 use std::path::Path;
 
-/// The table, the sidecar that the file carries, and what is to be said about the file.
+/// The table, the sidecar that the file carries, and warnings about the file.
 pub type Columns = (Raw, Option<String>, Vec<Warning>);
 
-/// The table may take this much memory in any case …
+/// Memory that the table may take in any case, bytes.
 const TABLE_BYTES: u64 = 256 << 20;
-/// … and so many times the size of the file: real logs stay far below, packed nonsense does not.
+/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
+/// not.
 const TABLE_TIMES_FILE: u64 = 32;
 
 /// Reads the columns of a Parquet file.
@@ -89,7 +90,7 @@ fn header(name: &str, meaning: Meaning) -> String {
     }
 }
 
-/// Reads block by block; an error without words where somebody ended it.
+/// Reads block by block; an error without words if the reading was cancelled.
 fn columns(
     reader: &SerializedFileReader<File>,
     used: &[(usize, Meaning)],
@@ -131,7 +132,7 @@ fn columns(
     if sum == rows { Ok(()) } else { Err(Some(format!("it says that it has {rows} rows and has {sum}"))) }
 }
 
-/// Shows what has been read; the first column whose name is that of a time is the clock.
+/// Shows the rows read so far; the first column whose name is that of a time is the clock.
 fn show(raw: &Raw, watch: &Watch<'_>) {
     let Some(preview) = watch.preview else { return };
     let numbers = raw.headers.iter().zip(&raw.columns).filter_map(|(name, cells)| match cells {

@@ -1,6 +1,6 @@
-//! Checksums of what stands in a file: the library writes pages without any, so that a flipped bit would be a changed number that
-//! nobody notices. Ours are of the values, not of the pages, and are believed only in files that no other program wrote
-//! again (such a program may keep the metadata and change the columns).
+//! Checksums of a file's content. The library writes pages without any, so that a flipped bit would be a changed number
+//! without notice. Ours are of the values, not of the pages, and are believed only in files that no other program has
+//! rewritten (such a program may keep the metadata and change the columns).
 
 use super::{CREATED_BY, SIDECAR, UNITS, is_index};
 use crate::log::raw::{Cells, Raw};
@@ -14,7 +14,7 @@ const SUMS: &str = "touchstone.crc32";
 /// Numbers that are turned into bytes at a time.
 const BATCH: usize = 512;
 
-/// CRC-32 of every column and of what is said about them.
+/// CRC-32 of every column and of its metadata.
 #[derive(Default, Deserialize, Serialize)]
 pub struct Sums {
     columns: BTreeMap<String, u32>,
@@ -36,7 +36,7 @@ impl Sums {
         KeyValue::new(SUMS.to_owned(), serde_json::to_string(self).unwrap_or_default())
     }
 
-    /// What does not fit the sums that a file of ours carries; files of others and older ones have none.
+    /// Mismatch with the sums that a file of ours carries; files of others and older ones have none.
     pub fn fault(about: &FileMetaData, raw: &Raw) -> Option<String> {
         if about.created_by().is_none_or(|by| !by.starts_with(CREATED_BY)) {
             return None;

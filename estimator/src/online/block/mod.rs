@@ -1,4 +1,4 @@
-//! Blocks and barrels while they are carried: weight, width, give of the pads, how near to slipping, and whether the weight changes.
+//! Blocks and barrels while they are carried: weight, width, give of the pads, slip margin, and changes of the weight.
 //!
 //! The rows are those of the batch fit ([`crate::identify::block`]): the vertical sum over a constant and the acceleration, the width
 //! over the grip. The pads count as linear here; the batch fit also averages over pads that bend.
@@ -27,11 +27,11 @@ const GUARD_S: f64 = 0.12;
 const WAITING: usize = 16;
 /// Different objects that are kept apart.
 const MOST_OBJECTS: usize = 6;
-/// After being let go for so long the next grasp may be of another object, s.
+/// Time of release after which the next grasp may be of another object, s.
 const LET_GO_S: f64 = 0.25;
-/// An object is told by width and weight after so many carried rows …
+/// Number of carried rows after which an object is told by width and weight.
 const TELL_ROWS: u64 = 16;
-/// … which agree within these shares.
+/// Largest relative differences of width and weight of one object.
 const SAME_WIDTH: f64 = 0.02;
 const SAME_WEIGHT: f64 = 0.1;
 /// Events that are kept.
@@ -44,7 +44,7 @@ pub struct Blocks {
     gravity: f64,
     row_s: f64,
     objects: Vec<Grasp>,
-    /// How many of them were seen.
+    /// Number of objects seen.
     count: usize,
     current: Option<usize>,
     waiting: [Row; WAITING],
@@ -152,15 +152,15 @@ impl Blocks {
             if self.events.len() == MOST_EVENTS {
                 self.events.remove(0);
             }
-            // In the first moments the column of the acceleration may explain a change of weight as well: it is one either way, and the
-            // reading tells which.
+            // In the first moments the regressor of the acceleration may explain a change of weight as well. It is a
+            // change either way, and the reading tells which.
             let (noticed_s, began_s, grows) = (change.noticed_s, change.began_s, row.lift_n > before);
             self.events.push(Event { object: index, parameter: "weight_N", grows, noticed_s, began_s, before });
         }
         self.tell(index);
     }
 
-    /// What weight and inertia leave of the force on a carried object; `None` before both are known.
+    /// Residual force on a carried object after weight and inertia; `None` before both are known.
     fn left(&self, index: usize, row: &Row) -> Option<Left> {
         let (bias, bias_error) = self.bias.filter(|_| row.carried)?;
         let object = &self.objects[index];

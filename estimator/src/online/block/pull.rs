@@ -1,11 +1,12 @@
 //! Force on a carried object that its weight and inertia do not explain: something else holds it, a cable for instance.
 //!
-//! A hand that carries something exerts its weight and what accelerates it. The horizontal part of what is left over is watched by the
-//! same likelihood-ratio sums as the weight ([`super::super::change`]), from zero on and with a stated rate of false alarms: whoever
-//! carries something slowly sways it, and the sums learn how much. Rows in which something pulls tell nothing about the weight.
+//! A hand that carries something exerts its weight and its inertial force. The horizontal part of the residual is
+//! watched by the same likelihood-ratio sums as the weight ([`super::super::change`]), from zero on and with a stated
+//! rate of false alarms. A slow carry sways the object, and the sums learn by how much. Rows in which something pulls
+//! tell nothing about the weight.
 //!
-//! What pulls from a point (a cable) pulls along lines that meet there: the anchor is their common point by weighted least squares,
-//! with the errors of the directions and what biases and the pads' give do to all lines alike.
+//! A pull from a point (a cable) follows lines that meet there: the anchor is their common point by weighted least
+//! squares. Its errors are those of the directions and the common errors of all lines by biases and the pads' give.
 
 use super::super::change::ChangeDetector;
 use super::super::store::Store;
@@ -15,26 +16,26 @@ use serde::Serialize;
 
 /// A pull that matters, N.
 const MATTERS_N: f64 = 0.03;
-/// What pads, swinging and geometry leave unexplained, as a share of the weight.
+/// Residual by pads, swinging and geometry, as a share of the weight.
 const MODEL_SHARE: f64 = 0.01;
-/// A row beyond so many standard deviations of the sensors teaches nothing about the weight.
+/// Size of a row in standard deviations of the sensors above which it teaches nothing about the weight.
 const SUSPECT: f64 = 6.0;
-/// So many suspect rows on one side, one after the other, are a pull before the sums have learned what is usual.
+/// Number of suspect rows on one side in a row that are a pull before the sums have learned the usual residual.
 const IN_A_ROW: u32 = 10;
-/// So many rows without it end a pull.
+/// Number of rows without a pull that end it.
 const CALM_ROWS: u32 = 8;
 /// A line counts once its pull is known to this share.
 const LINE_SHARE: f64 = 0.2;
-/// How far the grasp may be from where the pull acts on the object, m: the pads give and shear.
+/// Largest distance of the grasp from the point of attack of the pull, m: the pads compress and shear.
 const GRASP_M: f64 = 1e-3;
 /// An anchor is told when no direction is less certain than this, m.
 const TELL_M: f64 = 0.012;
-/// Neighbouring rows of one pull err alike: so many count as one.
+/// Number of neighbouring rows of one pull that count as one: their errors are alike.
 const ALIKE: f64 = 5.0;
 /// Lines that are kept.
 const LINES: usize = 160;
 
-/// Where lines of force meet.
+/// Common point of lines of force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Anchor {
     /// m in the world.
@@ -46,9 +47,9 @@ pub struct Anchor {
 /// Something that holds a carried object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pull {
-    /// Which object, from 0.
+    /// Index of the object, from 0.
     pub object: usize,
-    /// When it set in, s.
+    /// Time at which it set in, s.
     pub began_s: f64,
     /// True while it pulls.
     pub pulls: bool,
@@ -56,9 +57,9 @@ pub struct Pull {
     pub force_n: Vec2,
     /// Standard error of its size, N.
     pub std_error_n: f64,
-    /// Where the object was held then, m in the world.
+    /// Position of the object then, m in the world.
     pub at_m: Vec2,
-    /// Where it is tied, once the directions of the pull tell.
+    /// Point to which it is tied, once the directions of the pull tell.
     pub anchor: Option<Anchor>,
 }
 
@@ -71,12 +72,12 @@ pub(in super::super) struct Left {
     pub(in super::super) force_n: Vec2,
     /// Noise of a row, N.
     pub(in super::super) noise_n: f64,
-    /// What all rows err alike by, N: only vertical forces know the weight's error.
+    /// Common error of all rows, N: only vertical forces contain the weight's error.
     pub(in super::super) common_n: Vec2,
 }
 
 impl Left {
-    /// Size of what no model gets right, N, for a weight.
+    /// Model error of the force, N, for a weight.
     pub(in super::super) fn model_n(weight_n: f64) -> f64 {
         MODEL_SHARE * weight_n.abs()
     }
@@ -129,7 +130,7 @@ impl Hold {
         let suspect = left.suspect();
         self.count(left, suspect);
         if !self.pulls {
-            // What is suspect is tested, but does not teach what is usual before that is known.
+            // A suspect row is tested, but does not teach the usual residual before that is known.
             let change = self.detector.push(left.time_s, &[1.0], left.force_n.x, 0.0);
             let began_s = change.map(|c| c.began_s).or((self.suspects.1 >= IN_A_ROW).then_some(left.time_s));
             if let Some(began_s) = began_s {
@@ -173,7 +174,7 @@ impl Hold {
         (self.pulls, self.suspects) = (false, (0.0, 0));
     }
 
-    /// What holds the object. Allocates.
+    /// Pull on the object. Allocates.
     pub(in super::super) fn pull(&self, object: usize) -> Option<Pull> {
         let (began_s, newest) = (self.began_s?, self.newest?);
         Some(Pull {
@@ -230,14 +231,14 @@ impl Line {
 
 /// The point nearest to all lines, and its covariance if their errors were independent, m²; `None` when they are as good as parallel.
 ///
-/// Noise turns the lines, and lines that are turned at random seem to meet: what noise adds on the average is taken out of the normal
-/// equations, as for any regression with errors in the variables.
+/// Noise turns the lines, and lines that are turned at random seem to meet: the mean effect of noise is taken out of
+/// the normal equations, as for any regression with errors in the variables.
 fn meet(lines: &[Line], noise_n: f64) -> Option<(Vec2, Matrix2<f64>)> {
     const LEAST: usize = 6;
-    /// A first guess of the distance; two more rounds take what came out. Nothing is tied nearer than the least.
+    /// A first guess of the distance; two more rounds take the result. Nothing is tied nearer than the least.
     const FAR_M: f64 = 0.05;
     const LEAST_FAR_M: f64 = 0.01;
-    /// What is left must be so many times what noise alone adds.
+    /// Least information in the weakest direction, in multiples of the part by noise alone.
     const BEYOND_NOISE: f64 = 1.0;
     if lines.len() < LEAST {
         return None;

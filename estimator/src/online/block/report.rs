@@ -1,4 +1,4 @@
-//! What is known of a carried object, as parameters of a fit.
+//! Estimates of a carried object, as parameters of a fit.
 
 use super::super::grasp::Grasp;
 use super::super::leak::{LeakAnswer, Verdict};
@@ -10,7 +10,7 @@ use crate::estimate::Parameter;
 const LEAST_GRIP_VARIATION: f64 = 0.05;
 /// Relative error of a width whose pad compression is not known (thesis).
 const UNKNOWN_COMPRESSION: f64 = 0.07;
-/// A give is told when it is so many errors from zero.
+/// Standard errors from zero from which a give is told.
 const SIGNIFICANT: f64 = 3.0;
 
 /// `leak_kg_s` as a parameter of a fit.

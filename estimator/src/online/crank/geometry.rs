@@ -1,4 +1,4 @@
-//! The circle that the grip follows, row by row: Kåsa's algebraic circle first, then the radius residual with the give of the pads,
+//! Circle of the grip, row by row: Kåsa's algebraic circle first, then the radius residual with the give of the pads,
 //! linearised at a centre that moves along as long as it is badly known.
 
 use super::super::Settings;
@@ -10,13 +10,13 @@ use haptics::Vec2;
 
 /// Rows are so far apart, s: half a derivative's window.
 const ROW_S: f64 = 0.016;
-/// The algebraic circle is believed when its centre is known to this share of its radius …
+/// Relative error of its centre, as a share of the radius, below which the algebraic circle is believed.
 const KNOWN: f64 = 0.05;
-/// … and it is linearised anew when the centre has moved by this share.
+/// Relative motion of the centre after which the circle is linearised again.
 const MOVED: f64 = 0.004;
 /// Rows a block of scores.
 const BLOCK: u32 = 16;
-/// A jump of the centre by so much is a slip of the grasp, m; radius and give do not jump.
+/// Least jump of each parameter that is a slip of the grasp, m for the centre; radius and give do not jump.
 const MATTERS: [f64; 5] = [f64::INFINITY, 2e-4, 2e-4, f64::INFINITY, f64::INFINITY];
 /// Sensible radii, m.
 const RADII_M: std::ops::Range<f64> = 1e-3..1.0;

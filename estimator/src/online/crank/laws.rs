@@ -1,8 +1,8 @@
 //! The laws of eq. 5.2 along the circle, row by row.
 //!
-//! A row is made of the last tenth of a second through the low-pass of the batch fit. The circle as it was known when the rows began
-//! stays in them; beside the regression runs what every row would change if the centre or the give were a little different, so that the
-//! values can be corrected for what is known of the circle now, and its errors join theirs.
+//! A row is made of the last tenth of a second through the low-pass of the batch fit. Rows keep the circle that was
+//! known when they began. Beside the regression runs the derivative of every row with respect to centre and give. The
+//! values can thus be corrected for the present estimate of the circle, and its errors join theirs.
 
 use super::super::Settings;
 use super::super::change::{Change, ChangeDetector};
@@ -13,7 +13,7 @@ use crate::identify::crank::frame::{Frame, Handled, LOW_PASS_HALF_S};
 use crate::identify::crank::laws::{INERTIA, LAWS, NAMES, WEIGHT, column, missing_motion};
 use haptics::law::Motion;
 
-/// How many laws there are.
+/// Number of laws.
 pub(in super::super) const COUNT: usize = 5;
 /// Rows a block of scores: rows are a filter window apart already.
 const BLOCK: u32 = 2;
@@ -23,7 +23,8 @@ const MATTERS: [f64; COUNT] = [0.02, 0.02, 0.2, 0.02, 0.03];
 const SHIFT: [f64; 4] = [1e-4, 1e-4, 1e-5, 1e-5];
 /// A circle that differs by more than this share of the radius from the one in the rows asks for new rows.
 const ANEW: f64 = 0.03;
-/// A parameter whose error alone moves the force by more than this share of what is measured is not shown (as in the batch fit).
+/// Largest force by the error of a parameter, as a share of the measured force, for it to be shown (as in the batch
+/// fit).
 const LARGEST_ERROR: f64 = 0.3;
 
 /// Weight, frictions and inertia while it is turned.
@@ -80,7 +81,7 @@ impl Laws {
         }
     }
 
-    /// The window starts anew: what comes next does not follow what was before.
+    /// Starts the window again: the next samples do not follow the earlier ones.
     pub(super) fn interrupt(&mut self) {
         (self.filled, self.since_row) = (0, 0);
     }
@@ -157,7 +158,8 @@ impl Laws {
         Some((change.parameter, change, before[change.parameter]))
     }
 
-    /// The window through the low-pass, split by `frame`: columns of the laws, tangential force, how certain the direction was.
+    /// The window through the low-pass, split by `frame`: regressors of the laws, tangential force, certainty of the
+    /// direction.
     fn pass(&mut self, frame: &Frame) -> ([f64; COUNT], f64, f64) {
         let length = self.window.len();
         self.motions.clear();

@@ -1,8 +1,8 @@
 //! A crank while it is turned: centre, radius and give first, then weight, friction and inertia along the circle.
 //!
-//! Signals, frame and laws are those of the batch fit ([`crate::identify::crank`]); the circle is found by recursion ([`geometry`]), and
-//! the laws' rows are made with the circle as it was known when they began, and corrected to first order for what became of it
-//! ([`laws`]).
+//! Signals, frame and laws are those of the batch fit ([`crate::identify::crank`]). The circle is found by recursion
+//! ([`geometry`]). The laws' rows are made with the circle known when they began, and corrected to first order for its
+//! later changes ([`laws`]).
 
 mod geometry;
 mod laws;

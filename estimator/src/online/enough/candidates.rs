@@ -1,4 +1,4 @@
-//! What other motions would add to the information: their rows, made by the same laws.
+//! Information that other motions would add: their rows, made by the same laws.
 
 use super::super::crank::{Found, Rubbing};
 use super::super::grasp::Grasp;
@@ -9,7 +9,7 @@ use haptics::law::Motion as Along;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Sum of x xᵀ over rows, as a mean, times so many rows a second.
+/// Mean of x xᵀ over rows, times the rows a second.
 fn per_second(rows: &[Vec<f64>], rows_per_s: f64) -> DMatrix<f64> {
     let n = rows.first().map_or(0, Vec::len);
     let sum = rows.iter().fold(DMatrix::zeros(n, n), |sum, row| {
@@ -19,7 +19,7 @@ fn per_second(rows: &[Vec<f64>], rows_per_s: f64) -> DMatrix<f64> {
     sum * (rows_per_s / rows.len().max(1) as f64)
 }
 
-/// Information of a recursion, and what its rows are divided by to become information: the noise with all that its errors count.
+/// Information of a recursion, and the variance that its rows are divided by: the noise with all that its errors count.
 fn collected<const P: usize>(fit: &Recursive<P>) -> (DMatrix<f64>, f64) {
     let (inverse, errors) = (fit.inverse(), fit.std_errors());
     let known: Vec<f64> =
@@ -153,11 +153,11 @@ pub(in super::super) fn crank_problems(
     vec![rubbing(&turned), round(&Round { information, variance, seconds, normal_n, force_n })]
 }
 
-/// What was seen of a crank's laws.
+/// Information about a crank's laws.
 pub(super) struct Turned {
     /// Information of the laws' columns.
     pub(super) information: DMatrix<f64>,
-    /// What rows are divided by to become information.
+    /// Variance by which rows are divided to become information.
     pub(super) variance: f64,
     /// For so long, s.
     pub(super) seconds: f64,
@@ -174,11 +174,11 @@ pub(super) struct Turned {
     pub(super) free_row_s: f64,
 }
 
-/// What was seen of its circle.
+/// Information about its circle.
 pub(super) struct Round {
     /// Information of radius, centre and give.
     pub(super) information: DMatrix<f64>,
-    /// What rows are divided by to become information.
+    /// Variance by which rows are divided to become information.
     pub(super) variance: f64,
     /// For so long, s.
     pub(super) seconds: f64,

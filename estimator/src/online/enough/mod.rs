@@ -1,10 +1,10 @@
-//! How much is known of every parameter, how much longer the same motion would take, and which motion is missing.
+//! Accuracy of every parameter, the time that the same motion would still need, and the motion that is missing.
 //!
-//! What was collected is an information matrix (the inverse of the covariance, errors as reported). A candidate motion adds rows of its
-//! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
-//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing there. Where several are needed, the one that
-//! all of them together could least do without is named first. What has no such matrix gets the motion that its fit takes it from
-//! ([`usual`]), without seconds.
+//! The collected data are an information matrix (the inverse of the covariance, errors as reported). A candidate motion
+//! adds rows of its own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy
+//! follow. The missing motion is the one that gets there clearly sooner than continuing as before. Names of parameters
+//! decide nothing there. If several motions are needed, the one that all of them together could least do without is
+//! named first. A parameter without such a matrix gets the motion that its fit uses ([`usual`]), without seconds.
 
 mod candidates;
 mod recorded;
@@ -20,13 +20,13 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Nobody waits longer than this for a number, s.
+/// Longest wait for a number, s.
 const LONGEST_S: f64 = 1800.0;
-/// Going on as before is fine when it takes no longer than this, s …
+/// Time within which continuing as before is fine, s.
 const SOON_S: f64 = 8.0;
-/// … or than so many times the best other motion.
+/// Least ratio of the time of continuing as before to that of the best other motion for that motion to be named.
 const CLEARLY: f64 = 2.0;
-/// Where nothing gets there alone, a motion counts by what it does in so many seconds.
+/// Time over which motions are compared if none gets there alone, s.
 const TRIAL_S: f64 = 5.0;
 /// It must shrink the error by this share to be named.
 const HELPS: f64 = 0.1;
@@ -92,7 +92,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// What to do, as an order.
+    /// The motion as an order.
     pub fn words(self) -> &'static str {
         match self {
             Self::GoOn => "go on as before",
@@ -161,13 +161,13 @@ pub struct Missing {
     pub seconds: Option<f64>,
 }
 
-/// One regression with what other motions would add to it.
+/// One regression with the information that other motions would add to it.
 #[derive(Clone, Debug)]
 pub(super) struct Problem {
     pub(super) object: String,
     /// Names of parameters with their place among the columns.
     pub(super) names: Vec<(String, usize)>,
-    /// Inverse covariance of what was collected, columns in their own units.
+    /// Inverse covariance of the collected data, regressors in their own units.
     pub(super) information: DMatrix<f64>,
     /// Standard deviation of every column's value before anything is seen: far beyond any object.
     pub(super) before: Vec<f64>,
@@ -176,11 +176,11 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// Variance of a column's value after so many seconds of a motion.
+    /// Variance of a parameter's value after a number of seconds of a motion.
     fn variance(&self, column: usize, motion: &DMatrix<f64>, seconds: f64) -> f64 {
         let n = self.before.len();
         let prior = DMatrix::from_diagonal(&DVector::from_iterator(n, self.before.iter().map(|s| s.powi(-2))));
-        // Scaled by what is known before: the columns' units differ by orders of magnitude.
+        // Scaled by the present errors: the regressors' units differ by orders of magnitude.
         let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&self.before));
         let total = &scale * (&self.information + motion * seconds + prior) * &scale;
         let inverse = total.cholesky().map(|c| c.inverse());
@@ -246,9 +246,9 @@ fn one(parameter: &Parameter, all: &[Parameter], place: Option<(&Problem, usize)
 fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>) -> (Option<f64>, Option<Missing>) {
     let still = DMatrix::zeros(problem.before.len(), problem.before.len());
     let now = problem.variance(column, &still, 0.0);
-    // What the recursion counts and what is reported may differ by errors that no row shows: predictions keep that ratio.
+    // The recursion and the report may differ by errors that no row shows: predictions keep that ratio.
     let ratio = error.map_or(1.0, |e| e * e / now);
-    // Before there is a value nobody can say how well it must be known: ten times better than now.
+    // Ten times better than now, before there is a value to set the wanted accuracy by.
     let wanted = goal.map_or(0.01 * now, |g| g * g / ratio);
     let times: Vec<Option<f64>> = problem.motions.iter().map(|(_, m)| problem.seconds(column, m, wanted)).collect();
     let same = times.first().copied().flatten();
@@ -274,7 +274,7 @@ fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>
     }
 }
 
-/// Where no motion helps alone: the one that all of them together could least do without.
+/// Motion that all of them together could least do without, if no motion helps alone.
 fn needed_among_all(problem: &Problem, column: usize, now: f64) -> Option<Motion> {
     let others = &problem.motions[1.min(problem.motions.len())..];
     let n = problem.before.len();
@@ -294,7 +294,7 @@ fn missing(motion: Motion, seconds: Option<f64>) -> Missing {
 mod tests {
     use super::*;
 
-    /// A constant and a slope: what was collected shows the constant only.
+    /// A constant and a slope: the collected data show the constant only.
     fn problem() -> Problem {
         let per = |rows: &[[f64; 2]]| {
             rows.iter().fold(DMatrix::zeros(2, 2), |sum, r| {

@@ -1,6 +1,6 @@
-//! What recordings of a crank hold, for those that the estimator beside the servo cannot follow: one tool on the handle has no grip that
-//! tells when it is held. The circle is that of the fit; rows are made by the same laws; how much a row counts follows from the errors
-//! that the fit states.
+//! Information in recordings of a crank that the estimator beside the servo cannot follow: one tool on the handle has
+//! no grip to tell when it is held. The circle is that of the fit; rows are made by the same laws; the weight of a row
+//! follows from the errors that the fit states.
 
 use super::super::crank::{Found, Rubbing};
 use super::Problem;
@@ -71,7 +71,7 @@ pub(in super::super) fn crank_problems_of(recordings: &[Recording], fit: &Fit, f
             pull_n: laws.mean_size(),
             speed_m_s,
             radius_m,
-            // What the fit says of the weight holds the bias already.
+            // The fit's error of the weight contains the bias already.
             bias_error: of_law(WEIGHT).map(|e| 0.3 * e),
             bias_noise_n: 0.0,
             free_row_s,
@@ -101,7 +101,7 @@ fn course(recording: &Recording) -> Option<Course> {
     Some(all.map(|(((t, p), v), f)| (t, p, v, f)).collect())
 }
 
-/// Rows of a regression, with what is usual in them.
+/// Rows of a regression, with the usual figures in them.
 #[derive(Default)]
 struct Rows {
     columns: Vec<Vec<f64>>,
@@ -142,7 +142,7 @@ impl Rows {
         self.usual.iter().map(|u| u[0].abs()).sum::<f64>() / self.usual.len().max(1) as f64
     }
 
-    /// Information, and the variance that makes rows into it: so that the errors that are known come out. `None` where none is.
+    /// Information, and the variance that makes rows into it, so that the known errors result. `None` if none is known.
     fn counted(&self, error: &dyn Fn(usize) -> Option<f64>) -> Option<(DMatrix<f64>, f64)> {
         let n = self.columns.first()?.len();
         if self.columns.len() < 3 * n {

@@ -1,4 +1,4 @@
-//! The motion that shows a parameter, where no information matrix tells which one is missing: what each fit takes its number from.
+//! Motion that each fit takes its number from: it shows a parameter if no information matrix tells the missing one.
 
 use super::Motion;
 use crate::estimate::Parameter;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Relative standard errors that are wanted unless other ones are stated, and the size below which a value counts as that size: the
-/// accuracy of what is nearly zero is absolute.
+/// Default relative standard errors that are wanted, and the size below which a value counts as that size: the accuracy
+/// of values near zero is absolute.
 const USUAL: [(&str, f64, f64); 28] = [
     ("weight_N", 0.01, 0.02),
     ("mass_kg", 0.01, 0.002),
@@ -37,7 +37,7 @@ const USUAL: [(&str, f64, f64); 28] = [
 /// Positions are wanted to a share of this length, m, wherever the origin is.
 const LENGTH_M: f64 = 0.02;
 
-/// Which relative accuracy is wanted of which parameter.
+/// Wanted relative accuracy of each parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Relative standard errors by parameter name, instead of the usual ones.
@@ -54,7 +54,7 @@ impl Wanted {
         self.relative.get(name).copied().or_else(usual).map(|share| share * factor)
     }
 
-    /// Whether there is a wish for it.
+    /// True if an accuracy is stated for it.
     pub fn asks_for(&self, name: &str) -> bool {
         self.relative(name).is_some()
     }

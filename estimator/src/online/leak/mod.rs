@@ -1,13 +1,14 @@
 //! A weight that changes while it is carried: does the object leak, or does the force sensor drift?
 //!
-//! Both look alike while the object is in the air. What tells them apart is a reading without the object: the sensors rest at their
-//! bias in free motion, so a bias that moved between before and after the carry is drift, and one that did not move is none. Another
-//! object that is weighed twice serves as well. Weaker evidence is the sum of the horizontal forces on a carried object, which a leak
-//! leaves at zero and a warming pair of sensors may not, and, only where nothing else is there, how the two fingers share the change.
+//! Both look alike while the object is in the air. A reading without the object tells them apart. The sensors rest at
+//! their bias in free motion, so a bias that moved between before and after the carry is drift, and one that did not
+//! move is none. Another object that is weighed twice serves as well. Weaker evidence is the sum of the horizontal
+//! forces on a carried object, which a leak leaves at zero and a warming pair of sensors may not. The fingers' shares
+//! of the change are used only if nothing else is there.
 //!
-//! Four hypotheses (nothing, leak, drift, both) are compared by how probable they make the measured rates (Gaussian marginal
-//! likelihoods; rates that are there are of the size of the largest that is seen, rates that are not there are below
-//! [`NEGLIGIBLE`] of it). An answer needs a probability of [`CONFIDENT`]; otherwise it cannot be told, and the answer says which motion
+//! Four hypotheses (nothing, leak, drift, both) are compared by the likelihood of the measured rates (Gaussian marginal
+//! likelihoods). Rates that exist are of the size of the largest observed one, others are below [`NEGLIGIBLE`] of it. A
+//! verdict needs a probability of [`CONFIDENT`]; otherwise it cannot be told, and the answer names the motion that
 //! would tell.
 
 mod rates;
@@ -25,7 +26,7 @@ pub const CONFIDENT: f64 = 0.95;
 pub const NEGLIGIBLE: f64 = 0.03;
 /// A drift during the carry may differ by this share from the mean one between the readings before and after.
 const UNEVEN: f64 = 0.1;
-/// A change within so many standard errors is no change.
+/// Size of a change in standard errors below which it is none.
 const SIGNIFICANT: f64 = 4.0;
 /// Before anything is seen: nothing, leak, drift, both.
 const BEFORE: [f64; 4] = [0.25, 0.36, 0.36, 0.03];
@@ -39,7 +40,7 @@ pub struct Series<'a> {
     pub force_n: &'a [f64],
 }
 
-/// What was read of one object, and of no object. Biases stay in: their change is what is looked for.
+/// Readings of one object, and of no object. Biases stay in: their change is the question.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Weighing<'a> {
     /// Sum of the vertical forces of both fingers while the object is in the air (one carry or several), inertia taken out.
@@ -63,7 +64,7 @@ impl<'a> Weighing<'a> {
     }
 }
 
-/// What a changing reading is.
+/// Cause of a changing reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -75,7 +76,7 @@ pub enum Verdict {
     SensorDrift,
     /// Both change.
     Both,
-    /// Something changes; what it is the recording does not show.
+    /// Something changes; the recording does not show the cause.
     CannotTell,
 }
 
@@ -98,9 +99,9 @@ impl Measured {
 /// The answer of [`leak_or_drift`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeakAnswer {
-    /// What it is.
+    /// Verdict on the change.
     pub verdict: Verdict,
-    /// Probability of the verdict; of the likeliest one where it cannot be told.
+    /// Probability of the verdict; of the likeliest one if it cannot be told.
     pub probability: f64,
     /// Probabilities of nothing, leak, drift, both.
     pub probabilities: [f64; 4],
@@ -191,7 +192,8 @@ fn pair(x: f64, y: f64, a: f64, b: f64, c: f64) -> f64 {
     -0.5 * ((b * x * x - 2.0 * c * x * y + a * y * y) / determinant + determinant.ln())
 }
 
-/// What the sum of the horizontal forces says: sensors that drift do so in this channel, too, in one of two cases.
+/// Log likelihood of the sum of the horizontal forces: sensors that drift do so in this channel, too, in one of two
+/// cases.
 fn across(rates: &Rates, drifts: bool, largest: f64, negligible: f64) -> f64 {
     let Some(across) = rates.across else { return 0.0 };
     let own = across.std_error.powi(2) + negligible.powi(2);
@@ -204,7 +206,8 @@ fn across(rates: &Rates, drifts: bool, largest: f64, negligible: f64) -> f64 {
     most + (0.5 * (quiet - most).exp() + 0.5 * (moved - most).exp()).ln()
 }
 
-/// What the fingers' shares of the change say: a leak takes from both, more or less as they lean; of two sensors one may drift alone.
+/// Log likelihood of the fingers' shares of the change: a leak takes from both, more or less as they lean; of two
+/// sensors one may drift alone.
 fn sharing(rates: &Rates, leaks: bool, drifts: bool) -> f64 {
     /// Spread of a finger's share of a change by leaning.
     const LEANING: f64 = 0.25;

@@ -20,10 +20,10 @@ pub(super) struct Rates {
     pub(super) across: Option<Measured>,
     /// The left finger's share of the change of the reading.
     pub(super) share: Option<Measured>,
-    /// Whether there are free readings before and after the middle of the carry.
+    /// True if there are free readings before the middle of the carry; `after`: the same after it.
     pub(super) before: bool,
     pub(super) after: bool,
-    /// How long the carry lasted, s.
+    /// Duration of the carry, s.
     pub(super) lasted_s: f64,
 }
 

@@ -6,7 +6,7 @@ use crate::segment::{Segmentation, Thresholds, subtasks};
 use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround};
 use haptics::recording::Task;
 
-/// A part of a recording: state, samples of 10 ms, place, mm, and weight of what is held, N.
+/// A part of a recording: state, samples of 10 ms, place, mm, and weight of the held object, N.
 type Part = (SystemState, usize, [f64; 2], f64);
 
 /// Blocks as wide in mm as ten times their weight in N.
@@ -64,7 +64,7 @@ fn a_block_that_is_dropped_and_fetched_keeps_its_number() {
 
 #[test]
 fn another_block_after_a_dropped_one_has_the_next_number() {
-    // What lay under it, of another weight: the dropped one stays where it is.
+    // An object that lay under it, of another weight: the dropped one stays in place.
     let first = dropped([-14.0, 18.0], [2.0, 35.0], 1.5);
     let found = segmented(&[&[START][..], &first, &carried([-14.0, 6.0], [14.0, 6.0], 2.2)].concat());
     assert_eq!(carries(&found), [("1", 1.6), ("2", 4.7)]);

@@ -1,4 +1,5 @@
-//! A finger that comes to a crank's handle, turns it to and fro and goes away again, with a sensor that has noise and a bias.
+//! A finger that comes to a crank's handle, turns it back and forth and goes away again, with a sensor that has noise
+//! and a bias.
 
 use crate::identify::crank;
 use crate::segment::{Segmentation, SystemState, Thresholds, segment};
@@ -20,7 +21,7 @@ fn ease(share: f64) -> f64 {
     u * u * (3.0 - 2.0 * u)
 }
 
-/// Where the finger is, and what it presses with, N.
+/// Position of the finger, m, and its force, N.
 fn state(t: f64) -> (Vec2, Vec2) {
     let turn = |t: f64| 2.2 * (0.9 * t).sin() + 0.8 * (0.41 * t).cos();
     let step = 1e-4;

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A block that falls farther than this after it was let go was dropped, m.
 pub const DROP_M: f64 = 0.003;
-/// A pad that slides farther than this over what is held has slipped, m.
+/// Least way of a pad over a held object that is a slip, m.
 pub const SLIP_M: f64 = 0.0005;
 /// Slower than this a block rests, m/s.
 const RESTING_M_S: f64 = 0.002;
@@ -81,7 +81,7 @@ struct One {
     left_at: Option<haptics::Vec2>,
     before: Option<haptics::Vec2>,
     carried_m: f64,
-    /// When and where it was let go and has not come to rest since: s, m up.
+    /// Start of a fall that has not come to rest since: time, s, and height, m.
     falling: Option<(f64, f64)>,
     sliding: [Option<Slip>; 2],
 }
@@ -201,7 +201,7 @@ fn touches(contact: &Contact, block: usize) -> bool {
     is_block(contact.on) || is_block(contact.by)
 }
 
-/// Who rests on whom, of those that nobody holds.
+/// Blocks that rest on each other, of those that are not held.
 fn stacks(end: &[(haptics::Vec2, f64, Vec<Contact>)], blocks: &[One]) -> Vec<Stack> {
     let mut stacks = Vec::new();
     for (upper, (at, angle_rad, contacts)) in end.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What to do better next, in one sentence: drawn from what went wrong, else from the worst measure.
+//! Advice for the next attempt, in one sentence: drawn from its faults, else from the worst measure.
 
 use super::grade::{Figure, Grade};
 use crate::training::definitions::Definition;

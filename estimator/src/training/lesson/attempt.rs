@@ -1,4 +1,4 @@
-//! What a recording says of the attempt that it is: enough to grade it again from its file alone.
+//! Facts of a recording about its attempt: enough to grade it again from its file alone.
 
 use super::Lesson;
 use crate::estimate::EstimateError;
@@ -8,21 +8,21 @@ use serde::{Deserialize, Serialize};
 /// The key of a sidecar that holds it.
 pub const SIDECAR_KEY: &str = "lesson";
 
-/// Which attempt a recording is.
+/// Identification of the attempt in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Attempted {
     /// The lesson's id.
     pub id: String,
-    /// Which of the lesson's worlds it was.
+    /// Index of the world among those of the lesson.
     #[serde(default)]
     pub variant: usize,
-    /// What the trainee answered, from 0, where there was a question.
+    /// Answer of the trainee, from 0, if there was a question.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer: Option<usize>,
     /// Round trip of the line between hand and world, ms; 0: none.
     #[serde(default)]
     pub delay_ms: f64,
-    /// Whether a model of the far world answered at once.
+    /// True if a model of the far world answered at once.
     #[serde(default)]
     pub predicted: bool,
     /// The whole lesson, so that it can be graded where that lesson is not known, or is another one by now.
@@ -36,10 +36,10 @@ impl Attempted {
         Self { id: lesson.id.clone(), variant, answer: None, delay_ms: 0.0, predicted: false, definition: None }
     }
 
-    /// What a recording says of it; nothing where it is no attempt.
+    /// Facts of a recording about its attempt; `None` if it is no attempt.
     ///
     /// # Errors
-    /// When something stands there that cannot be read.
+    /// An entry that cannot be read.
     pub fn of(recording: &Recording) -> Result<Option<Self>, EstimateError> {
         let Some(value) = recording.meta.other.get(SIDECAR_KEY) else { return Ok(None) };
         serde_json::from_value(value.clone()).map(Some).map_err(|error| {

@@ -1,4 +1,4 @@
-//! What experts need for a lesson: mean and spread of each judged measure, without outliers.
+//! Expert reference of a lesson: mean and spread of each judged measure, without outliers.
 
 use super::grade::{self, badness};
 use super::perform::perform_over;
@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 
 /// Attempts that the spread is taken from.
 pub const ATTEMPTS: usize = 40;
-/// Where the seeds of the experts' attempts begin: apart from those that tests draw.
+/// First seed of the experts' attempts: apart from those that tests draw.
 const FIRST_SEED: u64 = 0x0e59_e127;
-/// What lies farther from the quartiles than so many times their distance is an outlier (Tukey 1977).
+/// Distance from the quartiles, in multiples of theirs, from which a value is an outlier (Tukey 1977).
 const FENCE: f64 = 1.5;
 
 /// Mean and standard deviation of something.
@@ -45,7 +45,7 @@ pub struct Expert {
 /// Lets the scripted expert do a lesson [`ATTEMPTS`] times.
 ///
 /// # Errors
-/// When the lesson cannot be done, or when fewer than half of the attempts come to the goal.
+/// The lesson cannot be done, or fewer than half of the attempts come to the goal.
 pub fn measure(lesson: &Lesson) -> Result<Expert, EstimateError> {
     measure_over(lesson, &Delay::default())
 }
@@ -53,7 +53,7 @@ pub fn measure(lesson: &Lesson) -> Result<Expert, EstimateError> {
 /// Lines that built-in lessons have experts for: round trip, s, and whether a model answers.
 pub const LINES: [(f64, bool); 4] = [(0.15, false), (0.15, true), (0.5, false), (0.5, true)];
 
-/// What experts need over each of [`LINES`]; lines over which most of them fail are left out.
+/// Expert references over each of [`LINES`]; lines over which most attempts fail are left out.
 pub fn over_lines(lesson: &Lesson) -> Vec<Over> {
     let over = |(round_trip_s, predicted): (f64, bool)| {
         let expert = measure_over(lesson, &Delay::of(round_trip_s, predicted)).ok()?;
@@ -103,7 +103,7 @@ pub fn measure_over(lesson: &Lesson, line: &Delay) -> Result<Expert, EstimateErr
     Ok(expert)
 }
 
-/// Mean and standard deviation of what lies within the fences of the quartiles.
+/// Mean and standard deviation of the values within the fences of the quartiles.
 pub fn spread_of(values: &[f64]) -> Option<Spread> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! What is to be reached in a lesson, and what must not happen, told from the world's states alone.
+//! Goals and rules of a lesson, judged from the world's states alone.
 
 use haptics::Vec2;
 use haptics::world::{Contact, State, Surface, World};
@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What is held for a time is held for so long more by [`Kind::stricter`], s.
+/// Additional time of a hold by [`Kind::stricter`], s.
 pub(super) const LONGER_S: f64 = 0.15;
-/// What must hold of a place holds for this long before it counts, s.
+/// Time for which a condition on a place must hold before it counts, s.
 const SETTLED_S: f64 = 0.5;
-/// What is to be held for a time may be left for so long, s.
+/// Longest interruption of a hold that is forgiven, s.
 const GONE_S: f64 = 0.05;
 /// Slower than this a block rests, m/s.
 const RESTING_M_S: f64 = 0.002;
@@ -181,12 +181,12 @@ fn find(world: &World, name: &str) -> Option<usize> {
     world.blocks.iter().position(|block| block.name == name)
 }
 
-/// How one goal stands.
+/// State of one goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Standing {
     /// It counts as reached now.
     pub reached: bool,
-    /// How much of its time has been held, 0 to 1.
+    /// Share of its time that has been held, 0 to 1.
     pub share: f64,
 }
 
@@ -202,7 +202,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// What must hold of a place counts after `SETTLED_S` and so much more, s.
+    /// Watch of a goal; a condition on a place counts after `SETTLED_S` and `longer_s` more.
     pub(super) fn new(longer_s: f64) -> Self {
         Self {
             settles_s: SETTLED_S + longer_s,
@@ -273,9 +273,9 @@ impl Watch {
         }
     }
 
-    /// What is done once it has been held for a time.
+    /// Judges a goal that is reached after a hold of a certain time.
     fn hold(&mut self, now: bool, span_s: f64, for_s: f64) {
-        // A tremor that leaves for a moment does not begin the time anew.
+        // A tremor that leaves for a moment does not restart the time.
         self.gone_s = if now { 0.0 } else { self.gone_s + span_s };
         self.held_s = match (now, self.gone_s > GONE_S) {
             (true, _) => self.held_s + span_s,
@@ -287,7 +287,7 @@ impl Watch {
         self.standing.share = if self.standing.reached { 1.0 } else { share };
     }
 
-    /// What counts only as long as it is so.
+    /// Judges a goal that counts only as long as its condition holds.
     fn settle(&mut self, now: bool, span_s: f64) {
         self.held_s = if now { self.held_s + span_s } else { 0.0 };
         self.standing =
@@ -300,7 +300,7 @@ impl Watch {
     }
 }
 
-/// Whether a rule is kept in a state.
+/// True if a rule is kept in a state.
 pub(super) fn is_kept(kind: &Forbidden, world: &World, state: &State) -> bool {
     let body = |name: &str| find(world, name).and_then(|k| state.bodies.get(k));
     match kind {

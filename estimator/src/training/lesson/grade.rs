@@ -1,5 +1,5 @@
-//! What an attempt is worth: its measures beside those of experts. Everything comes from the recording, and the same recording gives
-//! the same numbers, to the bit.
+//! Grade of an attempt: its measures beside those of experts. Everything comes from the recording, and the same
+//! recording gives the same numbers, to the bit.
 
 use super::expert::Expert;
 use super::{Attempted, Lesson, Progress, advice};
@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Version of how scores are made of measures. Scores of different versions are not compared.
+/// Version of the computation of scores from measures. Scores of different versions are not compared.
 pub const GRADE_VERSION: u32 = 1;
 /// A measure that is worse than the experts' mean by this many of their units halves the score.
 const HALVES: f64 = 5.0;
@@ -87,7 +87,7 @@ pub struct Grade {
     pub completed_s: Option<f64>,
 }
 
-/// What happened, before it is compared with anything.
+/// Facts of an attempt before any comparison.
 pub struct SeenAttempt {
     /// Everything that was measured.
     pub measures: Measures,
@@ -95,7 +95,7 @@ pub struct SeenAttempt {
     pub goals: Vec<Reached>,
     /// The rules.
     pub rules: Vec<Reached>,
-    /// Whether the answer was right.
+    /// True if the answer was right.
     pub answered_rightly: Option<bool>,
     /// Everything is as it should be.
     pub completed: bool,
@@ -189,8 +189,8 @@ fn figure(judged: &super::Judged, expert: &Expert, all: &BTreeMap<&'static str, 
     })
 }
 
-/// How many units an attempt is worse than the experts' mean, over all judged measures by their weights; `None` where one was not
-/// measured.
+/// Number of units by which an attempt is worse than the experts' mean, over all judged measures by their weights;
+/// `None` if one was not measured.
 pub fn badness(lesson: &Lesson, expert: &Expert, all: &BTreeMap<&'static str, f64>) -> Option<f64> {
     let (mut sum, mut weights) = (0.0, 0.0);
     for judged in &lesson.judged {

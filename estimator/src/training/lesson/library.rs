@@ -38,7 +38,7 @@ pub fn built_in() -> Result<Vec<Lesson>, EstimateError> {
     lessons.map(in_order)
 }
 
-/// The lessons of a folder, and what is wrong with the files that are none. A folder that is not there has none.
+/// The lessons of a folder, and the faults of the files that are none. A folder that is not there has none.
 pub fn of_folder(folder: &Path) -> (Vec<Lesson>, Vec<String>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return (Vec::new(), Vec::new()) };
     let mut paths: Vec<_> = entries

@@ -1,5 +1,5 @@
-//! Lessons: what to do, in which world, how an expert does it, and what is judged. A lesson is a JSON file, with a text for people
-//! beside it (`assets/lessons`, `docs/lessons.md`); users add their own without code.
+//! Lessons: the task, its world, the demonstration of an expert, and the judged measures. A lesson is a JSON file, with
+//! a text for people beside it (`assets/lessons`, `docs/lessons.md`); users add their own without code.
 
 pub mod advice;
 pub mod attempt;
@@ -143,7 +143,7 @@ fn wrong(what: impl Into<String>) -> EstimateError {
 }
 
 impl Lesson {
-    /// What experts need under the conditions of an attempt: over its line, where that was measured, else without one.
+    /// Expert reference under the conditions of an attempt: over its line, if that was measured, else without one.
     pub fn experts(&self, attempted: &Attempted) -> Option<&Expert> {
         let same =
             |over: &&Over| (over.delay_ms - attempted.delay_ms).abs() < 0.5 && over.predicted == attempted.predicted;
@@ -153,7 +153,7 @@ impl Lesson {
     /// Reads a lesson and checks it.
     ///
     /// # Errors
-    /// One sentence: what is wrong with it.
+    /// One sentence that names the fault.
     pub fn from_json(json: &str, text: &str) -> Result<Self, EstimateError> {
         let mut lesson: Self = serde_json::from_str(json)
             .map_err(|error| wrong(format!("this is no lesson: {error}; docs/lessons.md shows how one is written")))?;
@@ -175,7 +175,7 @@ impl Lesson {
         Self::from_json(&json, &text).map_err(|error| at(&error))
     }
 
-    /// How many worlds attempts are drawn from.
+    /// Number of worlds that attempts are drawn from.
     pub fn variant_count(&self) -> usize {
         self.variants.len().max(1)
     }
@@ -183,7 +183,7 @@ impl Lesson {
     /// The world of a variant.
     ///
     /// # Errors
-    /// When the base is unknown, a change fits nothing, or what comes out is no world.
+    /// The base is unknown, a change fits nothing, or the result is no world.
     pub fn world(&self, variant: usize) -> Result<World, EstimateError> {
         let base = match &self.world {
             Base::Whole(world) => (**world).clone(),

@@ -19,22 +19,22 @@ pub struct Performance {
     pub world: World,
     /// Every tick, as the servo made it.
     pub ticks: Vec<TickRecord>,
-    /// When each step of the demonstration began, s.
+    /// Start times of the steps of the demonstration, s.
     pub steps_s: Vec<f64>,
 }
 
 /// Does a lesson once. The same seed gives the same performance, to the bit.
 ///
 /// # Errors
-/// When the lesson's world cannot be made.
+/// The lesson's world cannot be made.
 pub fn perform(lesson: &Lesson, variant: usize, skill: Skill, seed: u64) -> Result<Performance, EstimateError> {
     perform_over(lesson, variant, skill, seed, &Delay::default())
 }
 
-/// The same over a slow line, where the operator moves and waits for what it sees.
+/// The same over a slow line: there the operator moves and waits for the picture.
 ///
 /// # Errors
-/// When the lesson's world cannot be made, or there is no such line.
+/// The lesson's world cannot be made, or there is no such line.
 pub fn perform_over(
     lesson: &Lesson,
     variant: usize,

@@ -1,4 +1,4 @@
-//! Any world that was measured becomes a lesson: what can be done with the things that stand in it.
+//! Lessons from measured worlds: tasks with the things that stand in them.
 
 use super::{Base, Goal, Judged, Lesson, Rule, SCHEMA, Step, goal};
 use crate::estimate::EstimateError;
@@ -13,7 +13,7 @@ const LIMIT_N: f64 = 4.0;
 const AT_MOST_S: f64 = 120.0;
 /// A block that is nearer to the middle than this is carried to the right, m.
 const MIDDLE_M: f64 = 0.008;
-/// Where it is then put, m.
+/// Position to which it is then carried, m to the right.
 const ASIDE_M: f64 = 0.016;
 /// Most that blocks may be beside their places, m.
 const WITHIN_M: f64 = 0.005;
@@ -23,7 +23,7 @@ const FACE_M: f64 = 0.016;
 /// A lesson in a world; its experts are still to be measured ([`super::expert::measure`]).
 ///
 /// # Errors
-/// When nothing stands in the world that a lesson is known for.
+/// No lesson is known for the things in the world.
 pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
     let (what, goals, demonstration, judged) = task_of(&world).ok_or_else(|| {
         super::wrong(
@@ -31,7 +31,7 @@ pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
         )
     })?;
     if world.pad.face_m == 0.0 && !world.blocks.is_empty() {
-        // What was measured says nothing of it, and no hand holds anything between two points.
+        // The measurement says nothing of the face, and no hand holds anything between two points.
         world.pad.face_m = FACE_M;
     }
     let rules = world.blocks.iter().filter(|b| b.wall.is_some_and(|w| w.strength_n.is_some())).map(whole).collect();

@@ -1,4 +1,5 @@
-//! How far an attempt is, from state to state: the same for a running world and for a recording that is played through it.
+//! Progress of an attempt, from state to state: the same for a running world and for a recording that is played through
+//! it.
 
 use super::goal::{LONGER_S, Standing, Watch, is_kept};
 use super::{Goal, Lesson, Rule};
@@ -7,10 +8,10 @@ use haptics::world::{State, World};
 
 /// A hand faster than this has begun, m/s.
 const BEGINS_M_S: f64 = 0.005;
-/// What looks this seldom is a window, s.
+/// Time between two looks from which the watcher is a window, s.
 const PICTURE_S: f64 = 0.01;
 
-/// What several goals need to know.
+/// Observations that several goals need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
     /// Something has been touched.
@@ -38,8 +39,8 @@ impl Progress {
         Self::watching(lesson, world, 0.0)
     }
 
-    /// Nothing seen yet, for a window that looks sixty times a second: its goals are a little harder to reach, so that what it takes for
-    /// reached is reached in the recording, too.
+    /// Nothing seen yet, for a window that looks sixty times a second. Its goals are a little harder to reach, so that
+    /// a goal reached in the window is reached in the recording, too.
     pub fn live(lesson: &Lesson, world: &World) -> Self {
         let harder = |goal: &Goal| Goal { says: goal.says.clone(), kind: goal.kind.clone().stricter() };
         let lesson = Lesson { goals: lesson.goals.iter().map(harder).collect(), ..lesson.clone() };
@@ -60,14 +61,14 @@ impl Progress {
         }
     }
 
-    /// The next state, at its time, s. What comes after the last goal was reached changes nothing but broken rules.
+    /// The next state, at its time, s. States after the last goal change nothing but broken rules.
     pub fn see(&mut self, time_s: f64, state: &State) {
         let middle = 0.5 * (state.input.tip_in_world[0] + state.input.tip_in_world[1]);
         let (before_s, before) = self.before.unwrap_or((time_s, middle));
         let span_s = (time_s - before_s).max(0.0);
         self.now_s = time_s;
-        // Steps of sensors are no speed: from one sample to the next both must say so. A slow window looks when a hand that follows its
-        // pointer has come to rest already.
+        // Steps of sensors are no speed: from one sample to the next both must show it. A slow window looks when a hand
+        // that follows its pointer has come to rest already.
         if self.begun_s.is_none() && span_s > 0.0 {
             let fast = state.input.tip_velocity.iter().any(|v| v.norm() > BEGINS_M_S);
             let moved = (middle - before).norm() / span_s > BEGINS_M_S;
@@ -93,7 +94,7 @@ impl Progress {
         }
     }
 
-    /// How each goal stands, in the lesson's order.
+    /// State of each goal, in the lesson's order.
     pub fn standings(&self) -> impl Iterator<Item = (&Goal, Standing)> {
         self.goals.iter().map(|(goal, watch)| (goal, watch.standing()))
     }

@@ -71,8 +71,8 @@ fn better_hands_get_better_scores_in_every_lesson() {
     assert!(failures.is_empty(), "wrong orders of {seeds}: {failures:?}");
 }
 
-/// `TOUCHSTONE_WRITE_LESSONS=1` measures the experts of the built-in lessons anew; else it is looked whether two of them are still
-/// what is written there.
+/// Checks that two experts of the built-in lessons are still as written in the files; `TOUCHSTONE_WRITE_LESSONS=1`
+/// measures all of them again.
 #[test]
 fn the_experts_in_the_files_are_what_is_measured() {
     let write = std::env::var_os("TOUCHSTONE_WRITE_LESSONS").is_some();
@@ -118,7 +118,7 @@ fn every_built_in_lesson_has_a_text_and_what_experts_need() {
         let expert = lesson.expert.as_ref().expect("measured");
         assert_eq!(expert.completed, [expert::ATTEMPTS; 2], "{}", lesson.id);
         assert_eq!(expert.measures_version, crate::training::VERSION, "{}", lesson.id);
-        // Nobody presses softly half a second late.
+        // Every line is listed: experts complete the lesson over all of them.
         assert_eq!(lesson.expert_over.len(), 4, "{}", lesson.id);
         assert!(lesson.text.len() > 200 && !lesson.goal.is_empty(), "{}", lesson.id);
     }

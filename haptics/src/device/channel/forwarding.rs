@@ -1,4 +1,4 @@
-//! What the channel hands on to and from the device behind it.
+//! Tests of the calls that the channel forwards to and from the device behind it.
 
 use super::*;
 use crate::Vec2;

@@ -1,4 +1,4 @@
-//! How long the plain channel's far end holds a force when the line falls silent.
+//! Time for which the plain channel's far end holds a force when the line falls silent.
 
 use super::*;
 use crate::Vec2;

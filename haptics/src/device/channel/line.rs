@@ -1,4 +1,4 @@
-//! One direction of a network: what goes in comes out later, sometimes out of order, sometimes never.
+//! One direction of a network: packets are delivered late, sometimes out of order, sometimes never.
 
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};

@@ -1,8 +1,9 @@
-//! A slow and unreliable network between the servo and any device: delay, jitter and loss both ways, drawn by a seed; on choice
-//! with wave variables, which keep it stable.
+//! Simulated slow and unreliable network between the servo and any device: delay, jitter and loss both ways, drawn by a
+//! seed. Optional wave variables keep it stable.
 //!
-//! Without them the servo's forces arrive late at the operator, and a wall that is stiffer than the operator's arm starts to swing
-//! and grows: this is what the plain channel is for, to see and to measure it. With them the line cannot give energy out.
+//! Without them the servo's forces arrive late at the operator, and a wall that is stiffer than the operator's arm
+//! starts to swing and grows: the plain channel is there to see and to measure this. With them the line cannot generate
+//! energy.
 //!
 //! The wrapped device is asked every tick, as if it ran at the servo's clock at the far end.
 
@@ -26,7 +27,7 @@ use line::Line;
 const HOLD_S: f64 = 0.05;
 /// A sample counts as fresh for this long beside the jitter, s.
 const FRESH_S: f64 = 0.005;
-/// What the network does to each packet, each way.
+/// Delay, jitter and loss that the network applies to each packet, each way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChannelConfig {
     /// Delay one way, s; half the round trip.
@@ -56,7 +57,7 @@ pub enum ChannelError {
 }
 
 impl ChannelConfig {
-    /// Says what makes the network impossible, if anything does.
+    /// Fault of the settings, if there is one, in one sentence.
     pub fn check(&self) -> Result<(), ChannelError> {
         for (name, time_s) in [("delay", self.delay_s), ("jitter", self.jitter_s)] {
             if !(0.0..=2.0).contains(&time_s) {
@@ -75,21 +76,21 @@ impl ChannelConfig {
     }
 }
 
-/// What goes from the servo to the device.
+/// Content of a packet from the servo to the device.
 #[derive(Clone, Copy)]
 enum Down {
     Force(Command),
     Wave([Account; 2]),
 }
 
-/// What comes back.
+/// Content of a packet from the device to the servo.
 #[derive(Clone, Copy)]
 enum Up {
     Motion(Sample, Ages),
     Wave([Account; 2], Ages),
 }
 
-/// How long ago each finger was seen at the far end when the packet left, s.
+/// Age of each finger's newest sample at the far end when the packet left, s.
 type Ages = [f64; 2];
 
 /// Any device behind a network.
@@ -104,10 +105,10 @@ pub struct ChannelDevice {
     /// Forces at the far end, N.
     command: Command,
     command_age_s: f64,
-    /// What the servo has.
+    /// Newest sample that has reached the servo.
     sample: Sample,
     sample_age_s: Ages,
-    /// What the far end has: without bound before a finger was seen.
+    /// Age of each finger's newest sample at the far end, s; infinite before the finger was first seen.
     seen_s: Ages,
     operator_end: OperatorEnd,
     world_end: WorldEnd,
@@ -120,7 +121,7 @@ impl ChannelDevice {
         let ChannelConfig { delay_s, jitter_s, loss, seed, waves } = config;
         let mut spec = inner.spec().clone();
         if let Some(waves) = waves {
-            // What the servo feels at its end is the wave impedance, not the device.
+            // The servo feels the wave impedance at its end, not the device.
             (spec.damping_n_s_m, spec.coulomb_n, spec.resolution_m) = (waves.impedance_n_s_m, 0.0, 0.0);
         }
         spec.name = format!("{} behind {:.0} ms each way", spec.name, 1e3 * delay_s);
@@ -230,7 +231,7 @@ impl Device for ChannelDevice {
     }
 
     fn delay_s(&self) -> f64 {
-        // What waves carry needs no allowance for its delay; what is sent plainly does.
+        // Waves need no allowance for the delay of the line; plain positions and forces do.
         let own = if self.config.waves.is_some() { 0.0 } else { 2.0 * self.config.delay_s + self.config.jitter_s };
         self.inner.delay_s() + own
     }

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 
 const DT: f64 = 1e-3;
 
-/// What the far end saw.
+/// Figures observed at the far end.
 #[derive(Default)]
 struct Seen {
     /// Energy that the operator has put into the line so far, J, at its lowest.
@@ -128,8 +128,8 @@ fn plain_delay_swings_and_grows_while_waves_come_to_rest() {
         assert!(spread(&seen.x_m[25_000..]) < 5e-5, "the hand rests: {} m", spread(&seen.x_m[25_000..]));
         assert!(spread(&tips[25_000..]) < 5e-5, "the tip rests");
         assert!(seen.least_j > -stored - 1e-6, "no energy is given out: {} J", seen.least_j);
-        // Where arm, line and wall balance: three springs in series, 400 N/m from 4 mm, b/d, 2000 N/m from 1 mm. The receivers'
-        // smoothing and the tick add to the delay.
+        // Balance of arm, line and wall: three springs in series, 400 N/m from 4 mm, b/d, 2000 N/m from 1 mm. The
+        // receivers' smoothing and the tick add to the delay.
         let line = half_a_second(true).waves.expect("waves").line_stiffness_n_m(0.25 + SMOOTHING_S + DT);
         let force = 0.003 / (1.0 / 400.0 + 1.0 / line + 1.0 / STIFFNESS);
         let felt = 400.0 * (0.004 - seen.x_m[29_999]);
@@ -142,7 +142,7 @@ fn plain_delay_swings_and_grows_while_waves_come_to_rest() {
 #[test]
 fn waves_stay_passive_and_do_not_drift_when_packets_are_late_and_lost() {
     for (seed, (jitter_s, loss)) in [(0.02, 0.0), (0.0, 0.3), (0.05, 0.5)].into_iter().enumerate() {
-        // Wanders to and fro, into the wall and out, for 20 s; then rests in the air.
+        // Moves back and forth, into the wall and out, for 20 s; then rests in the air.
         let wander = |t: f64| if t < 20.0 { 0.006 * (1.3 * t).sin() + 0.003 * (4.1 * t).sin() } else { -0.003 };
         let (device, seen) = operator(wander);
         let config = ChannelConfig { jitter_s, loss, seed: seed as u64, ..half_a_second(true) };
@@ -157,7 +157,8 @@ fn waves_stay_passive_and_do_not_drift_when_packets_are_late_and_lost() {
     }
 }
 
-/// Two fingers that move to the left at 0.2 m/s for half a second, are not seen any more, and what is put on them meanwhile.
+/// Two fingers that move to the left at 0.2 m/s for half a second, are not seen any more, and the forces on them
+/// meanwhile.
 struct Lost(DeviceSpec, u32, Arc<Mutex<Vec<f64>>>);
 
 impl Device for Lost {
@@ -281,8 +282,8 @@ fn a_block_is_held_over_half_a_second() {
     };
     run(MouseTarget { center_in_world: block + Vec2::new(0.0, 0.02), aperture_m: 0.026 }, 5.0);
     run(MouseTarget { center_in_world: block, aperture_m: 0.026 }, 5.0);
-    // Half a second makes a soft line: the fingers must want to be far inside the block to squeeze it. (Lifted, it would turn out
-    // of the fingers: 36 N/m across the pinch do not keep them opposite each other.)
+    // Half a second makes a soft line, so the fingers must aim far inside the block to squeeze it. (A lifted block
+    // would turn out of the fingers: 36 N/m across the pinch do not keep them opposite each other.)
     let held = run(MouseTarget { center_in_world: block, aperture_m: -0.024 }, 40.0);
     let late = &held[32_000..];
     assert!(late.iter().all(|tick| tick.label == "hold-on-ground"), "{}", late[0].label);

@@ -35,7 +35,7 @@ pub struct GamepadThread {
 }
 
 impl GamepadThread {
-    /// What the pad calls itself.
+    /// Name that the pad reports.
     pub fn name(&self) -> &str {
         &self.name
     }

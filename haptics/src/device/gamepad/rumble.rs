@@ -1,20 +1,20 @@
-//! What the rumble tells: how hard the fingers press, and how fast something has struck something.
+//! Rumble as a cue of the finger force and of the speed of impacts.
 
-/// Force that gives the strongest rumble, N.
+/// Force of the strongest rumble, N.
 const FULL_FORCE_N: f64 = 4.0;
 /// Slower impacts are not felt, m/s.
 const FAINTEST_M_S: f64 = 0.02;
-/// The speed that gives the strongest knock, m/s.
+/// Speed of the strongest knock, m/s.
 const FULL_M_S: f64 = 0.5;
 /// A knock stays at its full strength for this long, s: a pad takes some thirty commands a second, and its motors need as long to
 /// come up.
 const HOLD_S: f64 = 0.04;
-/// Then it fades with this time constant, s,
+/// Time constant with which it then fades, s.
 const FADE_S: f64 = 0.05;
-/// and ends below this strength: a motor that hardly turns only hums.
+/// Strength below which it ends: a motor that hardly turns only hums.
 const SILENT: f64 = 0.05;
 
-/// How strongly the motors of a pad should turn, each 0 to 1.
+/// Strength of the two motors of a pad, each 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rumble {
     /// By the force on the fingers: the small motor.
@@ -60,7 +60,7 @@ impl Knock {
         self.age_s += dt_s;
     }
 
-    /// How strong it is now, 0 to 1.
+    /// Present strength of the cue, 0 to 1.
     pub fn strength(&self) -> f64 {
         impact_strength(self.speed_m_s, self.age_s)
     }

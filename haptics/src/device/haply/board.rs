@@ -1,8 +1,8 @@
 //! One board on its own thread: serial ports wait, the servo must not.
 //!
-//! The thread writes the newest torques and reads the angles, as fast as the board answers. When the servo has sent nothing new
-//! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever. A board whose cable was pulled is
-//! found again when it is plugged in ([`super::open`]).
+//! The thread writes the newest torques and reads the angles, as fast as the board answers. Without new data from the
+//! servo for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever. A board whose cable
+//! was pulled is found again after it is plugged in ([`super::open`]).
 
 use super::fivebar::FiveBar;
 use super::gate::{Gate, Verdict};
@@ -21,10 +21,10 @@ pub const GUARD: Duration = Duration::from_millis(20);
 
 /// A board that is only late is waited for longer than this.
 const UNPLUGGED: Duration = Duration::from_micros(500);
-/// Between two questions to a line that has nobody at its other end.
+/// Pause between two questions to a line with nothing at its other end.
 const REST: Duration = Duration::from_millis(5);
 
-/// What is known of a board.
+/// Geometry and wiring of a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardModel {
     /// Id in every frame.
@@ -56,7 +56,7 @@ pub struct Answer {
     pub number: u64,
     /// Answers that were late, cut short, another board's, or where no hand can be.
     pub faults: u64,
-    /// Counts the places from which the hand set out anew: between two of them it has no speed.
+    /// Number of starting places of the hand: at each of them the hand has no known speed from before.
     pub beginnings: u64,
 }
 
@@ -101,7 +101,7 @@ impl Tally {
         self.faults[why as usize].load(Ordering::Relaxed)
     }
 
-    /// True since the board's cable was pulled, until it has been set up anew. It gets no torque meanwhile.
+    /// True since the board's cable was pulled, until the board is set up again. It gets no torque meanwhile.
     pub fn is_unplugged(&self) -> bool {
         self.unplugged.load(Ordering::Relaxed)
     }
@@ -111,8 +111,9 @@ impl Tally {
         self.is_unplugged() && self.rests.load(Ordering::Relaxed)
     }
 
-    /// Said by a person: the cable is in again and the arm lies where it rests, so the board may be set up. It takes the pose that it
-    /// is in then for its pose of rest, so nobody else can say this: from any other pose every place and every force would be off.
+    /// Confirms, by a person, that the cable is in again and the arm lies in its pose of rest, so that the board may be
+    /// set up. The board takes its present pose for the pose of rest: from any other pose every position and force
+    /// would be off.
     pub fn arm_rests(&self) {
         self.rests.store(true, Ordering::Relaxed);
     }
@@ -182,7 +183,7 @@ impl Board {
         self.tally.clone()
     }
 
-    /// Whether a process stands by that ends the torque when this one is killed.
+    /// True if a process stands by that ends the torque when this one is killed.
     pub fn is_outlived(&self) -> bool {
         self.is_guarded.load(Ordering::Relaxed)
     }
@@ -263,11 +264,11 @@ impl Worker {
             self.tally.add((verdict == Verdict::Refused).then(|| heard.err().unwrap_or(Fault::Impossible)));
             self.answers.write(answer);
             if let Some(line) = self.plug.turned(refused, Instant::now()) {
-                // Nothing that was known of the hand holds for what comes over another line.
+                // An earlier position of the hand does not hold for another line.
                 (self.turns, gate, angles) = (Turns::new(line, self.model.id), Gate::default(), None);
             }
         }
-        // Whatever happened: the last word is zero torque.
+        // The last word is zero torque in every case.
         self.turns.farewell();
     }
 

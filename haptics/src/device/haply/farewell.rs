@@ -1,8 +1,8 @@
 //! The last word to a board when this program was killed: a second process that outlives it.
 //!
-//! The firmware keeps its last torque for ever. A dropped [`super::Board`] and a hanging servo are dealt with in this process;
-//! SIGKILL is not. So a child process holds the board's port as its standard output and reads a pipe whose other end only this
-//! process holds: when the pipe ends, for whatever reason, the child writes [`farewell`].
+//! The firmware keeps its last torque for ever. A dropped [`super::Board`] and a hanging servo are dealt with in this
+//! process; SIGKILL is not. A child process therefore holds the board's port as its standard output and reads a pipe
+//! whose other end only this process holds. At the end of the pipe, for whatever reason, the child writes [`farewell`].
 
 use super::protocol::torque_frame;
 use std::io::{Read, Write};
@@ -13,8 +13,8 @@ use std::time::Duration;
 /// The argument that makes `touchstone` such a child; the board's id follows.
 pub const ARGUMENT: &str = "torque-guard";
 
-/// What ends every torque: a zero command, then zeros that complete a frame which was cut in two and otherwise read as resets,
-/// and a zero command again.
+/// Bytes that end every torque: a zero command, then zeros that complete a frame which was cut in two and otherwise
+/// read as resets, and a zero command again.
 pub fn farewell(id: u8) -> Vec<u8> {
     let zero = torque_frame(id, [0.0; 2]);
     [zero.as_slice(), [0; 10].as_slice(), zero.as_slice()].concat()

@@ -49,7 +49,7 @@ impl FiveBar {
         Some(couplers.try_inverse()? * driven)
     }
 
-    /// Motor torques, N m, that put `force_n` on whoever holds the tip: Jᵀ f. Zero at a singularity.
+    /// Motor torques, N m, that put `force_n` on the hand at the tip: Jᵀ f. Zero at a singularity.
     pub fn torques(&self, angles_rad: [f64; 2], force_n: Vec2) -> [f64; 2] {
         let torque = self.jacobian(angles_rad).map_or_else(Vec2::zeros, |j| j.transpose() * force_n);
         [torque.x, torque.y]

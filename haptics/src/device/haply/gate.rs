@@ -1,8 +1,8 @@
-//! Whether an answer can be the same hand's: no hand is anywhere else a millisecond later.
+//! Plausibility gate for answers of a board: no hand moves far within a millisecond.
 //!
-//! The protocol has no checksum: a reply with wrong angles and the right id looks like any other. What a hand cannot have done
-//! is refused. Only when answers agree among themselves for longer than the servo's watchdog waits is the hand really there
-//! (somebody has re-seated the board, the program was held up): by then the force is zero, and it comes back softly.
+//! The protocol has no checksum: a reply with wrong angles and the right id looks like any other. Motion that no hand
+//! can make is refused. A new place is accepted only after answers agree on it for longer than the servo's watchdog
+//! waits (the board was re-seated, or the program was held up). By then the force is zero, and it comes back softly.
 
 use crate::Vec2;
 use std::time::{Duration, Instant};
@@ -13,12 +13,12 @@ pub const FASTEST_M_S: f64 = 3.0;
 pub const SMALLEST_JUMP_M: f64 = 0.005;
 /// A silence excuses no longer way than a hand goes in this time.
 const LONGEST_EXCUSE: Duration = Duration::from_millis(5);
-/// So many answers must agree before a jump is believed; each that does not agree cancels as many that do,
+/// Number of agreeing answers needed before a jump is believed; each that disagrees cancels as many that agree.
 const AGREEING: u32 = 5;
-/// and for so long: longer than the servo's watchdog waits (20 ms).
+/// Least time over which they must agree: longer than the servo's watchdog waits (20 ms).
 const AGREEING_FOR: Duration = Duration::from_millis(25);
 
-/// What the gate says to an answer.
+/// Verdict of the gate on an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// A hand can have gone there.
@@ -57,7 +57,7 @@ impl Gate {
             Some(old) if is_possible(old.newest, tip_m, now) => {
                 Candidate { newest: (tip_m, now), since: old.since, answers: old.answers + 1 }
             }
-            // One false reply among many must not throw away what the others say.
+            // One false reply among many must not throw away the others.
             Some(old) if old.answers > AGREEING => Candidate { answers: old.answers - AGREEING, ..old },
             _ => fresh,
         };
@@ -71,7 +71,7 @@ impl Gate {
     }
 }
 
-/// Whether a hand can have gone from a place at a time to `tip_m` by `now`.
+/// True if a hand can have gone from a place at a time to `tip_m` by `now`.
 fn is_possible((from_m, at): (Vec2, Instant), tip_m: Vec2, now: Instant) -> bool {
     let excused_s = (now - at).min(LONGEST_EXCUSE).as_secs_f64();
     (tip_m - from_m).norm() <= SMALLEST_JUMP_M.max(FASTEST_M_S * excused_s)
@@ -141,7 +141,7 @@ mod tests {
             }
         }
         assert_eq!(refused, 25);
-        // Answers that jump to and fro agree on nothing.
+        // Answers that jump back and forth agree on nothing.
         for step in 0..1_000 {
             now += Duration::from_millis(1);
             let aside = Vec2::new(if step % 2 == 0 { 0.02 } else { -0.02 }, 0.03);

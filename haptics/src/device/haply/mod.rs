@@ -23,12 +23,12 @@ use plug::Connection;
 use std::path::Path;
 use std::time::Duration;
 
-/// How a device's plane lies in the world: its middle goes to the workspace's middle.
+/// Placement of a device's plane in the world: its middle goes to the workspace's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// A point of the device's workspace, m in the device's frame.
     pub device_m: Vec2,
-    /// Where that point is in the world, m.
+    /// Position of that point in the world, m.
     pub world_m: Vec2,
     /// World motion per device motion.
     pub scale: f64,
@@ -36,7 +36,7 @@ pub struct Placement {
 
 /// Time constant of the velocity estimate, s: encoder steps of 0.1 mm at 1 kHz would be 0.1 m/s of noise.
 const VELOCITY_SMOOTHING_S: f64 = 0.004;
-/// How long a read may take before the answer counts as lost.
+/// Longest wait of a read before the answer counts as lost.
 const READ_TIMEOUT: Duration = Duration::from_millis(5);
 
 /// Why a board could not be used.
@@ -49,7 +49,7 @@ pub enum HaplyError {
     Open {
         /// Its name.
         port: String,
-        /// What the system says.
+        /// Reason that the operating system reports.
         reason: String,
     },
     /// It opened and did not take the set-up.
@@ -57,7 +57,7 @@ pub enum HaplyError {
     Setup {
         /// Its name.
         port: String,
-        /// What the system says.
+        /// Reason that the operating system reports.
         reason: String,
     },
 }
@@ -71,11 +71,12 @@ pub fn ports() -> Vec<String> {
     names
 }
 
-/// Opens a port and sets a board up. With `program`, the `touchstone` program, a process that outlives this one stands by to
-/// end the torque ([`farewell`]); without it, or where that cannot be had, a killed program leaves the last torque.
+/// Opens a port and sets a board up. `program` is the `touchstone` program: with it a process that outlives this one
+/// stands by to end the torque ([`farewell`]). Without it, or if the process cannot be started, a killed program leaves
+/// the last torque.
 ///
-/// A board whose cable is pulled is found again at the same port, once a person has said that its arm lies where it rests
-/// ([`Tally::arm_rests`]); until its answers come anew it is one that does not answer.
+/// A board whose cable is pulled is found again at the same port after a person has confirmed the pose of rest
+/// ([`Tally::arm_rests`]). Until its answers come again it counts as a board that does not answer.
 pub fn open(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Board, HaplyError> {
     let connection = connect(port, model, program)?;
     let (again, with) = (port.to_owned(), program.map(Path::to_path_buf));
@@ -107,7 +108,7 @@ fn outlived(
     program: Option<&Path>,
 ) -> (serialport::TTYPort, Option<farewell::Outliving>) {
     let Some(program) = program else { return (line, None) };
-    // Where a port cannot be shared there is no guard; the board works all the same.
+    // A port that cannot be shared gets no guard; the board works all the same.
     let guard = line.set_exclusive(false).ok().and_then(|()| farewell::Outliving::start(program, port, id).ok());
     let _ = line.set_exclusive(true);
     (line, guard)
@@ -126,7 +127,7 @@ pub struct HaplyHand {
 }
 
 impl HaplyHand {
-    /// What two 2DIY boards can do.
+    /// Specification of two 2DIY boards.
     pub fn two_boards() -> DeviceSpec {
         DeviceSpec {
             name: "Two Haply 2DIY boards".to_owned(),

@@ -7,7 +7,7 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 
-/// What a board and the test share: answers are given when the test lets them go.
+/// State shared by a board and the test: answers are given when the test lets them go.
 #[derive(Default)]
 struct Bench {
     asked: AtomicU64,
@@ -63,7 +63,7 @@ fn pose(further: f32) -> [f32; 2] {
     [60.0 + further, 120.0 + further]
 }
 
-/// Where the tip is then, m in the device's frame.
+/// Position of the tip then, m in the device's frame.
 fn tip(further: f32) -> Vec2 {
     let [one, two] = pose(further).map(|degrees| f64::from(degrees).to_radians());
     FiveBar::V3.tip([two, one]).expect("within reach")
@@ -77,7 +77,7 @@ fn hand() -> (HaplyHand, [Arc<Bench>; 2]) {
         Board::start(Box::new(line), BoardModel::V3).expect("a thread")
     });
     for (board, bench) in boards.iter_mut().zip(&benches) {
-        // One answer at a time from the first on: whenever this thread goes on, exactly one question is open.
+        // One answer at a time from the first: whenever this thread continues, exactly one question is open.
         assert!(
             until(|| {
                 answer(bench, 0.0);

@@ -1,11 +1,12 @@
 //! A board whose cable is pulled and plugged in again.
 //!
-//! All of it happens on the board's own thread. A line that refuses every question at once has nobody at its other end: it is let go,
-//! because the system gives a port's name to the board that comes back only when nobody holds it any more, and with it the process
-//! that stands by. A board that was without power has lost where its arm is: it learns that from the pose in which it is set up. So it
-//! stays without torque until a person says that the arm lies where it rests ([`Tally::arm_rests`]); from then on the port is tried a
-//! few times a second, for as long as the hand is there. A new line is a new beginning: until its answers have agreed on where the hand
-//! is the board gets zero torque.
+//! All of it happens on the board's own thread. A line that refuses every question at once has no board at its other
+//! end. It is closed, and so is the process that stands by: the system gives the port's name to the returning board
+//! only when no process holds it any more. A board that was without power has lost the position of its arm and takes it
+//! from the pose in which it is set up. The board therefore stays without torque until a person confirms that the arm
+//! lies in its pose of rest ([`Tally::arm_rests`]). From then on the port is tried a few times a second for as long as
+//! the hand exists. The gate starts again with a new line: until its answers agree on the position of the hand, the
+//! board gets zero torque.
 
 use super::board::Tally;
 use super::farewell::Outliving;
@@ -15,8 +16,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// So many questions in a row that were refused at once are a pulled cable: with the rests between them some 50 ms, long after the
-/// watchdog has set the force to zero.
+/// Number of questions, refused at once in a row, that count as a pulled cable. With the rests between them that is
+/// some 50 ms, long after the watchdog has set the force to zero.
 const REFUSED: u32 = 10;
 /// Between two tries to open the port again.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -28,7 +29,7 @@ pub(super) struct Connection {
     pub guard: Option<Outliving>,
 }
 
-/// Opens a port again; `None` while nobody is there.
+/// Opens a port again; `None` while no board is there.
 pub(super) type Connect = Box<dyn FnMut() -> Option<Connection> + Send>;
 
 /// Knows whether the cable is in.
@@ -38,9 +39,9 @@ pub(super) struct Plug {
     /// Nothing for lines that cannot be opened again.
     connect: Option<Connect>,
     refused: u32,
-    /// When the port is tried next; nothing while the cable is in.
+    /// Time of the next try of the port; `None` while the cable is in.
     next_try: Option<Instant>,
-    /// Where a person says that the arm rests.
+    /// Shared counters in which a person confirms that the arm rests.
     tally: Tally,
 }
 
@@ -51,7 +52,7 @@ impl Plug {
         Self { guard, is_guarded, connect, refused: 0, next_try: None, tally }
     }
 
-    /// Whether a process stands by that ends the torque when this one is killed; read from any thread.
+    /// True if a process stands by that ends the torque when this one is killed; read from any thread.
     pub fn is_guarded(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.is_guarded)
     }
@@ -78,7 +79,7 @@ impl Plug {
     }
 
     fn pulled(&mut self, now: Instant) -> Box<dyn Line> {
-        // It holds the port, too, and has nobody to say farewell to.
+        // It holds the port, too, and has no board to say farewell to.
         self.guard = None;
         self.is_guarded.store(false, Ordering::Relaxed);
         self.next_try = Some(now + AGAIN);

@@ -1,4 +1,4 @@
-//! The hAPI wire format: what goes to a board and what comes back.
+//! The hAPI wire format: commands to a board and its replies.
 //!
 //! Host → board `[command][device id][bytes…][f32 little endian…]`, no checksum, no length. Board → host only after a write:
 //! `[device id][f32 analog…][f32 encoder degrees in port order]`.
@@ -14,7 +14,7 @@ const WRITE: u8 = 2;
 /// Motors and encoders sit on ports 1 and 2: mask bit = port − 1.
 const PORTS_1_AND_2: u8 = 0b11;
 
-/// Which direction counts positive.
+/// Direction of rotation that counts positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// 0 on the wire.

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// What the emulated board does wrong.
+/// Fault of the emulated board.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fault {
     None,
@@ -27,10 +27,10 @@ enum Fault {
     Late,
 }
 
-/// Where the encoders stand unless told otherwise, degrees in port order.
+/// Encoder angles unless told otherwise, degrees in port order.
 const POSE: [f32; 2] = [60.0, 120.0];
 
-/// What test and emulator share.
+/// State shared by the test and the emulator.
 #[derive(Default)]
 struct Shared {
     /// Every torque so far, N m in port order.
@@ -121,7 +121,7 @@ impl Emulator {
 fn pair(fault: Fault) -> (Board, Emulator) {
     let (mut host, far) = TTYPort::pair().expect("the system has pseudo-terminals");
     host.set_timeout(READ_TIMEOUT).expect("time-out");
-    // A pseudo-terminal forgets what was not read when its host end closes; a USB line does not. So it stays open.
+    // The host end stays open: a pseudo-terminal forgets unread bytes when its host end closes; a USB line does not.
     let open = host.try_clone_native().expect("a second handle");
     let mut emulator = Emulator::start(far, fault);
     emulator.open = Some(open);

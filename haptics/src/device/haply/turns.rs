@@ -1,9 +1,9 @@
-//! Questions and answers on a board's line: which answer belongs to which question.
+//! Questions and answers on a board's line: assigns each answer to its question.
 //!
-//! The protocol numbers nothing. A reply that comes after its question was given up would be taken for that of the next question,
-//! and so on for ever: every position one turn old. So whatever goes wrong, the turns are put in step again: questions without an
-//! answer are counted, and the next turn reads until all of them have been answered or the line falls silent. Its own answer is
-//! the last one.
+//! The protocol numbers nothing. A reply that comes after its question was given up would be taken for that of the next
+//! question, and so on for ever: every position one turn old. The turns are therefore put in step again after every
+//! fault: unanswered questions are counted, and the next turn reads until all of them have been answered or the line
+//! falls silent. Its own answer is the last one.
 
 use super::board::Fault;
 use super::protocol::{REPLY_BYTES, read_reply, torque_frame};
@@ -17,10 +17,10 @@ impl<T: Read + Write + Send> Line for T {}
 const MOST_OWED: usize = 256;
 /// No turn listens to more than this: a line that never falls silent is no board.
 const MOST_BYTES: usize = 2 * MOST_OWED * REPLY_BYTES;
-/// So many turns in a row may end with fewer replies than are owed before the others count as lost.
+/// Number of turns in a row that may end with fewer replies than owed before the missing ones count as lost.
 const PATIENCE: u32 = 2;
 
-/// What a turn has heard.
+/// Bytes that a turn has read, and their interpretation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Heard {
     /// The last bytes on the line.
@@ -28,7 +28,7 @@ struct Heard {
     bytes: usize,
     /// Nothing more came.
     silent: bool,
-    /// Exactly what was owed, and the last of it is a reply by its looks.
+    /// True if exactly the owed bytes came, and the last of them look like a reply.
     settled: bool,
 }
 
@@ -44,12 +44,12 @@ pub(super) struct Turns {
 impl Turns {
     /// A conversation that has not begun. The line must have a read time-out of a few milliseconds.
     pub fn new(line: Box<dyn Line>, id: u8) -> Self {
-        // Answers to whoever used the port before may lie in it, and nobody knows how many.
+        // Answers to an earlier user of the port may lie in it, and their number is unknown.
         Self { line, id, owed: MOST_OWED, doubts: 0 }
     }
 
-    /// Sends torques in port order, N m, and takes the encoder angles that answer them, degrees in port order; an error for
-    /// anything but a whole reply of this board to this very frame.
+    /// Sends torques in port order, N m, and returns the encoder angles of the reply, degrees in port order. Anything
+    /// but a whole reply of this board to this very frame is an error.
     pub fn turn(&mut self, torques_nm: [f32; 2]) -> Result<[f32; 2], Fault> {
         self.line.write_all(&torque_frame(self.id, torques_nm)).map_err(|_| Fault::Late)?;
         let in_step = self.owed == 0;
@@ -71,13 +71,13 @@ impl Turns {
         read_reply(self.id, &heard.last).filter(|_| believed).ok_or(Fault::Foreign)
     }
 
-    /// Reads what is owed, or until the line is silent.
+    /// Reads the owed replies, or until the line is silent.
     fn listen(&mut self) -> Heard {
         let mut heard = Heard::default();
         let mut some = [0; 64];
         let expected = self.owed * REPLY_BYTES;
         while heard.bytes < MOST_BYTES {
-            // Never beyond what is owed, as long as it is known: what comes after it belongs to a later turn.
+            // Never beyond the owed bytes, as long as they are known: later ones belong to a later turn.
             let most = expected.saturating_sub(heard.bytes).clamp(1, some.len());
             let Some(count) = self.line.read(&mut some[..most]).ok().filter(|count| *count > 0) else {
                 heard.silent = true;
@@ -97,7 +97,7 @@ impl Turns {
         heard
     }
 
-    /// Counts what is still owed after a silence.
+    /// Counts the replies still owed after a silence.
     fn forgive(&mut self, replies: usize) {
         if replies == 0 {
             return;

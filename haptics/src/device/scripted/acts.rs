@@ -1,4 +1,4 @@
-//! What an operator is told to do, act by act: lessons write their demonstrations as such a list.
+//! Acts that an operator is told to do, one after the other: lessons write their demonstrations as such a list.
 
 use super::builder::{Builder, SPARE_PINCH};
 use super::plan::{Goal, Job, Spin};
@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Spare opening of the fingers around an object, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
-/// Height that objects are carried above what stands in the way, m.
+/// Height that objects are carried above any obstacle, m.
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Modulation of the speed of an even turn by a steady hand, relative.
 const UNEVENNESS: f64 = 0.03;
@@ -81,7 +81,7 @@ pub enum Act {
 }
 
 impl Act {
-    /// What a world lacks for it, in one sentence; `None` when it can be done.
+    /// Requirement of the act that the world does not meet, in one sentence; `None` if the act is possible.
     pub fn lacks(&self, world: &World) -> Option<String> {
         let missing = |name: &str| (block(world, name).is_none()).then(|| format!("there is no block `{name}`"));
         let without = |there: bool, what: &str| (!there).then(|| format!("there is no {what}"));
@@ -100,7 +100,7 @@ impl Act {
         }
     }
 
-    /// Numbers that nobody can do, in one sentence; `None` when all is well.
+    /// First number outside its possible range, in one sentence; `None` if all are within range.
     pub fn wrong(&self) -> Option<String> {
         let within = |name: &str, value: f64, least: f64, most: f64| {
             (!(least..=most).contains(&value)).then(|| format!("`{name}` is {value}, not between {least} and {most}"))
@@ -133,7 +133,7 @@ fn shaped(world: &World, shape: Shape) -> bool {
     world.blocks.iter().any(|block| block.shape == shape)
 }
 
-/// Where things will be when the acts so far are done.
+/// Predicted places of the objects after the acts so far.
 pub(super) struct Places<'a> {
     world: &'a World,
     state: &'a State,
@@ -319,11 +319,11 @@ impl Spin {
         (self.from_rad + even + beside, even_rate + beside_rate)
     }
 
-    /// Where the hand is wanted, and its rate.
+    /// Goal of the hand, and its rate.
     pub(super) fn goal(&self, time_s: f64, span_s: f64) -> (Goal, Goal) {
         let (angle, rate) = self.at(time_s, span_s);
         let (sin, cos) = angle.sin_cos();
-        // Whoever aims badly pulls off the circle, the same way all round.
+        // A badly aimed hand pulls off the circle, the same way all round.
         let share = (FRAC_PI_2 * 2.0 * (time_s / span_s.max(1e-9)).clamp(0.0, 1.0)).sin();
         let center_m = self.center_m + Vec2::new(cos, sin) * (self.radius_m + self.pull_m * share);
         let rates = Goal { center_m: Vec2::new(-sin, cos) * (self.radius_m * rate), aperture_m: 0.0, pinch_n: 0.0 };

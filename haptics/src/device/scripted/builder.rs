@@ -10,11 +10,11 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// Spare opening of the fingers around an object, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
-/// Height that objects are carried above what stands in the way, m.
+/// Height that objects are carried above any obstacle, m.
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Share of the reaction time that passes between a miss and its correction: the eye leads the hand.
 const CORRECTION_LAG: f64 = 0.6;
-/// Pinch on something heavy, relative to the least that holds it: nobody's pinch is steady.
+/// Pinch on something heavy, relative to the least that holds it: no pinch is steady.
 pub(super) const SPARE_PINCH: f64 = 2.2;
 /// A crushing pinch, relative to the usual one.
 const CRUSH: f64 = 3.5;
@@ -30,12 +30,12 @@ pub(super) struct Builder<'a> {
     habits: &'a mut StdRng,
     holds: Option<usize>,
     placed: Option<usize>,
-    /// Whether the list may grow: only before the servo runs.
+    /// True while the list may grow: only before the servo runs.
     pub growing: bool,
 }
 
 impl<'a> Builder<'a> {
-    /// Goes on from `at` at `now_s`.
+    /// Continues from `at` at `now_s`.
     pub fn new(
         phases: &'a mut Vec<Phase>,
         now_s: f64,
@@ -47,17 +47,17 @@ impl<'a> Builder<'a> {
         Self { phases, now_s, at, skill, rng, habits, holds: None, placed: None, growing: false }
     }
 
-    /// Where the hand will be when the movements so far are done.
+    /// Goal of the hand at the end of the movements so far.
     pub(super) fn at(&self) -> Goal {
         self.at
     }
 
-    /// Who does it.
+    /// Skill of the operator.
     pub(super) fn skill(&self) -> Skill {
         self.skill
     }
 
-    /// A number that every operator draws anew.
+    /// Random number, different for every operator.
     pub(super) fn between(&mut self, least: f64, most: f64) -> f64 {
         self.rng.random_range(least..most)
     }
@@ -89,7 +89,7 @@ impl<'a> Builder<'a> {
         self.reach(usual_s, self.at);
     }
 
-    /// When the movements so far are done, s.
+    /// End time of the movements so far, s.
     pub(super) fn now_s(&self) -> f64 {
         self.now_s
     }
@@ -100,7 +100,7 @@ impl<'a> Builder<'a> {
         self.push_for(seconds + extra_s, Move::Reach { from: self.at, to: self.at });
     }
 
-    /// How far beside its goal this operator ends, m, as skill has it: nothing for a steady hand.
+    /// Random miss of this operator beside its goal, m, as its skill has it; zero for a steady hand.
     pub(super) fn scatter_m(&mut self) -> f64 {
         if self.skill.aim_error_m == 0.0 {
             return 0.0;
@@ -185,7 +185,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Opens the fingers where they are, goes up and waits until what fell has come to rest.
+    /// Opens the fingers where they are, goes up and waits until a fallen object has come to rest.
     pub fn back_off(&mut self, width_m: f64, clear_y_m: f64) {
         self.reach(0.3, Goal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
         let above = Vec2::new(self.at.center_m.x, self.at.center_m.y.max(clear_y_m));
@@ -212,7 +212,7 @@ impl<'a> Builder<'a> {
         };
         let held = Goal { aperture_m: width_m, pinch_n, ..around };
         self.reach(0.5, held);
-        // Leaning on it a little before lifting is what people do; it also separates holding from lifting.
+        // People lean on it a little before lifting; it also separates holding from lifting.
         let lean_m = self.rng.random_range(0.0002..0.0006);
         let leaning = Goal { center_m: held.center_m - Vec2::new(0.0, lean_m), ..held };
         self.reach(0.25, leaning);
@@ -245,7 +245,7 @@ impl<'a> Builder<'a> {
         self.placed = None;
     }
 
-    /// How far beside its place a block is put, m: enough to be seen, not enough to fall.
+    /// Distance of a block beside its place, m: enough to be seen, not enough to fall.
     fn beside_m(&mut self, job: &Job) -> f64 {
         if job.mistake != Some(Mistake::MisalignedStack) {
             return 0.0;
@@ -294,7 +294,7 @@ impl<'a> Builder<'a> {
     fn turn(&mut self, world: &World, from_rad: f64, turns: f64, grasp: Goal) -> f64 {
         let Some(crank) = &world.crank else { return from_rad };
         let to_rad = from_rad + turns * std::f64::consts::TAU;
-        // Whoever aims badly also pulls off the circle.
+        // A badly aimed hand also pulls off the circle.
         let pull_m = self.rng.random_range(0.0008..0.0016) + 0.3 * self.skill.aim_error_m;
         let (center_m, radius_m) = (crank.center_m, crank.radius_m);
         self.push(1.1 + 1.6 * turns.abs(), Move::Turn { center_m, radius_m, from_rad, to_rad, pull_m, grasp });

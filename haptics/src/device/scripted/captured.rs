@@ -1,4 +1,4 @@
-//! What the scripted operator does with a needle, a barrel and a switch: the movements that show what they are like.
+//! Movements of the scripted operator with a needle, a barrel and a switch that reveal their properties.
 
 use super::Mistake;
 use super::builder::Builder;
@@ -7,7 +7,7 @@ use crate::Vec2;
 use crate::device::HandImpedance;
 use crate::world::{Membrane, Shape, State, World};
 
-/// Spread of an expert's pinch: who varies more holds more firmly.
+/// Spread of an expert's pinch: a hand that varies more holds more firmly.
 const EXPERT_SPREAD: f64 = 0.06;
 /// Spare opening around hub, barrel and knob, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
@@ -44,7 +44,7 @@ impl Builder<'_> {
         let index = world.blocks.iter().position(|b| b.shape == Shape::Needle)?;
         let (needle, start) = (&world.blocks[index], state.bodies[index].center_m);
         let point_below_m = Vec2::new(0.0, 0.5 * needle.height_m);
-        // Held by its upper third: the lower part is what goes in.
+        // Held by its upper third: the lower part goes in.
         let grip = Vec2::new(0.0, needle.height_m / 6.0);
         let open = Goal { center_m: start + grip, aperture_m: needle.width_m + CLEARANCE_M, pinch_n: 0.0 };
         self.aim(0.9, Goal { center_m: open.center_m + Vec2::new(0.0, 0.010), ..open });
@@ -56,13 +56,13 @@ impl Builder<'_> {
         Some((held, [point_below_m, grip]))
     }
 
-    /// How deep the hand goes until the sheet gives way, m: deeper than the needle, because the arms give; what they give comes back
-    /// when the sheet does.
+    /// Depth of the hand at which the membrane is pierced, m. It is deeper than the needle because the arms yield;
+    /// their deflection is released at the puncture.
     pub(super) fn piercing_depth_m(membrane: &Membrane) -> f64 {
         membrane.law.puncture_depth_m() + 0.5 * membrane.law.puncture_n / HandImpedance::default().stiffness_n_m
     }
 
-    /// Weighs the barrel, finds out what holds it, squeezes its wall, and puts it back.
+    /// Weighs the barrel, finds out its constraint, squeezes its wall, and puts it back.
     pub fn examine_barrel(&mut self, world: &World, state: &State, mistakes: &[Mistake]) {
         let Some(index) = world.blocks.iter().position(|b| b.shape == Shape::Barrel) else { return };
         let (barrel, start) = (&world.blocks[index], state.bodies[index].center_m);
@@ -72,7 +72,8 @@ impl Builder<'_> {
         let over_m = (0.5 * (barrel.height_m + world.pad.face_m) + RIM_M).max(0.020);
         self.aim(0.9, up(over_m, &open));
         self.reach(0.7, open);
-        // Heavier than it looks: more than twice the least that lifts it, because nobody's pinch is steady; more where it varies.
+        // Heavier than it looks: more than twice the least pinch that lifts it, because no pinch is steady; more if it
+        // varies.
         let spare = 2.2 + 10.0 * (self.skill().pinch_spread - EXPERT_SPREAD).max(0.0);
         let least_n = 0.5 * barrel.mass_kg * world.gravity_m_s2 / barrel.finger_friction.max(0.05);
         let usual_n = self.choose_pinch((spare * least_n).max(self.skill().pinch_n), 0.1);
@@ -88,7 +89,7 @@ impl Builder<'_> {
             let away = (start - cable.anchor_m).x.signum();
             let far = lifted.center_m.y - give_m - cable.anchor_m.y;
             let reach_m = (cable.length_m.powi(2) - far.powi(2)).max(0.0).sqrt();
-            // Whoever is not sure of the hand pulls until it shows.
+            // An operator unsure of the hand pulls until the resistance shows.
             let until_m = 0.6 * self.skill().aim_error_m;
             let x = cable.anchor_m.x + away * (reach_m + until_m + self.between(0.0015, 0.0025));
             self.reach(1.8, Goal { center_m: Vec2::new(x, lifted.center_m.y), ..lifted });
@@ -106,7 +107,7 @@ impl Builder<'_> {
         self.reach(0.8, up(over_m, &open));
     }
 
-    /// Pushes the switch over, so many times, to and fro, with the knob between the open fingers.
+    /// Pushes the switch over and back, `times` throws in all, with the knob between the open fingers.
     pub fn throw_switch(&mut self, world: &World, state: &State, times: usize) {
         let Some(switch) = &world.switch else { return };
         let ends = [switch.curve.points.first(), switch.curve.points.last()].map(|p| p.map_or(0.0, |p| p.at_m));

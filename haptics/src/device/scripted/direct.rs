@@ -1,5 +1,5 @@
-//! The scripted operator at what is driven directly, without fingers: a spring and a damper between where the coordinate is wanted and
-//! where it is. What comes out is the motion and the drive that it took, as a recording of a mechanism has them.
+//! The scripted operator at a directly driven mechanism, without fingers: a spring and a damper between the wanted and
+//! the actual coordinate. The result is the motion and its drive, as in a recording of a mechanism.
 
 use super::noise::{Tremor, Wander};
 use crate::law::{Coordinate, Memories, Motion, drive_force, inertia, step_coordinate_with};
@@ -12,10 +12,11 @@ use rand_distr::{Distribution, Normal};
 /// Longest step, s, and in radians of the hand's own swing.
 const LONGEST_STEP_S: f64 = 2e-4;
 const STEP_RAD: f64 = 0.05;
-/// How fast a hand swings with what it holds, rad/s, at least; and how many times faster than the motion that it follows.
+/// Least natural frequency of a hand with the load it holds, rad/s; [`AHEAD`] is its least ratio to that of the motion
+/// it follows.
 const SLOWEST_RAD_S: f64 = 30.0;
 const AHEAD: f64 = 12.0;
-/// What resists pulls the hand off by at most this share of the way.
+/// Largest deflection of the hand by the resistance, as a share of the way.
 const YIELD: f64 = 0.05;
 /// Damping ratio of the hand.
 const DAMPED: f64 = 0.75;
@@ -25,17 +26,17 @@ const TREMBLES: f64 = 7e-4;
 /// The wish to end is looked at so often, samples.
 const LOOKS: usize = 200;
 
-/// What is to be done with a mechanism.
+/// Experiment to be done with a mechanism.
 pub struct Pull<'a> {
-    /// What is driven.
+    /// Mechanism that is driven.
     pub mechanism: &'a Mechanism,
-    /// How long, s.
+    /// Duration, s.
     pub seconds: f64,
     /// Samples a second.
     pub rate_hz: f64,
-    /// Where the coordinate is wanted at a time, m or rad.
+    /// Wanted coordinate at a time, m or rad.
     pub wanted: &'a dyn Fn(f64) -> f64,
-    /// How far it goes to either side, m or rad.
+    /// Largest excursion to either side, m or rad.
     pub half_range: f64,
     /// Its fastest speed, m/s or rad/s.
     pub fast: f64,
@@ -177,7 +178,7 @@ mod tests {
         let seen = pull(&cart, &wanted).run(3, &|_| true).expect("it moves").expect("not ended");
         let worst = seen.iter().map(|p| (p.position - wanted(p.time_s)).abs()).fold(0.0, f64::max);
         assert!(worst < 0.025 && worst > 1e-4, "a hand follows, and not exactly: {worst}");
-        // Energy: what goes in is in the cart or went into friction.
+        // Energy: the input is in the cart or went into friction.
         let (mut put_in, mut lost) = (0.0, 0.0);
         for pair in seen.windows(2) {
             let way = pair[1].position - pair[0].position;

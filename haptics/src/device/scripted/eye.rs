@@ -1,4 +1,4 @@
-//! What the operator sees, late: the world as it was one reaction time ago.
+//! Delayed sight of the operator: the world as it was one reaction time ago.
 
 use crate::Vec2;
 use crate::world::{MAX_BLOCKS, State};
@@ -13,9 +13,9 @@ const LONGEST_DELAY_S: f64 = 0.6;
 /// One look at the world.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
-    /// When it was, s on the operator's clock.
+    /// Time of the frame, s on the operator's clock.
     pub time_s: f64,
-    /// How far the plan was then, s.
+    /// Time reached in the plan then, s.
     pub plan_s: f64,
     /// Middle between the tips, m.
     pub hand_m: Vec2,

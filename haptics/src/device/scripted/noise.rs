@@ -1,4 +1,4 @@
-//! What no hand can suppress: tremor, and a pinch that wanders.
+//! Involuntary motion of every hand: tremor, and a pinch that wanders.
 
 use crate::Vec2;
 use rand::RngExt;
@@ -24,7 +24,7 @@ impl Tremor {
     }
 }
 
-/// Slow relative wander of the pinch force: nobody holds a force constant.
+/// Slow relative wander of the pinch force: no hand holds a force constant.
 pub(super) struct Wander {
     waves: [(f64, f64, f64); 3],
 }

@@ -1,34 +1,36 @@
-//! Move and wait (Ferrell 1965): over a slow line people move, stop until the picture shows what became of it, and go on. The operator
-//! that does so ends each movement where it is planned to end, and begins the next when it has *seen* the hand there.
+//! Move and wait (Ferrell 1965): over a slow line people move, stop until the picture shows the result, and continue.
+//! The operator that does so ends each movement where it is planned to end, and begins the next when it has *seen* the
+//! hand there.
 
 use super::eye::Frame;
 use super::plan::Goal;
 
 /// The hand counts as where it was wanted within this, m.
 const THERE_M: f64 = 3e-3;
-/// So far the fingers may be further open than wanted, m.
+/// Largest opening of the fingers beyond the wanted one, m.
 const OPEN_M: f64 = 2e-3;
 /// A hand that moves less than this from one look to the one before it counts as at rest, m.
 const STILL_M: f64 = 2e-4;
-/// Share of the wanted pinch that must be seen; the rest gives in pads and springs.
+/// Share of the wanted pinch that must be seen; pads and springs take up the rest.
 const PINCHED: f64 = 0.45;
 /// A grip below this is none, N.
 const LOOSE_N: f64 = 0.05;
-/// A press is steady while the force stays this near to what it was, N, for so long, s. Over a slow line the far fingers weigh some
-/// kilograms and swing on what they press.
+/// Largest change of the force, N, for a time, s, in a steady press. Over a slow line the far fingers weigh some
+/// kilograms and swing on the pressed surface.
 const STEADY_N: f64 = 0.25;
 const STEADY_S: f64 = 0.6;
-/// Who has left what is pressed for no longer than this may come back to it, s.
+/// Time after leaving a pressed surface within which the hand may come back to it, s.
 const BOUNCES_S: f64 = 1.2;
 /// Less is no press, N.
 const PRESSES_N: f64 = 0.15;
-/// Who presses wants the hand below what is pressed: the arms' springs give by so much at the most, m.
+/// Largest distance of the hand from the goal while it presses, m: the goal is below the pressed surface, and the arms'
+/// springs yield.
 const PRESSED_M: f64 = 1e-2;
-/// Whoever has waited so long goes on, s; for a press to get steady people wait longer.
+/// Longest wait before the operator continues, s; people wait longer for a press to get steady.
 const LONGEST_S: f64 = 4.0;
 const LONGEST_PRESS_S: f64 = 12.0;
 
-/// What a waiting operator knows.
+/// State of a waiting operator.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Patience {
     waited_s: f64,
@@ -51,7 +53,7 @@ impl Default for Steady {
     }
 }
 
-/// What was last seen and thought about.
+/// Newest frame that the operator has seen and considered.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     frame: Glance,
@@ -86,7 +88,8 @@ impl Patience {
         }
     }
 
-    /// How far the plan may go on in the next `dt_s`: not at all where a movement has ended (at `ended`) that was not seen to end.
+    /// Advance of the plan in the next `dt_s`, s: zero at the end of a movement (at `ended`) that the operator has not
+    /// seen to end.
     pub fn allow(&mut self, ended: Option<Goal>, dt_s: f64) -> f64 {
         let Some(goal) = ended else { return dt_s };
         let presses = self.presses(&goal);
@@ -100,7 +103,7 @@ impl Patience {
         dt_s
     }
 
-    /// Whether open fingers press there, or have just bounced off what they press.
+    /// True if open fingers press there, or have just bounced off.
     fn presses(&self, goal: &Goal) -> bool {
         let Some(seen) = self.seen else { return false };
         let there = (goal.center_m - self.steady.pressed_m).norm() < PRESSED_M;
@@ -109,7 +112,7 @@ impl Patience {
 }
 
 impl Seen {
-    /// Whether the hand is seen within `near_m` of the goal, gripping as it should, and at rest.
+    /// True if the hand is seen within `near_m` of the goal, gripping as it should, and at rest.
     fn shows(&self, goal: &Goal, near_m: f64) -> bool {
         let Glance { hand_m, apart_m, grip_n, .. } = self.frame;
         let gripped = if goal.pinch_n > 0.0 { grip_n > PINCHED * goal.pinch_n } else { grip_n < LOOSE_N };

@@ -1,5 +1,5 @@
-//! What the scripted operator wants to do when: a list of minimum-jerk movements (Flash & Hogan 1985), made ahead, and made anew
-//! from where the hand is when the operator sees that a block was lost.
+//! Plan of the scripted operator: a list of minimum-jerk movements (Flash & Hogan 1985). It is made ahead, and made
+//! again from the position of the hand when the operator sees that a block was lost.
 
 use super::acts::{Act, Places};
 use super::builder::Builder;
@@ -13,12 +13,12 @@ use rand::rngs::StdRng;
 const LOST_M: f64 = 0.005;
 /// A block that stands farther from its place than this is put there again, m.
 const MISPLACED_M: f64 = 0.0025;
-/// After so many failures with one block the operator goes on to the next.
+/// Number of failures with one block after which the operator continues with the next.
 const MOST_ATTEMPTS: u8 = 4;
-/// Movements that one carry takes at the most, with its corrections.
+/// Largest number of movements in one carry, with its corrections.
 const PER_CARRY: usize = 32;
 
-/// Where the pair of fingers is wanted.
+/// Goal of the pair of fingers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     /// Middle between the tips, m.
@@ -64,11 +64,11 @@ pub(super) struct Spin {
     pub to_rad: f64,
     /// Time to come to its speed, and to leave it, s.
     pub ramp_s: f64,
-    /// How far off the circle the hand pulls, m.
+    /// Distance that the hand pulls off the circle, m.
     pub pull_m: f64,
     /// Modulation of the speed by each of the waves, relative.
     pub uneven: f64,
-    /// Frequency, Hz, and phase of what the speed varies with.
+    /// Frequency, Hz, and phase of the speed's variations.
     pub waves: [(f64, f64); 2],
     pub grasp: Goal,
 }
@@ -79,7 +79,7 @@ impl Move {
         !matches!(self, Self::Reach { from, to } if from == to)
     }
 
-    /// Where it ends.
+    /// Goal at the end of the movement.
     fn end(&self) -> Goal {
         match *self {
             Self::Reach { to, .. } => to,
@@ -108,19 +108,19 @@ pub(super) struct Phase {
 pub(super) struct Job {
     /// Its index in the world.
     pub block: usize,
-    /// Where its centre is to go, m.
+    /// Target position of its centre, m.
     pub to_m: Vec2,
     /// Height at which nothing is in the way, m.
     pub clear_y_m: f64,
     /// Height from which the fingers come down on it, and to which they go afterwards, m.
     pub above_y_m: f64,
-    /// Width that the world gives it between the pads, m.
+    /// Width of the block between the pads in the world, m.
     pub width_m: f64,
     /// Least pinch that holds it, N per finger.
     pub least_pinch_n: f64,
-    /// How long it is held at that height, s, beside the usual rest, where somebody told that; absent where nobody told anything.
+    /// Time for which it is held at that height, s, beside the usual rest; absent if no time was stated.
     pub hold_s: Option<f64>,
-    /// What goes wrong with it.
+    /// Mistake made with it, if any.
     pub mistake: Option<Mistake>,
     attempts: u8,
 }
@@ -154,9 +154,9 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Turn the crank if there is one, pierce the membrane, throw the switch, examine the barrel, else unstack and restack the
-    /// blocks, else look around. `rng` draws what every operator
-    /// varies, `habits` what only some levels of skill do.
+    /// Turn the crank if there is one, pierce the membrane, throw the switch, examine the barrel, else unstack and
+    /// restack the blocks, else look around. `rng` draws the variations of every operator, `habits` those of some
+    /// levels of skill only.
     pub fn for_world(
         world: &World,
         state: &State,
@@ -191,7 +191,7 @@ impl Plan {
         plan.with_room()
     }
 
-    /// Does what it is told, act by act; what the world lacks is left out.
+    /// Does a list of acts, one by one; acts that are impossible in the world are left out.
     pub fn of_acts(
         world: &World,
         state: &State,
@@ -223,7 +223,7 @@ impl Plan {
         self
     }
 
-    /// Acts on what was seen of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
+    /// Acts on the sight of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
     pub fn notice(&mut self, blocks: &[Block], seen: &Frame, now_s: f64) {
         if let Some(job) = self.retry {
             if now_s >= self.duration_s() {
@@ -292,7 +292,7 @@ impl Plan {
         for (index, job) in self.jobs.iter().enumerate().skip(first) {
             if let (Some((center_m, angle_rad)), Some(block)) = (seen.bodies.get(job.block), blocks.get(job.block)) {
                 let (sin, cos) = angle_rad.sin_cos();
-                // A block that lies on its side is taken by what is its width now.
+                // A block that lies on its side is taken by its present width.
                 let width_m = block.width_m * cos.abs() + block.height_m * sin.abs();
                 builder.carry(index, job, *center_m, width_m);
             }
@@ -300,7 +300,7 @@ impl Plan {
         builder.wait(1.0);
     }
 
-    /// Where the movement ends that ends within the next `dt_s`, when another follows it.
+    /// Final goal of the movement that ends within the next `dt_s`, if another one that moves follows it.
     pub fn ends(&self, now_s: f64, dt_s: f64) -> Option<Goal> {
         let (phase, next) = (self.phases.get(self.current)?, self.phases.get(self.current + 1)?);
         (now_s + dt_s >= phase.end_s && next.movement.moves()).then(|| phase.movement.end())

@@ -1,4 +1,4 @@
-//! A motion that somebody else has thought out, for the scripted hand to follow: where the pair of fingers is wanted, at even times.
+//! A motion planned elsewhere for the scripted hand to follow: the goals of the pair of fingers, at even times.
 
 use super::plan::Goal;
 

@@ -1,7 +1,8 @@
-//! How well a scripted operator does it, and what it does wrong on purpose.
+//! Skill of a scripted operator, and its deliberate mistakes.
 
-/// How well the operator does it. [`Skill::default`] is a steady hand that follows its plan without looking: what calibration
-/// recordings are made with. The four levels are people: they aim, miss, look, correct, and notice what they dropped.
+/// Skill of the operator. [`Skill::default`] is a steady hand that follows its plan without looking; calibration
+/// recordings are made with it. The four levels are people: they aim, miss, look, correct, and notice what they
+/// dropped.
 ///
 /// The figures of the levels are orders of magnitude, set so that the usual measures (time, path, peak force) come out in order;
 /// they are no data of real trainees.
@@ -15,11 +16,11 @@ pub struct Skill {
     pub pinch_n: f64,
     /// Relative spread of the pinch force from grasp to grasp (standard deviation).
     pub pinch_spread: f64,
-    /// How much the pinch force wanders while it is held, relative to a steady hand.
+    /// Wander of the pinch force while it is held, relative to a steady hand.
     pub wander: f64,
-    /// Where a reach in the air ends before it is corrected: standard deviation per axis, m.
+    /// Standard deviation of the end of a reach in the air before it is corrected, m per axis.
     pub aim_error_m: f64,
-    /// How much too far it goes on the average, relative to its length.
+    /// Mean overshoot of a reach, relative to its length.
     pub overshoot: f64,
     /// Time from an event to the reaction to its sight, s, up to 0.6; `None`: does not look, only follows the plan.
     pub reaction_s: Option<f64>,
@@ -139,7 +140,7 @@ impl Mistake {
         Self::Overshoot,
     ];
 
-    /// Whether it can happen when blocks are carried.
+    /// True if it can happen when blocks are carried.
     pub fn is_of_blocks(self) -> bool {
         !matches!(self, Self::WrongDirection | Self::Overshoot)
     }

@@ -5,7 +5,7 @@ use crate::world::{Input, Surface, presets, step, true_label};
 
 const DT: f64 = 1e-3;
 
-/// What a performance showed.
+/// Observed results of a performance.
 struct Shown {
     /// True labels that lasted 100 ms (contact chatters at touch-down), without repeats.
     labels: Vec<&'static str>,
@@ -166,7 +166,7 @@ fn dropped_blocks_are_noticed_late_and_fetched_again() {
             assert!(shown.seconds > clean.seconds + 3.0, "{mistake:?}, seed {seed}: tried again");
             let gap = shown.state.bodies[1].center_m.y - shown.state.bodies[0].center_m.y;
             rebuilt += usize::from(gap > 0.014);
-            // Whoever does not look carries on with empty fingers.
+            // An operator that does not look carries on with empty fingers.
             let blind = Skill { reaction_s: None, ..Skill::advanced() };
             assert!(perform(&world, blind, &[mistake], seed).seconds < clean.seconds + 3.0);
         }
@@ -241,7 +241,7 @@ fn pierces_the_sheet_twice_and_leaves_the_needle_in_it() {
         let held: Vec<_> = shown.labels.iter().filter(|l| **l != "insertion" || shown.labels[0] != **l).collect();
         let through = shown.labels.iter().filter(|l| **l == "insertion").count();
         assert!(through >= 2 && shown.labels.contains(&"extraction"), "seed {seed}: {held:?}");
-        // Left in the sheet, and the hand gone: nobody moves the needle any more.
+        // Left in the sheet, and the hand gone: the needle is driven no longer.
         assert!(shown.labels.ends_with(&[inside, free]), "seed {seed}: {held:?}");
         // In the sheet still; let go it springs back by some tenths of a millimetre.
         assert_ne!(shown.state.membrane.phase, crate::law::object::MembranePhase::Free, "seed {seed}");

@@ -15,7 +15,7 @@ pub enum KeyError {
     File {
         /// Its path.
         file: String,
-        /// What the system says.
+        /// Reason that the operating system reports.
         reason: String,
     },
     /// Not a key.
@@ -63,8 +63,8 @@ impl Key {
         Self::from_hex(&text)
     }
 
-    /// What is wrong with a key file that can be read all the same, as sentences for a person: a key that anybody would try
-    /// first, a file that others on this machine may read (known on Unix only).
+    /// Weaknesses of a readable key file, as sentences for a person: a key that anybody would try first, or a file that
+    /// others on this machine may read (known on Unix only).
     pub fn doubts(path: &Path) -> Vec<String> {
         let mut doubts = Vec::new();
         let digits = crate::text_file::read(path).unwrap_or_default();

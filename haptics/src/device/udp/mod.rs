@@ -1,13 +1,13 @@
 //! A device at the other end of a network: positions come in as UDP packets, forces go back.
 //!
-//! Every packet is sealed with a shared key. A device first asks for a session (a number drawn at random for each that asks); only
-//! motion of the newest session that was begun, with a sequence above all before, moves the fingers and gets forces. So what was
-//! recorded on the wire is worth nothing later, in the same session or in another; and a device that was started anew is taken at
-//! once. The tick reads at most [`PACKETS_A_TICK`] packets from a socket
-//! that never waits, into a buffer that was there before, and answers with one.
+//! Every packet is sealed with a shared key. A device first asks for a session (a number drawn at random for each
+//! request). Only motion of the newest session, with a sequence number above all before, moves the fingers and gets
+//! forces. A recorded packet is therefore worth nothing later, in the same session or in another; and a restarted
+//! device is accepted at once. The tick reads at most [`PACKETS_A_TICK`] packets from a socket that never waits, into a
+//! preallocated buffer, and answers with one.
 //!
-//! On choice the packets carry wave variables in place of positions and forces ([`WaveUp`], [`WaveDown`]): a slow network can then
-//! give no energy out.
+//! Optionally the packets carry wave variables in place of positions and forces ([`WaveUp`], [`WaveDown`]): a slow
+//! network then cannot generate energy.
 
 mod key;
 mod monitor;
@@ -37,7 +37,7 @@ use rand::{RngExt, SeedableRng};
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::atomic::Ordering;
 
-/// Packets that one tick reads at the most: a flood costs the tick no more than this, and ends in zero force.
+/// Largest number of packets that one tick reads: a flood costs the tick no more than this, and ends in zero force.
 pub const PACKETS_A_TICK: usize = 16;
 /// The port, when none is named.
 pub const PORT: u16 = 47_474;
@@ -48,14 +48,14 @@ const WAVE_FRESH_S: f64 = 0.05;
 /// Nothing from the device for this long: its address is forgotten and gets no more packets.
 const FORGET_S: f64 = 1.0;
 
-/// Where to listen and whom to believe.
+/// Address to listen on, and the device that is trusted.
 #[derive(Clone, Debug)]
 pub struct UdpConfig {
     /// Address and port. Loopback by default: to be reached from other machines, name the address of a network card.
     pub listen: SocketAddr,
     /// The shared key.
     pub key: Key,
-    /// What the remote device can do.
+    /// Capabilities of the remote device.
     pub spec: DeviceSpec,
     /// Round trip to it, s: the stiffness that may be rendered is computed with it. Waves need no allowance for it.
     pub delay_s: f64,
@@ -93,13 +93,13 @@ impl UdpConfig {
 #[derive(Debug, thiserror::Error)]
 #[error("the UDP address {listen} could not be opened ({reason}); is it this machine's, and free?")]
 pub struct UdpError {
-    /// Where.
+    /// Address that could not be used.
     listen: SocketAddr,
-    /// What the system says.
+    /// Reason that the operating system reports.
     reason: String,
 }
 
-/// What a packet from the device says, whatever carries it.
+/// Content of a packet from the device, the same for both versions of the protocol.
 struct Word {
     flags: u16,
     session: u64,
@@ -126,7 +126,7 @@ pub struct UdpDevice<W: Wire = UdpSocket> {
     /// Draws the sessions.
     rng: StdRng,
     session: u64,
-    /// The session that was promised to whoever asked last; it counts from its first motion.
+    /// The session promised to the newest request; it counts from its first motion.
     promised: u64,
     /// Sequence that the next motion must exceed; `None` before the first.
     newest: Option<u64>,
@@ -155,7 +155,7 @@ impl<W: Wire> UdpDevice<W> {
     pub fn over(wire: W, config: UdpConfig, start_in_world: [Vec2; 2]) -> Self {
         let mut spec = config.spec;
         if let Some(waves) = config.waves {
-            // What the servo feels at its end is the wave impedance, not the device.
+            // The servo feels the wave impedance at its end, not the device.
             (spec.damping_n_s_m, spec.coulomb_n, spec.resolution_m) = (waves.impedance_n_s_m, 0.0, 0.0);
         }
         Self {
@@ -167,7 +167,7 @@ impl<W: Wire> UdpDevice<W> {
             key: config.key,
             monitor: UdpMonitor::new(config.listen),
             rng: StdRng::seed_from_u64(rand::random()),
-            // Nobody has been promised this one, so nobody can use it.
+            // This session was promised to no device, so that none can use it.
             session: 0,
             promised: 0,
             newest: None,
@@ -185,15 +185,15 @@ impl<W: Wire> UdpDevice<W> {
         self.monitor.clone()
     }
 
-    /// Reads what has come, at most [`PACKETS_A_TICK`] packets.
+    /// Reads the waiting packets, at most [`PACKETS_A_TICK`].
     fn receive(&mut self) {
-        // One byte more than the largest packet shows what was too long.
+        // One byte more than the largest packet shows one that is too long.
         let mut buffer = [0; WAVE_UP_BYTES + 1];
         for _ in 0..PACKETS_A_TICK {
             let (size, from) = match self.wire.receive(&mut buffer) {
                 Ok(received) => received,
                 Err(e) if e.kind() == std::io::ErrorKind::WouldBlock => return,
-                // Some systems report here that an earlier answer found nobody; the next packet is behind it.
+                // Some systems report here that an earlier answer found no receiver; the next packet is behind it.
                 Err(_) => continue,
             };
             if let Err(why) = self.decode(&buffer[..size]).and_then(|word| self.take(&word, from)) {
@@ -206,7 +206,7 @@ impl<W: Wire> UdpDevice<W> {
     fn decode(&self, packet: &[u8]) -> Result<Word, Refused> {
         let with_waves = packet.get(4) == Some(&WAVE_VERSION);
         if packet.starts_with(&MAGIC) && with_waves != self.waves.is_some() {
-            // Before its size is looked at: this is what a person needs to know.
+            // Before its size is looked at: a person needs to know this.
             return Err(Refused::Version);
         }
         if self.waves.is_some() {
@@ -275,7 +275,7 @@ impl<W: Wire> UdpDevice<W> {
         let (sequence, time_us) = (self.sent, (self.now_s * 1e6) as u64);
         if let Some(waves) = self.waves {
             let impedance_n_s_m = waves.impedance_n_s_m;
-            // Who only asks has no waves yet.
+            // A mere request has no waves yet.
             let accounts = if flags & FLAG_GREETING == 0 { self.world_end.accounts() } else { Default::default() };
             let packet = WaveDown { flags, session, sequence, time_us, accounts, impedance_n_s_m, echo_us };
             self.wire.send(&packet.encode(&self.key), to);
@@ -314,7 +314,7 @@ impl<W: Wire> Device for UdpDevice<W> {
     }
 
     fn delay_s(&self) -> f64 {
-        // What waves carry needs no allowance for its delay.
+        // Waves need no allowance for the delay of the line.
         if self.waves.is_some() { 0.0 } else { self.delay_s }
     }
 

@@ -39,7 +39,7 @@ impl UdpMonitor {
         self.counters.refused[why as usize].load(Ordering::Relaxed)
     }
 
-    /// Where the device listens.
+    /// Address that the device listens on.
     pub fn address(&self) -> SocketAddr {
         self.address
     }

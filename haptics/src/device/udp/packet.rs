@@ -1,4 +1,4 @@
-//! The packets of a remote device, both ways. `docs/udp/README.md` is the description for those who write the other side.
+//! The packets of a remote device, both ways. `docs/udp/README.md` is the description for authors of the other side.
 //!
 //! Little-endian, fixed size, the same header, a seal at the end:
 //! `[magic 4][version 1][kind 1][flags 2][session 8][sequence 8][time 8][payload][seal 16]`.
@@ -27,7 +27,7 @@ pub(super) const HEADER_BYTES: usize = 32;
 const MOTION: u8 = 1;
 const FORCE: u8 = 2;
 
-/// What a device sends.
+/// Packet that a device sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// [`FLAG_BYE`].
@@ -44,7 +44,7 @@ pub struct Motion {
     pub tip_velocity: [Vec2; 2],
 }
 
-/// What a device gets.
+/// Packet that a device receives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force {
     /// [`FLAG_GREETING`].
@@ -136,8 +136,8 @@ impl Motion {
         packet
     }
 
-    /// The content of a packet that is whole, ours, sealed with the key and within bounds. Whether session and sequence are
-    /// right is the receiver's business.
+    /// The content of a packet that is whole, ours, sealed with the key and within bounds. Checking its session and
+    /// sequence is the receiver's business.
     pub fn decode(packet: &[u8], key: &Key) -> Result<Self, Refused> {
         check::<MOTION_BYTES>(packet, [VERSION, MOTION], key)?;
         let tip_in_world = [point(packet, 32), point(packet, 48)];

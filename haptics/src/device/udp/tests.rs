@@ -141,12 +141,12 @@ fn a_device_that_is_started_anew_is_taken_at_once_and_a_repeated_question_ends_n
     client.send(&motion.encode(&key()));
     assert!(device.exchange(&Command::default(), DT).is_fresh());
     client.receive();
-    // Somebody sends a recorded question again: it is answered, and changes nothing.
+    // A recorded question is sent again: it is answered, and changes nothing.
     client.send(&hello.encode(&key()));
     client.send(&client_motion_after(&motion).encode(&key()));
     assert!(device.exchange(&Command::default(), DT).is_fresh());
     assert_eq!((monitor.accepted(), monitor.refused(Refused::Session)), (2, 0));
-    // The device's program is started anew and counts from one.
+    // The device's program is restarted and counts from one.
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
     socket.connect(monitor.address()).expect("loopback");
     socket.set_read_timeout(Some(Duration::from_secs(10))).expect("a time-out");

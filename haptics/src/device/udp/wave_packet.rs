@@ -21,7 +21,7 @@ const MAX_ENERGY_J: f64 = 1e7;
 const UP: u8 = 3;
 const DOWN: u8 = 4;
 
-/// What a device sends.
+/// Packet that a device sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WaveUp {
     /// [`super::FLAG_BYE`].
@@ -32,13 +32,14 @@ pub struct WaveUp {
     pub sequence: u64,
     /// The device's clock, µs; comes back.
     pub time_us: u64,
-    /// Where the left and the right tip were when the waves of this session began, m in the world: the same in every packet.
+    /// Position of the left and the right tip at the start of this session's waves, m in the world: the same in every
+    /// packet.
     pub origin_in_world: [Vec2; 2],
     /// Integral and energy of each finger's wave u = (b v + F)/√(2b) since then.
     pub accounts: [Account; 2],
 }
 
-/// What a device gets.
+/// Packet that a device receives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WaveDown {
     /// [`super::FLAG_GREETING`], [`FLAG_STOP`].

@@ -100,7 +100,8 @@ impl Hand {
         Motion { session, sequence, tip_in_world, tip_velocity, ..Motion::default() }.encode(&key()).to_vec()
     }
 
-    /// One tick of the hand: what has arrived, forces, motion, what is sent. Returns the packets that reach the device now.
+    /// One tick of the hand: arrived packets, forces, motion, sent packets. Returns the packets that reach the device
+    /// now.
     fn tick(&mut self, now_s: f64, goal_m: f64) {
         if let Some((bytes, size)) = self.down.receive(now_s) {
             if self.with_waves {
@@ -131,7 +132,7 @@ impl Hand {
     }
 }
 
-/// Where hand and tip were along x, m.
+/// Course of hand and tip along x, m.
 struct Course {
     hand_m: Vec<f64>,
     tip_m: Vec<f64>,
@@ -182,10 +183,10 @@ fn at_half_a_second_of_round_trip_plain_packets_swing_and_waves_rest() {
         // Three springs in series, 400 N/m from 4 mm, b/d, 2000 N/m from 1 mm; a tick each way adds to the delay.
         let line = waves().line_stiffness_n_m(ONE_WAY_S + SMOOTHING_S + DT);
         let force = 0.003 / (1.0 / 400.0 + 1.0 / line + 1.0 / STIFFNESS);
-        // Where packets are lost both tremble a little: the mean of two seconds.
+        // Both tremble a little if packets are lost: the mean of two seconds.
         let mean = |series: &[f64]| series[28_000..].iter().sum::<f64>() / 2_000.0;
         let felt = 400.0 * (0.004 - mean(&waved.hand_m));
-        // Where packets are lost the receivers smooth over the gaps, which adds a little delay; the force stays all the same.
+        // The receivers smooth over the gaps of lost packets, which adds a little delay; the force stays all the same.
         let within = if loss > 0.0 { 0.2 } else { 0.02 };
         assert!((felt / force - 1.0).abs() < within, "loss {loss}: the hand feels {felt} N, should be {force} N");
         let pressed = STIFFNESS * (mean(&waved.tip_m) - 0.001);
@@ -222,7 +223,7 @@ fn a_new_session_begins_with_new_waves_and_the_end_says_stop() {
     let mut up = WaveUp { session: first.session, sequence: 5, accounts: [account; 2], ..WaveUp::default() };
     let (sample, down) = answer(&mut device, &mut first, up);
     assert!(sample.is_fresh() && sample.tip_velocity[0].x > 0.0 && down.accounts[0].integral.x != 0.0);
-    // Another device, or the same one started anew: it counts from one, and its waves from zero.
+    // Another device, or the same one restarted: it counts from one, and its waves from zero.
     let mut second = Hand::begin(&mut device, 0.0);
     let origin = [Vec2::new(0.02, -0.1); 2];
     up = WaveUp { session: second.session, sequence: 1, origin_in_world: origin, ..WaveUp::default() };

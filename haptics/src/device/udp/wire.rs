@@ -1,4 +1,4 @@
-//! What carries the packets: a socket, or whatever a test has in its place.
+//! Transport of the packets: a socket, or the substitute of a test.
 
 use std::io::Result;
 use std::net::{SocketAddr, UdpSocket};

@@ -1,18 +1,19 @@
-//! End of a foam: its cells are closed at the strain 1 − 1.4 ρ/ρs, and beyond it carries like what it is made of (Gibson & Ashby
-//! 1997, section 5.3). ρ/ρs = 0.1 is taken, a usual density of soft closed-cell foam: up to 0.86 of its thickness nothing is
-//! added; from there to the whole thickness the stiffness rises evenly to [`CLOSED`] times that of the open foam, and stays:
-//! then the fingertip behind the foam gives. The force pushes apart and is added to the open foam's.
+//! End of a foam: its cells are closed at the strain 1 − 1.4 ρ/ρs, and beyond it carries like its solid material
+//! (Gibson & Ashby 1997, section 5.3). ρ/ρs = 0.1 is taken, a usual density of soft closed-cell foam: up to 0.86 of its
+//! thickness nothing is added. From there to the whole thickness the stiffness rises evenly to [`CLOSED`] times that of
+//! the open foam, and stays: then the fingertip behind the foam yields. The force pushes apart and is added to the open
+//! foam's.
 
 /// Share of the thickness at which the cells begin to be closed: 1 − 1.4 · 0.1.
 pub const ONSET: f64 = 0.86;
 
-/// How many times stiffer than the open foam a fingertip is when all cells are closed (assumed: nobody measured it). With the
-/// usual pad that is 10 kN/m: 8 N, the most that a pointer's hand asks for, end 0.2 mm beyond the foam. It is about what a hand
-/// with a damping of 9 N s/m can lean on at 1 kHz without chatter (Colgate & Schenkel 1997); a harder end would need a virtual
-/// coupling for every hand.
+/// Stiffness of a fingertip with all cells closed, in multiples of that of the open foam (assumed, not measured). With
+/// the usual pad that is 10 kN/m: 8 N, the largest force of a pointer's hand, end 0.2 mm beyond the foam. A hand with a
+/// damping of 9 N s/m can lean on about as much at 1 kHz without chatter (Colgate & Schenkel 1997). A harder end would
+/// need a virtual coupling for every hand.
 pub const CLOSED: f64 = 4.0;
 
-/// What the end of a foam adds to its force; the law is in the module's head.
+/// Additional force at the end of a foam; the law is in the module's head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Densification {
     /// Thickness, m.

@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 pub struct FingertipSlip {
     /// The whole way that the tips move on the object, m.
     pub way_m: Vec2,
-    /// When it begins, s.
+    /// Start of the slip, s.
     pub t0_s: f64,
-    /// How long it takes, s.
+    /// Duration of the slip, s.
     pub duration_s: f64,
 }
 
@@ -36,7 +36,7 @@ impl FingertipSlip {
         ],
     };
 
-    /// How far the grasp point is from where it was at first, m.
+    /// Displacement of the grasp point from its first place, m.
     pub fn displacement_m(&self, time_s: f64) -> Vec2 {
         let since = time_s - self.t0_s;
         let share =

@@ -1,4 +1,4 @@
-//! Laws of contacts and grasps: they act on no coordinate, so each gives its formula as a plain function. One law a file.
+//! Laws of contacts and grasps: they act on no coordinate, so each has its formula as a plain function. One law a file.
 
 mod cushion;
 mod densification;

@@ -25,7 +25,7 @@ impl PadCompliance {
         parameters: &[ParameterSpec::nonlinear("k", "N/m", "N/m", POSITIVE)],
     };
 
-    /// How far the tip is off under a force, m; zero for a rigid finger (k = 0, unset).
+    /// Displacement of the tip under a force, m; zero for a rigid finger (k = 0, unset).
     pub fn give_m(&self, force_n: f64) -> f64 {
         if self.k > 0.0 { force_n / self.k } else { 0.0 }
     }

@@ -41,8 +41,9 @@ impl VelocityLoss {
         (-self.e * normal_m_s, along_m_s - along_m_s.signum() * most.min(along_m_s.abs()))
     }
 
-    /// Damping number α of a contact that leaves just this restitution, whatever its stiffness and the masses behind it: its force
-    /// is k x (1 + α v/v₀), with the closing speed v and the speed v₀ at which the surfaces met (Hunt & Crossley 1975).
+    /// Damping number α of a contact with just this restitution, whatever its stiffness and the masses behind it. The
+    /// force is k x (1 + α v/v₀), with the closing speed v and the speed v₀ at which the surfaces met (Hunt & Crossley
+    /// 1975).
     ///
     /// m v dv = −k x (1 + α v/v₀) dx over the whole impact gives (1 + e) α = ln((1 + α)/(1 − e α)), with 1/e as the upper bound
     /// of α. Below e = 0.02 it is held at that of 0.02.

@@ -2,14 +2,15 @@
 //! stiffness as a function of the deepest insertion so far; phases as in Okamura, Simone & O'Leary 2004: elastic before the
 //! puncture, friction along the shaft after it).
 //!
-//! Before the puncture the first push follows k1 x + k3 x³. Drawn back, the sheet keeps the dent `give` times the deepest
-//! insertion, so that it unloads, and loads again up to there, on a steeper line: what lies between is lost. At `puncture_n`
-//! the needle goes through; from then on the hole only drags along the shaft, elastically up to `friction_n`, and with
-//! `drag_n_s_m` of the speed. x is the insertion beyond the undisturbed surface, m; the force pushes the needle out.
+//! The first push before the puncture follows k1 x + k3 x³. Drawn back, the sheet keeps a dent of `give` times the
+//! deepest insertion. It unloads, and loads again up to there, on a steeper line: the energy between the lines is lost.
+//! At `puncture_n` the needle goes through. From then on the hole only drags along the shaft, elastically up to
+//! `friction_n`, and with `drag_n_s_m` of the speed. x is the insertion beyond the undisturbed surface, m; the force
+//! pushes the needle out.
 
 use serde::{Deserialize, Serialize};
 
-/// What a sheet is like.
+/// Parameters of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MembraneLaw {
     /// First stiffness, N/m, positive.
@@ -29,14 +30,14 @@ pub struct MembraneLaw {
     pub drag_n_s_m: f64,
 }
 
-/// What one place of a sheet remembers.
+/// Memory of one place of a sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MembraneHistory {
     /// Deepest insertion so far, m.
     pub deepest_m: f64,
-    /// Whether the needle has gone through here.
+    /// True if the needle has gone through here.
     pub punctured: bool,
-    /// Where along the shaft the rim of the hole would be without force, as an insertion, m.
+    /// Place along the shaft at which the rim of the hole would be without force, as an insertion, m.
     rim_m: f64,
     /// Farthest insertion since the way last turned round, m, and whether it goes outwards.
     turn_m: f64,
@@ -46,7 +47,7 @@ pub struct MembraneHistory {
 /// The way has turned round when the needle has come back by this, m: more than the tremor of a hand at rest.
 const TURN_M: f64 = 0.3e-3;
 
-/// What the needle is doing.
+/// Phase of the needle's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MembranePhase {
     /// Not touching.
@@ -67,8 +68,8 @@ impl MembraneLaw {
         (self.stiffness_n_m + self.cubic_n_m3 * x * x) * x
     }
 
-    /// Force that pushes the needle out, N, at an insertion, m, and its rate, m/s (positive: going in); what the place
-    /// remembers is moved along.
+    /// Force that pushes the needle out, N, at an insertion, m, and its rate, m/s (positive: going in). It moves the
+    /// memory of the place along.
     pub fn force_n(&self, insertion_m: f64, rate_m_s: f64, history: &mut MembraneHistory) -> f64 {
         if insertion_m <= 0.0 {
             // Out of it: a hole closes around nothing, a dent remains.
@@ -93,7 +94,7 @@ impl MembraneLaw {
         self.stiffness_n_m * stretch + self.drag_n_s_m * rate_m_s
     }
 
-    /// Slope of the force at an insertion, N/m: what an integrator must be able to follow.
+    /// Slope of the force at an insertion, N/m: an integrator must be able to follow it.
     pub fn stiffness_n_m(&self, insertion_m: f64) -> f64 {
         let x = insertion_m.max(0.0);
         (self.stiffness_n_m + 3.0 * self.cubic_n_m3 * x * x) / (1.0 - self.give.clamp(0.0, 0.9))
@@ -109,8 +110,8 @@ impl MembraneLaw {
         x
     }
 
-    /// The phase at an insertion, m. At rest the last one goes on: the way has turned round when the needle has come back by more
-    /// than a hand trembles.
+    /// The phase at an insertion, m. At rest the last phase lasts: the motion counts as reversed after the needle has
+    /// come back by more than a hand trembles.
     pub fn phase(insertion_m: f64, history: &mut MembraneHistory) -> MembranePhase {
         if insertion_m <= 0.0 {
             (history.turn_m, history.outwards) = (0.0, false);

@@ -1,9 +1,9 @@
-//! A captured force–displacement curve with hysteresis: what a toggle switch asks for on the way there and on the way back
-//! (recorded and played back this way for a real switch: Mac Lean 1996).
+//! A captured force–displacement curve with hysteresis: the force of a toggle switch on the way there and on the way
+//! back (recorded and played back this way for a real switch: Mac Lean 1996).
 //!
 //! The curve is a table of places with the force needed when moving forwards and when moving backwards; forward is nowhere
-//! below backward, so that a cycle never gives energy. After a reversal the force goes over from one branch to the other within
-//! `reversal_m` of travel. Between two places it is linear, beyond the ends a stop.
+//! below backward, so that a cycle never generates energy. After a reversal the force goes over from one branch to the
+//! other within `reversal_m` of travel. Between two places it is linear, beyond the ends a stop.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,14 +38,14 @@ impl ToggleCurve {
         force + self.stop_n_m * ((at_m - high.at_m).max(0.0) + (at_m - low.at_m).min(0.0))
     }
 
-    /// Whether a displacement is beyond the ends of the curve, in a stop.
+    /// True if a displacement is beyond the ends of the curve, in a stop.
     pub fn is_stopped(&self, at_m: f64) -> bool {
         let (low, high, _) = self.place(at_m);
         at_m < low.at_m || at_m > high.at_m
     }
 
-    /// Energy that the curve half way between its branches holds at a displacement, J, from its first place on: what of the
-    /// work on the way there can come back.
+    /// Energy that the curve half way between its branches holds at a displacement, J, from its first place on: the
+    /// recoverable part of the work on the way there.
     pub fn held_j(&self, at_m: f64) -> f64 {
         let middle = |p: &CurvePoint| 0.5 * (p.forward_n + p.backward_n);
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return 0.0 };
@@ -64,8 +64,8 @@ impl ToggleCurve {
         held_j + end_n * beyond_m + 0.5 * self.stop_n_m * beyond_m * beyond_m
     }
 
-    /// Slope of the force over the displacement for a motion at `rate_m_s`, N/m; negative where the switch snaps: of the curve,
-    /// of a reversal that goes on, and of the stops.
+    /// Slope of the force over the displacement for a motion at `rate_m_s`, N/m; negative where the switch snaps. It is
+    /// the slope of the curve, of an unfinished reversal, and of the stops.
     pub fn stiffness_n_m(&self, at_m: f64, branch: f64, rate_m_s: f64) -> f64 {
         if self.is_stopped(at_m) {
             return self.stop_n_m;
@@ -85,7 +85,7 @@ impl ToggleCurve {
         (branch + way_m / self.reversal_m).clamp(0.0, 1.0)
     }
 
-    /// What makes the curve impossible to run, if anything does.
+    /// Fault that makes the curve impossible to run, if there is one.
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |p: &CurvePoint| p.at_m.is_finite() && p.forward_n.is_finite() && p.backward_n.is_finite();
         if self.points.len() < 2 || !self.points.iter().all(finite) {

@@ -1,7 +1,9 @@
-//! Two rigid links that turn in a vertical plane, the second hung on the first, both joints driven: the torques that a motion asks for.
+//! Two rigid links that turn in a vertical plane, the second hung on the first, both joints driven: the joint torques
+//! of a motion.
 //!
-//! q₁ is the angle of the first link from hanging straight down, q₂ that of the second link against the first. All that the joints
-//! can feel of masses and lengths are six numbers (base parameters: Khalil & Dombre 2002, §9.4), linear in the Lagrangian
+//! q₁ is the angle of the first link from hanging straight down, q₂ that of the second link against the first. The
+//! joint torques depend on masses and lengths only through six numbers (base parameters: Khalil & Dombre 2002, §9.4),
+//! linear in the Lagrangian
 //!
 //! `L = ½ A q̇₁² + ½ B (q̇₁+q̇₂)² + C cos q₂ q̇₁ (q̇₁+q̇₂) + ½ R q̇₂² + g (G₁ cos q₁ + G₂ cos(q₁+q₂))`,
 //!
@@ -13,7 +15,7 @@
 pub struct TwoLinkParameter {
     /// Name, with its unit.
     pub name: &'static str,
-    /// What it is.
+    /// Description of the parameter.
     pub about: &'static str,
 }
 
@@ -100,7 +102,7 @@ mod tests {
             let acceleration = (before[m][k] - 2.0 * now[m][k] + after[m][k]) / (h * h);
             MASS[m] * (acceleration + if k == 1 { GRAVITY } else { 0.0 })
         };
-        // Moments about the joint that drives what is beyond it.
+        // Moments about the joint that drives the parts beyond it.
         let moment =
             |m: usize, about: [f64; 2]| (now[m][0] - about[0]) * force(m, 1) - (now[m][1] - about[1]) * force(m, 0);
         [moment(0, [0.0; 2]) + moment(1, [0.0; 2]), moment(1, now[0])]

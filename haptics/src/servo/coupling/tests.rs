@@ -19,7 +19,7 @@ fn spec(damping_n_s_m: f64) -> DeviceSpec {
     }
 }
 
-/// Where hands want the fingers at a time, s.
+/// Wanted positions of the fingers at a time, s.
 type Wish = fn(f64) -> [Vec2; 2];
 
 /// Two masses with a damper each, and hands that push with a constant force or pull towards a wanted place.
@@ -29,7 +29,7 @@ struct Simulated {
     at: [Vec2; 2],
     velocity: [Vec2; 2],
     push_n: [Vec2; 2],
-    /// Where hands pull the fingers to at a time, and how.
+    /// Impedance of the hands and the positions they pull to; `None`: no hands.
     wanted: Option<(HandImpedance, Wish)>,
     time_s: f64,
 }
@@ -74,7 +74,7 @@ impl Device for Simulated {
     fn make_safe(&mut self) {}
 }
 
-/// A loop without a coupling, whatever the device says: what happened before there was one.
+/// A loop without a coupling, whatever the device says: the behaviour before there was one.
 fn uncoupled(mut device: Simulated) -> Simulated {
     device.spec.force_feedback = false;
     device
@@ -84,13 +84,14 @@ fn limits() -> Limits {
     Limits { max_force_n: 50.0, max_slew_n_s: 1e6, ramp_s: 1e-3, ..Limits::default() }
 }
 
-/// What a finger that is pushed against the table with 1 N from 1 mm above it does in 16 s.
+/// Motion within 16 s of a finger that is pushed against the table with 1 N from 1 mm above it.
 struct Pressed {
-    /// Energy that the table gave out beyond what the device's own damper took, J: the worst of the whole time.
+    /// Energy that the table generated beyond the dissipation of the device's own damper, J: the worst of the whole
+    /// time.
     given_j: f64,
     /// Fastest motion of the last second, m/s.
     restless_m_s: f64,
-    /// Where device and tip came to rest, m below the table.
+    /// Rest positions of device and tip, m below the table.
     device_depth_m: f64,
     tip_depth_m: f64,
 }
@@ -108,7 +109,7 @@ fn press(device: Simulated, period_s: f64) -> Pressed {
     for tick in 0..ticks {
         let now = servo.tick(period_s);
         let speed = (now.device_in_world[0] - last.device_in_world[0]).norm() / period_s;
-        // Mean speed: a lower bound of what the damper took (∫v² ≥ (∫v)²/T).
+        // Mean speed: a lower bound of the damper's dissipation (∫v² ≥ (∫v)²/T).
         taken_j += damping * speed * speed * period_s;
         given_j = given_j.max(-(now.energy_j + taken_j));
         if tick > 3 * ticks / 4 {
@@ -145,7 +146,7 @@ fn the_coupling_is_what_the_formulas_allow() {
     let coarse = Coupling::passive(&DeviceSpec { coulomb_n: 0.05, resolution_m: 0.2e-3, ..spec(0.5) }, T, 0.0);
     assert!((coarse.damping_n_s_m - 0.025).abs() < 1e-12 && (coarse.stiffness_n_m - 400.0).abs() < 1e-9);
     assert_eq!(Coupling::passive(&spec(0.0), T, 0.0).stiffness_n_m, SOFTEST_N_M);
-    // Nothing is known and half a second of delay: what 0.5 N s/m of a hand make passive.
+    // Unknown device and half a second of delay: the passive coupling for 0.5 N s/m of a hand.
     let slow = Coupling::passive(&spec(0.0), T, 0.5);
     assert!((slow.stiffness_n_m * (0.5 * T + 0.5) - HAND_DAMPING_N_S_M).abs() < 1e-12 && slow.damping_n_s_m == 0.0);
     assert!((coupling.felt_n_m(2500.0) - 800.0 * 2500.0 / 3300.0).abs() < 1e-9);
@@ -256,7 +257,7 @@ impl Device for Carried {
 
     fn exchange(&mut self, _: &Command, dt_s: f64) -> Sample {
         self.1 += dt_s;
-        // 2 mm in the table, still for a second, then drawn to and fro along it.
+        // Held still for a second, 2 mm in the table, then drawn back and forth along it.
         let (sin, cos) = (2.0 * (self.1 - 1.0).max(0.0)).sin_cos();
         let tip_in_world = [Vec2::new(-0.02 + 0.01 * sin, -0.127), Vec2::new(0.03, -0.127)];
         let moving = if self.1 > 1.0 { 0.02 * cos } else { 0.0 };

@@ -24,7 +24,7 @@ impl Device for Prodding {
 
 fn prodding(control: Option<f64>) -> TickRecord {
     let mut world = presets::table();
-    // No damping at all: a sampled spring gives out K/2 Σ Δx².
+    // No damping at all: a sampled spring generates K/2 Σ Δx².
     world.pad.damping_n_s_m = 0.0;
     let still = || vec![Vec2::zeros(); 2];
     let spec = ReplayDevice::new("spec", vec![0.0, 1.0], [still(), still()], [still(), still()])

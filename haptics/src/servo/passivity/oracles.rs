@@ -14,7 +14,7 @@ const T: f64 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wall {
     pub stiffness: f64,
-    /// On the backward difference of what the device measures.
+    /// On the backward difference of the measured positions.
     pub damping: f64,
     /// Whole periods between a sample and its force.
     pub delay: i32,
@@ -48,7 +48,7 @@ fn taken(wall: &Wall, device: &DeviceSpec, period: i32, path: impl Fn(i32) -> f6
     observer.energy_j() + lost_j
 }
 
-/// The same for a sinusoid of 1 mm that goes on by an angle, rad, from sample to sample (a whole part of a turn).
+/// The same for a sinusoid of 1 mm that advances by an angle, rad, from sample to sample (a whole part of a turn).
 pub(super) fn shaken(wall: &Wall, device: &DeviceSpec, angle: f64) -> f64 {
     let period = (TAU / angle).round() as i32;
     // A quarter turn ahead: at π the samples are the peaks.
@@ -62,7 +62,7 @@ fn angles() -> impl Iterator<Item = f64> {
 
 #[test]
 fn a_wall_is_passive_below_its_stiffness_and_active_above_with_either_sign_of_damping() {
-    // B > 0 is worst at the fastest motion, B < 0 and delay at the slowest; a mere spring gives out the same at all.
+    // B > 0 is worst at the fastest motion, B < 0 and delay at the slowest; a mere spring generates the same at all.
     for (b, damping, delay, worst) in [
         (0.6, 0.0, 0, PI),
         (0.6, 0.0, 0, TAU / 100.0),
@@ -96,7 +96,7 @@ fn a_damper_alone_is_passive_up_to_b_and_active_beyond() {
     }
 }
 
-/// To and fro across the edge between two steps, so closely that the device's damper takes next to nothing.
+/// Back and forth across the edge between two steps, so closely that the device's damper takes next to nothing.
 fn across_an_edge(wall: &Wall, device: &DeviceSpec) -> f64 {
     let edge = 2.5 * device.resolution_m;
     let way = 1e-5 * device.resolution_m;

@@ -10,7 +10,8 @@ fn the_general_criterion_gives_the_closed_form() {
     }
 }
 
-/// Whether a mass let go in a two-sided sampled wall comes to rest. The mass is integrated exactly between the samples.
+/// True if a mass released in a two-sided sampled wall comes to rest. The mass is integrated exactly between the
+/// samples.
 fn settles(stiffness: f64, wall_damping: f64, device_damping: f64, delay_periods: usize) -> bool {
     let mass = 0.1;
     let decay = (-device_damping / mass * T).exp();
@@ -90,7 +91,7 @@ fn what_one_finger_gives_and_the_other_takes_is_no_activity() {
     assert!(observer.energy_j().abs() < 1e-15);
 }
 
-/// Work that went into lifting comes back when it is lowered: that is no activity. What was never there is.
+/// Work spent on lifting comes back on lowering: that is no activity. Energy that was never stored is.
 #[test]
 fn what_the_world_held_may_come_back() {
     let mut observer = Observer::default();

@@ -1,17 +1,17 @@
-//! Counts what the ticks took: one second a part, the last ten parts are "recent", what falls out is kept as a sum.
+//! Counts the timings of ticks: one second a part, the last ten parts are "recent", older parts are kept as a sum.
 
 use super::histogram::Histogram;
 use super::{Figures, STALL_S, TickTiming, Timing};
 use crate::servo::rate::RateReport;
 
-/// What counts as recent, s.
+/// Length of the recent past, s.
 pub const RECENT_S: f64 = 10.0;
 /// Length of a part, s.
 const PART_S: f64 = 1.0;
 /// Parts that are recent; the newest is being filled.
 const PARTS: usize = 10;
 
-/// What was counted in a stretch of time.
+/// Counts within a period of time.
 #[derive(Clone, Debug, Default)]
 struct Part {
     period: Histogram,
@@ -69,12 +69,12 @@ impl Part {
 /// Collects the timing; summaries are made a few times a second, not at every tick.
 #[derive(Clone, Debug, Default)]
 pub struct TimingCollector {
-    /// What is no longer recent.
+    /// Counts before the recent past.
     past: Part,
     recent: [Part; PARTS],
     /// The part that is being filled.
     newest: usize,
-    /// How long it has been, s.
+    /// Time since its start, s.
     filled_s: f64,
     /// Whole parts before it that are recent.
     full: usize,
@@ -149,7 +149,7 @@ mod tests {
     fn waiting_for_a_device_makes_no_force_old() {
         let mut collector = TimingCollector::default();
         let rate = RateReport { rate_hz: 1000.0, ..RateReport::default() };
-        // Two seconds nobody is there, then a device comes, goes for a second, and is back.
+        // Two seconds without a device, then one comes, goes for a second, and is back.
         for (ticks, has_force) in [(2_000_i32, false), (1_000, true), (1_000, false), (1_000, true)] {
             for tick in 0..ticks {
                 let sample_age_s = if has_force { 0.0 } else { f64::from(tick) * 1e-3 };

@@ -1,5 +1,5 @@
-//! How the crank resists, from the forces of the far fingers while they turn it: recursive least squares on the columns of its laws, with
-//! the guess as prior.
+//! Resistance of the crank, from the forces of the far fingers while they turn it: recursive least squares on the
+//! regressors of its laws, with the guess as prior.
 
 use super::super::picture::Picture;
 use crate::Vec2;
@@ -7,7 +7,7 @@ use crate::law::{Effect, Enters, Memory, Motion};
 use crate::world::{Crank, World};
 use nalgebra::{SMatrix, SVector};
 
-/// Parameters that are followed at the most.
+/// Largest number of parameters that are followed.
 const MOST: usize = 8;
 /// Standard deviation of a guess, relative to it.
 const GUESS: f64 = 0.5;
@@ -57,7 +57,7 @@ impl CrankLaws {
         for (index, effect) in world.crank.iter().flat_map(|crank| crank.effects.iter().enumerate()) {
             for (parameter, spec) in effect.law().parameters().iter().enumerate() {
                 let value = effect.values[parameter];
-                // What is guessed to be nothing has no scale to be uncertain by.
+                // A parameter with the guess zero has no scale for its uncertainty.
                 if effect.enabled && spec.enters == Enters::Linear && value != 0.0 && laws.used < MOST {
                     laws.places[laws.used] = (index, parameter);
                     laws.guess[laws.used] = value;

@@ -1,5 +1,5 @@
-//! The model at the operator's end, and what keeps it true: the far world's poses, bled in, and its forces, which tell what things
-//! weigh, how they turn, and how they feel under the fingers.
+//! The model at the operator's end, and its correction by the far world: the poses are bled in, and the forces tell
+//! weights, resistances and the feel under the fingers.
 
 mod crank;
 mod past;
@@ -31,7 +31,7 @@ pub(super) struct Tutor {
 }
 
 impl Tutor {
-    /// For a model in its starting state; pictures come back after `round_trip_s` at the most.
+    /// For a model in its starting state; pictures come back after at most `round_trip_s`.
     pub fn new(world: &World, state: &State, round_trip_s: f64) -> Self {
         Self {
             past: Past::new(state, (round_trip_s / PICTURE_S).ceil() as usize + 8),
@@ -42,7 +42,7 @@ impl Tutor {
         }
     }
 
-    /// Takes a picture of the far world, made when the far hand followed what was said at `said_s`.
+    /// Takes a picture of the far world, made when the far hand followed the message of `said_s`.
     pub fn learn(&mut self, far: &Picture, said_s: f64, now: Grasp) {
         if let Some(then) = self.past.at(said_s) {
             self.poses.compare(&then.picture, &then.corrected, far, now);
@@ -62,7 +62,7 @@ impl Tutor {
         self.past.remember(now_s, state, self.poses.corrected());
     }
 
-    /// What the body that was carried last weighs, as far as is known.
+    /// Estimated mass of the body that was carried last, if there is one.
     pub fn weighed(&self) -> Option<Weighed> {
         self.weights.last()
     }

@@ -1,4 +1,4 @@
-//! What the model was a moment ago: late pictures are compared with the model of their time.
+//! Past states of the model: late pictures are compared with the model of their time.
 
 use super::super::album::PICTURE_S;
 use super::super::picture::Picture;
@@ -10,7 +10,7 @@ use crate::world::State;
 pub(super) struct Then {
     time_s: f64,
     pub picture: Picture,
-    /// How far it had been corrected by then.
+    /// Correction of the model by then.
     pub corrected: Corrected,
 }
 

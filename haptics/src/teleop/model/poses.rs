@@ -1,8 +1,9 @@
-//! Where things are: the difference between a late picture and the model of its time, less what has been corrected since, is bled into the
-//! model at a bounded rate.
+//! Correction of poses: the difference between a late picture and the model of its time, less the correction since, is
+//! bled into the model at a bounded rate.
 //!
-//! A correction moves a thing without a velocity, so that a contact feels it only through its depth: a held thing that is moved by
-//! [`TOUCHED_M_S`] changes a pad's force by some tens of N/s, far below the safety stage's slew limit. What nobody touches may go faster.
+//! A correction moves a thing without a velocity, so that a contact feels it only through its depth. A held thing that
+//! is moved by [`TOUCHED_M_S`] changes a pad's force by some tens of N/s, far below the safety stage's slew limit.
+//! Untouched things may move faster.
 
 use super::super::picture::{Grasp, Picture};
 use crate::Vec2;
@@ -10,9 +11,9 @@ use crate::world::{BodyState, State, Surface};
 
 /// Time constant of a correction, s.
 const BLEED_S: f64 = 0.15;
-/// Fastest correction of what a finger touches, m/s.
+/// Fastest correction of a touched thing, m/s.
 const TOUCHED_M_S: f64 = 0.02;
-/// Fastest correction of what no finger touches, m/s: it may come to touch one.
+/// Fastest correction of an untouched thing, m/s: a finger may come to touch it.
 const FREE_M_S: f64 = 0.1;
 /// Metres that a radian counts as: half of a usual block's size.
 const RADIAN_M: f64 = 0.01;
@@ -22,7 +23,7 @@ const ENOUGH_M: f64 = 4e-4;
 /// Correction of one thing: place, m, and angle, rad.
 type Shift = (Vec2, f64);
 
-/// How far everything has been corrected since the start.
+/// Correction of everything since the start.
 #[derive(Clone)]
 pub(super) struct Corrected {
     bodies: Vec<Shift>,
@@ -47,19 +48,19 @@ impl Corrected {
 /// Corrections under way.
 pub(super) struct Poses {
     corrected: Corrected,
-    /// How far everything is to be corrected in the end.
+    /// Final correction of everything.
     wanted: Corrected,
-    /// Which bodies a finger touches.
+    /// True for each body that a finger touches.
     touched: Vec<bool>,
-    /// What the model's hand holds.
+    /// Objects in the model's hand.
     now: Grasp,
-    /// What is taken over as a whole at the next tick.
+    /// State that is taken over as a whole at the next tick.
     discrete: Option<Discrete>,
-    /// With it: which walls are broken there, and what ran out of each, kg.
+    /// With it: for each body, its wall broken, and the mass that ran out, kg.
     spilled: Vec<(bool, f64)>,
 }
 
-/// What has no place between two values.
+/// State without values in between.
 struct Discrete {
     membrane: crate::world::MembraneState,
     branch: f64,
@@ -78,15 +79,16 @@ impl Poses {
         }
     }
 
-    /// How far everything has been corrected since the start.
+    /// Correction of everything since the start.
     pub fn corrected(&self) -> &Corrected {
         &self.corrected
     }
 
-    /// Compares a picture of the far world with the model `then`, corrected as it was then. `now`: what the model's hand holds now.
+    /// Compares a picture of the far world with the model `then`, corrected as it was then. `now`: present grasp of the
+    /// model's hand.
     pub fn compare(&mut self, then: &Picture, corrected_then: &Corrected, far: &Picture, now: Grasp) {
         self.now = now;
-        // Both hold it: what counts is how it lies in the hand. The far hand is on springs, and a moment behind.
+        // Both hold it: only its pose in the hand counts. The far hand is on springs, and a moment behind.
         let in_hand = then.grasp.body.filter(|body| far.grasp.body == Some(*body));
         let off_m = middle(far) - middle(then);
         for (index, (wanted, before)) in self.wanted.bodies.iter_mut().zip(&corrected_then.bodies).enumerate() {
@@ -116,7 +118,7 @@ impl Poses {
         }
     }
 
-    /// Corrects the model's state by what one tick allows.
+    /// Corrects the model's state by the allowance of one tick.
     pub fn bleed(&mut self, state: &mut State, dt_s: f64) {
         let share = 1.0 - (-dt_s / BLEED_S).exp();
         self.touched.fill(false);
@@ -164,7 +166,7 @@ fn limited(value: f64, most: f64) -> f64 {
     value.clamp(-most, most)
 }
 
-/// What a difference has beyond one that is small enough.
+/// Part of a difference beyond a tolerance.
 fn beyond(difference: Vec2, enough: f64) -> Vec2 {
     let size = difference.norm();
     if size > enough { difference * (1.0 - enough / size) } else { Vec2::zeros() }

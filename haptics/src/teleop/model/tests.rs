@@ -50,7 +50,7 @@ fn a_crank_that_was_guessed_wrong_feels_like_the_far_one_after_it_was_turned() {
     }
 }
 
-/// What a tutor makes of a far world in which a scripted hand does what the plan says, which was made for `planned`.
+/// Model that a tutor makes of a far world. A scripted hand acts there by the plan made for `planned`.
 fn taught(world: &World, planned: &World, guessed: &World, skill: Skill, seed: u64) -> World {
     let mut model = guessed.clone();
     let mut state = State::resting(world);
@@ -82,7 +82,7 @@ fn friction_is_learnt_from_what_slips_and_from_what_holds_though_it_should_slip(
         let (learnt, told) = (model.blocks[0].finger_friction, 0.15);
         assert!((learnt - told).abs() < 0.1 * told, "seed {seed}: {learnt}");
     }
-    // Held weakly, a block tells the least that its friction must be; without a slip nobody knows more.
+    // A weakly held block tells the least value of its friction; without a slip no more is known.
     let mut rough = planned.clone();
     rough.blocks[0].finger_friction = 0.2;
     let truth = planned.blocks[0].finger_friction;

@@ -1,8 +1,8 @@
-//! How things feel under the far fingers: friction from what slips there or holds though it should slip, stiffness of a wall from how far
-//! it gives.
+//! Feel of things under the far fingers: friction from slips, or from grips that hold though they should slip;
+//! stiffness of a wall from its deflection.
 //!
-//! One unknown each, with the guess as prior (a scalar Kalman filter). Coulomb: what slides has |Ft| = µ Fn, what does not has
-//! µ ≥ |Ft| / Fn. A wall in series with the pad: depth − pad(Fn) = Fn / k.
+//! One unknown each, with the guess as prior (a scalar Kalman filter). Coulomb: a sliding contact has |Ft| = µ Fn, any
+//! other one µ ≥ |Ft| / Fn. A wall in series with the pad: depth − pad(Fn) = Fn / k.
 
 use super::super::picture::Picture;
 use crate::Vec2;
@@ -21,7 +21,7 @@ const PRESSES_N: f64 = 0.2;
 /// Slower along the face, nothing slides; faster into it, dampers press as well, m/s.
 const SLIDES_M_S: f64 = 5e-3;
 const RESTS_M_S: f64 = 3e-3;
-/// What the pad's shear takes up of a motion along the face at the most where the finger slides.
+/// Largest share of a motion along the face that the pad's shear takes up while the finger slides.
 const SHEARS: f64 = 0.2;
 /// Newton's steps to a pad's compression.
 const STEPS: usize = 6;
@@ -67,7 +67,7 @@ struct Press {
     /// The finger's speed into the body and along its face, m/s.
     into_m_s: f64,
     along_m_s: f64,
-    /// How far it is behind the face, m.
+    /// Distance behind the face, m.
     depth_m: f64,
 }
 
@@ -171,7 +171,7 @@ impl Touch {
     }
 }
 
-/// How far a pad is compressed by a force, m: Newton's method from where a linear one would be.
+/// Compression of a pad under a force, m: Newton's method from the solution of a linear pad.
 fn compression_m(pad: &Pad, force_n: f64) -> f64 {
     let cushion = pad.elastic();
     (0..STEPS).fold(force_n / pad.stiffness_n_m, |pressed_m, _| {

@@ -1,4 +1,4 @@
-//! What things weigh, from the forces of the far fingers while they alone bear one.
+//! Masses of things, from the forces of the far fingers while they alone bear one.
 //!
 //! F = m (a − g) along a − g, one unknown: recursive least squares with the guess as prior. Pictures follow each other so quickly that
 //! their errors are alike; each counts as a tenth of one.
@@ -9,25 +9,26 @@ use crate::world::{MAX_BLOCKS, World};
 
 /// Standard deviation of a guess, relative to it.
 const GUESS: f64 = 0.5;
-/// Error of the net force of two fingers in one picture, with what the velocities' differences make of the acceleration, N.
+/// Error of the net force of two fingers in one picture, with the error of the acceleration from velocity differences,
+/// N.
 const FORCE_N: f64 = 0.05;
 /// Share of a picture that is news.
 const NEWS: f64 = 0.1;
-/// A grasp must have lasted so long: what was just taken up still swings, s.
+/// Least duration of a grasp, s: an object just taken up still swings.
 const SETTLED_S: f64 = 0.1;
 /// Time constant with which a mass of the model follows its estimate, s.
 const BLEED_S: f64 = 0.1;
 /// The model's masses stay within these factors of the guess: lighter, the model could not be stepped.
 const FACTORS: [f64; 2] = [0.5, 4.0];
 
-/// What is known of a body's mass.
+/// Knowledge of a body's mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed {
     /// Its index in the world.
     pub body: usize,
-    /// What the model began with, kg.
+    /// Mass in the model at the start, kg.
     pub guess_kg: f64,
-    /// What its forces say, kg.
+    /// Mass estimated from the forces, kg.
     pub mass_kg: f64,
     /// Standard error of that, kg.
     pub std_kg: f64,
@@ -60,7 +61,7 @@ impl Weights {
         }
     }
 
-    /// What the body that was carried last weighs.
+    /// Estimated mass of the body that was carried last.
     pub fn last(&self) -> Option<Weighed> {
         self.last.and_then(|body| self.known.get(body)).copied()
     }

@@ -1,4 +1,4 @@
-//! Over a slow line with and without a model: whole performances, stability, and what happens when the model is wrong.
+//! Over a slow line with and without a model: whole performances, stability, and the effects of a wrong model.
 
 mod passive;
 mod performance;

@@ -1,4 +1,5 @@
-//! The line without a model gives no energy out, however late it is and however hard the world; with one, only the model answers.
+//! The line without a model generates no energy, however late it is and however hard the world; with one, only the
+//! model answers.
 
 use super::*;
 use crate::Vec2;
@@ -9,7 +10,7 @@ use std::sync::{Arc, Mutex};
 /// Far walls, N/m: as stiff as pads at the end of a hard grip.
 const WALL_N_M: f64 = 6_000.0;
 
-/// What happened at the operator.
+/// Energies, positions and forces at the operator.
 #[derive(Default)]
 struct Felt {
     energy_j: f64,
@@ -22,7 +23,7 @@ struct Felt {
 struct Grip {
     spec: DeviceSpec,
     center_m: Vec2,
-    /// Where each finger wants to be, m outwards from the middle: open and closed.
+    /// Wanted position of each finger, m outwards from the middle: open and closed.
     open_m: f64,
     closed_m: f64,
     stops_s: f64,

@@ -49,7 +49,7 @@ fn the_crank_is_turned_over_half_a_second_either_way() {
     }
 }
 
-/// What a task must have come to, by its world.
+/// Test of a world's final state for success in its task.
 type Done = fn(&State) -> bool;
 
 fn tasks() -> [(World, Done); 4] {

@@ -1,4 +1,4 @@
-//! What the far world tells of itself corrects the model, without a jump.
+//! Forces and pictures of the far world correct the model, without a jump.
 
 use super::*;
 use crate::Vec2;

@@ -1,4 +1,4 @@
-//! Membrane, barrel and switch against their laws and numbers worked out on paper.
+//! Membrane, barrel and switch against their laws and numbers computed by hand.
 
 use super::super::*;
 use super::{DT, run};
@@ -48,7 +48,7 @@ fn a_needle_is_felt_as_the_membrane_says() {
         if held.phase == MembranePhase::Insertion && held.insertion_m > 1e-3 {
             assert!((down - law.loading_n(held.insertion_m)).abs() < 0.02, "{down} at {}", held.insertion_m);
         }
-        // The sudden drop throws the needle back for an instant: what counts is the order in which phases are first met.
+        // The sudden drop throws the needle back for an instant: only the order in which phases are first met counts.
         if !phases.contains(&held.phase) {
             phases.push(held.phase);
         }
@@ -81,7 +81,7 @@ fn a_barrel_gives_under_the_fingers_and_hangs_on_its_cable() {
     let world = presets::barrel();
     let barrel = world.blocks[0].clone();
     let mut state = grasp(&world, 2.5);
-    // Pad and wall in series: the pinch is what the grasp asked for.
+    // Pad and wall in series: the pinch is the wanted one.
     assert!((state.tip_force_n[0].x - 2.5).abs() < 1e-3, "{:?} {:?}", state.tip_force_n, state.bodies[0]);
     carry(&world, &mut state, Vec2::new(0.0, 0.010), 2.0, |_| {});
     run(&world, &mut state, 3.0);
@@ -144,7 +144,7 @@ fn a_switch_snaps_over_at_the_captured_force_and_back() {
         input.tip_in_world[0] = start + Vec2::new(0.012, 0.0) * f64::from(tick) / 8_000.0;
         input.tip_velocity[0] = Vec2::new(0.0015, 0.0);
         step(&world, &mut state, &input, DT);
-        // What drives the lever is the part along its arc.
+        // Only the part of the force along its arc drives the lever.
         let (sin, cos) = (state.switch.at_m / switch.lever_m).sin_cos();
         highest = highest.max(state.tip_force_n[0].dot(&Vec2::new(cos, -sin)));
     }

@@ -22,7 +22,7 @@ fn smooth(time_s: f64, start_s: f64, end_s: f64) -> f64 {
     u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
 }
 
-/// Where a block is after it was let go on or over a table: its centre, and the way of a point 10 mm from it, m.
+/// Place of a block after it was released on or over a table: its centre, and the way of a point 10 mm from it, m.
 fn tossed(floor: Floor, start: Pose, velocity_m_s: Vec2, dt_s: f64, seconds: f64) -> Vec<f64> {
     let mut world = World::empty("convergence");
     world.floor = Some(Floor { height_m: 0.0, ..floor });
@@ -121,9 +121,9 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_scene_converges_with_the_order_of_its_scheme() {
-    // Bodies move by a second-order scheme; dampers, friction, fingers and what is driven along one coordinate are of first
-    // order. The error at 1 kHz is that of places, m: after a bounce, on the way, where it came to rest. The needle happens to
-    // be better at 1 kHz than its order; a switch on its way goes at a metre a second, so a millisecond is a millimetre.
+    // Bodies move by a second-order scheme; dampers, friction, fingers and driven coordinates are of first order. The
+    // error at 1 kHz is that of places, m: after a bounce, on the way, where it came to rest. The needle happens to be
+    // better at 1 kHz than its order; a switch on its way goes at a metre a second, so a millisecond is a millimetre.
     type Scene = fn(f64) -> Vec<f64>;
     let scenes: [(&str, Scene, f64, f64); 8] = [
         ("a block that bounces without friction or damping", smooth_and_undamped, 2.0, 1e-4),

@@ -1,4 +1,4 @@
-//! The crank against numbers worked out on paper.
+//! The crank against numbers computed by hand.
 
 use super::super::*;
 use super::{AWAY, DT, run};
@@ -55,8 +55,8 @@ fn crank_swings_with_the_pendulum_period() {
 
 #[test]
 fn a_crank_remembers_its_presliding_and_hangs_in_it() {
-    // A handle of 0.16 N level with the axis hangs in presliding friction of 0.4 N and 800 N/m: Fc z = W, so z = 0.4 and it
-    // sinks by l ln(1/(1 − 0.4)), l = 0.5 mm, along its path (cos θ = 1 to 1e-4), and stays there.
+    // A handle of 0.16 N level with the axis hangs in presliding friction of 0.4 N and 800 N/m. Fc z = W, so z = 0.4.
+    // It sinks by l ln(1/(1 − 0.4)), l = 0.5 mm, along its path (cos θ = 1 to 1e-4), and stays there.
     let mut world = presets::crank();
     let crank = world.crank.as_mut().expect("there is one");
     crank.effects = vec![

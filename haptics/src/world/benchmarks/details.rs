@@ -1,4 +1,4 @@
-//! Details of the world that nothing else would miss, each against a number worked out on paper.
+//! Details of the world that nothing else would miss, each against a number computed by hand.
 
 use super::super::*;
 use super::{AWAY, DT, run, single};
@@ -81,7 +81,7 @@ fn the_arm_holds_the_handle_on_its_circle_by_m_v2_over_r() {
         let expected_n = -0.05 * 0.6 * 0.6 / radius;
         let found_n = state.crank.constraint_force_n;
         assert!((found_n / expected_n - 1.0).abs() < 1e-3, "{stiffness:?}: {found_n} N, not {expected_n}");
-        // An arm that gives is longer by that.
+        // An arm that yields is longer by that.
         let given_m = stiffness.map_or(0.0, |k| -expected_n / k);
         assert!((state.crank.radial_m - given_m).abs() < 1e-3 * given_m + 1e-12, "{}", state.crank.radial_m);
     }
@@ -117,7 +117,7 @@ fn a_heavy_knob_leans_on_its_stop_with_its_weight() {
         let mut state = State::new(&world, AWAY);
         run(&world, &mut state, 3.0);
         assert!(state.switch.rate_m_s.abs() < 1e-6, "it rests");
-        // What holds it along its arc is W sin of the lever's lean, the more of it the more the set-up is tilted.
+        // The hold along its arc is W sin of the lever's lean, the more of it the more the set-up is tilted.
         let lean_rad = state.switch.at_m / lever_m + tilt_rad;
         let expected_n = 0.3 * 9.81 * lean_rad.sin();
         assert!(expected_n < -0.7, "it leans to the left: {expected_n} N");

@@ -1,10 +1,10 @@
-//! What stands fixed is solid for fingertips, and a needle is only inserted by a hand that holds it.
+//! Fixed objects are solid for fingertips, and a needle is only inserted by a hand that holds it.
 
 use super::super::*;
 use super::{DT, run};
 use crate::Vec2;
 
-/// Where the right finger waits.
+/// Waiting position of the right finger.
 const ASIDE: Vec2 = Vec2::new(0.045, -0.06);
 
 /// Moves the left finger to a place in 0.4 s; the force that it exerts there, N.
@@ -70,6 +70,6 @@ fn a_needle_that_nobody_holds_is_not_inserted() {
     let half = Vec2::new(0.003 - 0.0005, 0.0);
     state.input.tip_in_world = [middle - half, middle + half];
     run(&world, &mut state, 0.5);
-    // Which way it went last: it sprang back a little when it came to stand on the sheet.
+    // The label shows its last direction: it sprang back a little when it came to stand on the sheet.
     assert!(["insertion", "extraction"].contains(&true_label(&world, &state)), "{}", true_label(&world, &state));
 }

@@ -69,8 +69,8 @@ fn a_pad_gets_hard_towards_its_thickness_and_stays_calm_there() {
 
 #[test]
 fn a_light_block_is_stable_between_pads_that_are_pressed_to_their_end() {
-    // 1 g between two closed foams swings at √(2 · 10 kN/m / 1 g) = 4472 rad/s: at 1 kHz it needs the tick divided by what the
-    // pads are there, not by what they are at rest. Without damping nothing else would calm it.
+    // A block of 1 g between two closed foams swings at √(2 · 10 kN/m / 1 g) = 4472 rad/s. At 1 kHz it needs the tick
+    // divided by the stiffness of the pads there, not at rest. Without damping nothing else would calm it.
     let mut world = World::empty("pinch");
     world.floor = None;
     (world.pad.damping_n_s_m, world.pad.shear_damping_n_s_m) = (0.0, 0.0);
@@ -91,7 +91,7 @@ fn a_light_block_is_stable_between_pads_that_are_pressed_to_their_end() {
     assert!((most_m / 1e-4 - 1.0).abs() < 0.05 && (late_m / 1e-4 - 1.0).abs() < 0.05, "{most_m} m, later {late_m} m");
 }
 
-/// How far the platform notes' grip creeps: 0.2 kg, friction 0.9, 2.4 N pinch (margin 2.2), m from 5 s to the end.
+/// Creep of the platform notes' grip, m from 5 s to the end: 0.2 kg, friction 0.9, 2.4 N pinch (margin 2.2).
 fn creep_m(dt_s: f64, seconds: f64) -> f64 {
     let mut world = World::empty("grip");
     world.floor = None;

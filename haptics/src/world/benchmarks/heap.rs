@@ -69,8 +69,8 @@ fn thirty_blocks_fall_into_a_heap_and_come_to_rest() {
     }
 }
 
-/// Whether a thin plank leaning on a heavy block stays up. Floor and wall have the same friction mu: it holds above
-/// tan θ = (1 − mu²)/(2 mu).
+/// True if a thin plank leaning on a heavy block stays up. Floor and wall have the same friction mu: it holds above tan
+/// θ = (1 − mu²)/(2 mu).
 fn leaning_plank_stays(angle_rad: f64, friction: f64) -> bool {
     let mut world = World::empty("plank");
     world.floor = Some(Floor { height_m: 0.0, friction, ..Floor::default() });

@@ -1,4 +1,4 @@
-//! Impacts: what a bounce leaves, flat and on a corner, and that an undamped one takes nothing.
+//! Impacts: energy after a bounce, flat and on a corner, and the absence of loss in an undamped one.
 
 use super::super::*;
 use super::AWAY;
@@ -53,8 +53,8 @@ fn energies(world: &World, state: &mut State, dt_s: f64, seconds: f64) -> Vec<f6
     found
 }
 
-/// Largest gain and loss at a bounce, as shares of the energy above rest at the start, and the whole change, for an undamped
-/// block let go at several heights and phases of the tick.
+/// Largest gain and loss at a bounce, as shares of the energy above rest at the start, and the whole change. The block
+/// is undamped and released at several heights and phases of the tick.
 fn changes(angle_rad: f64, rate_hz: f64) -> (f64, f64, f64) {
     let (mut gain, mut loss, mut drift, mut bounces) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
     for height_m in [0.005, 0.02, 0.05, 0.1_f64] {
@@ -83,7 +83,7 @@ fn an_undamped_block_bounces_without_gaining_or_losing() {
             let scene = format!("{angle_rad} rad at {rate_hz} Hz");
             assert!(gain < 1e-3, "{scene} gains {gain} of its energy at a bounce");
             assert!(loss < most_lost, "{scene} loses {loss} of its energy at a bounce");
-            // What single bounces change does not add up.
+            // Changes at single bounces do not add up.
             assert!(drift < 1e-2, "{scene} ends {drift} off after all its bounces");
         }
     }
@@ -126,8 +126,8 @@ fn a_corner_lands_with_the_same_restitution_as_a_face() {
 
 #[test]
 fn a_block_that_lands_while_it_slides_stops_when_paper_says() {
-    // What the floor gives a body that ends at rest is its weight times the time, however it bounces and turns; while it slides the
-    // friction has mu of that: v = mu g t, counted from where it was let go.
+    // The floor's impulse on a body that ends at rest is its weight times the time, however it bounces and turns. The
+    // friction of a sliding body has mu of that: v = mu g t, counted from its release.
     const SPEED_M_S: f64 = 1.2;
     const MU: f64 = 0.2;
     for e in [0.02, 0.1, 0.3, 0.5] {

@@ -1,4 +1,4 @@
-//! Analytic benchmarks: the world against numbers worked out on paper.
+//! Analytic benchmarks: the world against numbers computed by hand.
 
 #![cfg(test)]
 
@@ -57,7 +57,7 @@ fn rests_at_its_static_compression_without_creep() {
     assert!((state.bodies[0].center_m - settled.center_m).norm() < 1e-12);
 }
 
-/// How far a block slides in 3 s on a floor tilted by `angle_rad`, m. It settles on the flat floor first.
+/// Distance that a block slides in 3 s on a floor tilted by `angle_rad`, m. It settles on the flat floor first.
 fn slope(angle_rad: f64, friction: f64) -> f64 {
     let (mut world, _) = single(0.03, 0.01, 0.0);
     world.floor = Some(Floor { height_m: 0.0, friction, ..Floor::default() });
@@ -132,7 +132,7 @@ fn energy_never_rises_without_work() {
     for _ in 0..3_000 {
         step(&world, &mut state, &input, DT);
         let now = energy(&state);
-        // What is stored is known for the middle of a part, the rest for its end: a ripple, never a pump.
+        // The stored energy is known for the middle of a part, the rest for its end: a ripple, never a pump.
         assert!(now <= highest + 0.005 * start, "energy rose from {highest} to {now} at {}", state.time_s);
         highest = highest.min(now);
     }

@@ -1,4 +1,5 @@
-//! Rough handling: whatever the fingers do in whatever world, nothing may become infinite, and the same motion gives the same bits.
+//! Rough handling: nothing may become infinite under any motion of the fingers in any world, and the same motion makes
+//! the same bits.
 
 use super::super::*;
 use crate::Vec2;
@@ -37,7 +38,7 @@ fn is_finite(state: &State) -> bool {
     bodies.chain(fixed).chain(tips).chain([state.membrane.force_n]).all(f64::is_finite)
 }
 
-/// Mechanical energy of the bodies above their highest rest, J, with what cables and pressed contacts store.
+/// Mechanical energy of the bodies above their highest rest, J, with that of cables and pressed contacts.
 fn energy(world: &World, state: &State) -> f64 {
     let floor_m = world.floor.map_or(0.0, |f| f.height_m);
     let bodies = world.blocks.iter().zip(&state.bodies).map(|(block, body)| {

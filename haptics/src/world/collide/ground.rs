@@ -1,4 +1,4 @@
-//! Touches with what lies under everything: the table, and a plane at any angle.
+//! Touches with the ground under everything: the table, and a plane at any angle.
 
 use super::{Found, Gather, Material, Solid, pad_material};
 use crate::Vec2;

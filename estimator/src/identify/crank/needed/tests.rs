@@ -1,4 +1,4 @@
-//! A crank's world told what a motion needs: nothing of it may be the measured force in disguise.
+//! Forces that a crank's world predicts for a motion: nothing of them may be the measured force in disguise.
 
 use crate::calibrate;
 use crate::identify::crank;

@@ -1,4 +1,4 @@
-//! Both joints of a chain as they were recorded: rates from one light filter, and every column of the model through one more.
+//! Both joints of a chain as recorded: rates from one light filter, and every regressor of the model through one more.
 
 use crate::estimate::EstimateError;
 use crate::identify::mechanism::even::Even;
@@ -13,16 +13,16 @@ use std::f64::consts::TAU;
 pub const ANGLES: [&str; 2] = ["q1_rad", "q2_rad"];
 /// Torques.
 pub const TORQUES: [&str; 2] = ["tau1_Nm", "tau2_Nm"];
-/// Noise that is let through on a rate, as a share of it: far below what the second filter leaves of it.
+/// Noise that is let through on a rate, as a share of it: far below the noise after the second filter.
 const RATE_NOISE: f64 = 0.03;
 /// Slower than this share of its usual rate a joint may stick.
 const SLOW_SHARE: f64 = 0.015;
 /// Rows a period of the cut-off: neighbours repeat each other.
 const ROWS_A_PERIOD: f64 = 4.0;
 
-/// One uninterrupted piece of a recording.
+/// One segment of a recording without a gap.
 pub struct Joints {
-    /// Which recording.
+    /// Index of the recording.
     pub recording: usize,
     motion: Vec<TwoLinkMotion>,
     torque: [Vec<f64>; 2],
@@ -31,13 +31,13 @@ pub struct Joints {
     /// Cut-off of the filter before rates are taken, Hz.
     pub light_hz: f64,
     gravity: f64,
-    /// How likely each joint sticks, 0 … 1, sample by sample.
+    /// Probability that each joint sticks, 0 … 1, sample by sample.
     sticking: [Vec<f64>; 2],
     /// Place of the first sample in its recording, and of one sample, 0 … 1.
     place: (f64, f64),
 }
 
-/// Rows of one joint of one piece: the model's columns and the torque.
+/// Rows of one joint in one segment: the model's regressors and the torque.
 pub struct JointRows {
     /// First joint: 0.
     pub joint: usize,
@@ -51,7 +51,7 @@ pub struct JointRows {
     pub place: Vec<f64>,
 }
 
-/// All pieces of one recording.
+/// All segments of one recording.
 pub fn joints(recording: &Recording, index: usize) -> Result<Vec<Joints>, EstimateError> {
     let missing = |column: &str| EstimateError::MissingColumn {
         task: "a chain of two links".to_owned(),

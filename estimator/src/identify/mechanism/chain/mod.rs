@@ -1,12 +1,14 @@
-//! A chain of two links with a motor at each joint: what its joints feel of masses, lengths and friction (base parameters).
+//! A chain of two links with a motor at each joint: the base parameters of masses, lengths and friction that its joints
+//! feel.
 //!
-//! The model is linear in its numbers, but not in the motion, and its accelerations would be those of noisy angles. So momenta are
-//! formed from lightly filtered motion, and only then everything, the torque too, goes through one low-pass, after which the momenta
-//! are differentiated: a filter that is far below the motion's own noise costs no bias, whatever its cut-off.
+//! The model is linear in its parameters, but not in the motion, and its accelerations would be those of noisy angles.
+//! Momenta are therefore formed from lightly filtered motion. Only then everything, the torque too, goes through one
+//! low-pass, after which the momenta are differentiated: a filter far below the motion's own noise costs no bias,
+//! whatever its cut-off.
 //!
-//! What real chains have beside the model (belts, gears, a table that shakes) grows with frequency and shrinks inertias. So the cut-off is
-//! the one about which the answers change least (minimal sensitivity), what they change by joins the errors, and several
-//! recordings show by leaving each out in turn how far they agree (jackknife: Efron & Tibshirani 1993, §11).
+//! Effects of real chains outside the model (belts, gears, a table that shakes) grow with frequency and shrink
+//! inertias. The chosen cut-off is the one about which the answers change least (minimal sensitivity), and the changes
+//! join the errors. Leaving each recording out in turn shows their agreement (jackknife: Efron & Tibshirani 1993, §11).
 
 mod joints;
 mod report;
@@ -19,7 +21,7 @@ use solve::{Solution, solve, tried};
 
 /// The object's name in the results.
 pub const OBJECT: &str = "chain";
-/// A joint that moves less than this share of what it moves elsewhere is held: what holds it is not its sliding friction.
+/// Share of its motion elsewhere below which a joint is held: its holding force is not its sliding friction.
 const HELD_SHARE: f64 = 0.05;
 
 /// True when a recording is one of a chain.
@@ -55,7 +57,7 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     Ok(result)
 }
 
-/// Which joints of which recordings were held, with a sentence for each.
+/// Joints that were held, for each recording, with a sentence for each.
 fn held(pieces: &[Joints], recordings: &[Recording]) -> (Vec<[bool; 2]>, Vec<String>) {
     let most = [0, 1].map(|j: usize| pieces.iter().map(|p| p.usual_rate(j)).fold(0.0, f64::max));
     let mut held = vec![[false; 2]; recordings.len()];

@@ -1,4 +1,4 @@
-//! What the recordings of a chain show, in the words of a fit.
+//! Report of a chain's parameters from its recordings, as a fit.
 
 use super::OBJECT;
 use super::solve::{FIRM, MODEL, Row, Solution};
@@ -14,7 +14,7 @@ const CLEAR_T: f64 = 3.0;
 const COUPLING: usize = 2;
 const MOMENT: usize = 5;
 
-/// The chosen solution with what its errors are made of.
+/// The chosen solution with the sources of its errors.
 pub struct Seen<'a> {
     /// At the cut-off that was chosen.
     pub best: &'a Solution,
@@ -25,7 +25,7 @@ pub struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Error of a quantity: its own or that between recordings, whichever is larger, and what the cut-off changes.
+    /// Error of a quantity: its own or that between recordings, whichever is larger, and the change by the cut-off.
     fn error(&self, own: f64, of: &dyn Fn(&Solution) -> f64) -> f64 {
         let n = self.left_out.len() as f64;
         let values: Vec<f64> = self.left_out.iter().map(of).collect();
@@ -110,7 +110,7 @@ impl Seen<'_> {
     }
 }
 
-/// How well the ends of the recordings are met by a fit that has not seen them.
+/// Quality of the model on the held-out ends of the recordings.
 pub fn quality(early: &Solution, rows: &[Row], best: &Solution, held_out: f64) -> Quality {
     let root = |values: &mut dyn Iterator<Item = f64>| {
         let (sum, n) = values.fold((0.0, 0), |(s, n), v| (s + v * v, n + 1));

@@ -7,7 +7,7 @@ use haptics::law::object::TWO_LINK;
 
 /// Numbers of the model.
 pub const MODEL: usize = TWO_LINK.len();
-/// Those that must not hang on the cut-off: inertias and gravity. Friction is where the model is least true.
+/// Parameters that must not depend on the cut-off: inertias and gravity. The model is least true for friction.
 pub const FIRM: [usize; 5] = [0, 1, 2, 4, 5];
 /// The Coulomb friction of each joint.
 const DRY: [usize; 2] = [7, 9];
@@ -22,9 +22,9 @@ const ROUNDS: usize = 3;
 /// One row of the regression.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Which recording.
+    /// Index of the recording.
     pub recording: usize,
-    /// Which joint, from 0.
+    /// Index of the joint, from 0.
     pub joint: usize,
     /// Place in the recording, 0 … 1.
     pub place: f64,
@@ -43,7 +43,7 @@ pub struct Solution {
     pub fit: LinearFit,
     /// Rows, in the order of the fit's residuals.
     pub rows: Vec<Row>,
-    /// For each recording and joint: the column of its zero; `None` without rows.
+    /// Index of the zero's regressor for each recording and joint; `None` without rows.
     zeros: Vec<[Option<usize>; 2]>,
 }
 

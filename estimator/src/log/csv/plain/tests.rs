@@ -9,7 +9,7 @@ const READ: Use = Use::Number { required: true, factor: 1.0 };
 /// Rows, and where the next one starts.
 type Taken = (usize, usize);
 
-/// What the quick way takes, then all that can be taken, and the columns.
+/// Rows taken by the quick way, then by both ways, and the columns.
 fn read(text: &[u8], delimiter: u8, uses: &[Use]) -> (Taken, Taken, Vec<Vec<f64>>) {
     let mut columns = vec![Vec::new(); uses.len()];
     let mut ends = Vec::new();
@@ -94,7 +94,7 @@ proptest! {
             find_ends(bytes, delimiter, &mut ends);
             let mut quick = vec![Vec::new(); 2];
             let (rows, next) = Plain::new(delimiter, &uses, &mut quick, &ends).rows(bytes, 0);
-            // Row by row: what the quick way took must be what the most careful parser finds in the cells.
+            // Row by row: a row taken by the quick way must be the one that the most careful parser finds in the cells.
             let taken: Vec<&[u8]> = bytes[..next].split_inclusive(|&b| b == b'\n').collect();
             prop_assert_eq!(taken.len(), rows);
             for (i, row) in taken.iter().enumerate() {
