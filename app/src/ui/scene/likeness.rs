@@ -16,7 +16,7 @@ pub struct Likeness {
     /// Difference between the grasp and the held virtual object, minus its mean (the grasp is rarely at the object's
     /// centre), m.
     pub place_m: Option<f64>,
-    /// Travel of the grasp meanwhile, m.
+    /// RMS deviation of the grasp from its mean position meanwhile, m.
     pub of_way_m: f64,
 }
 
