@@ -211,8 +211,8 @@ pub fn done_with(world: &World, asked: &Experiment, name: &str) -> anyhow::Resul
     Ok(recording)
 }
 
-/// Recording of a handle 30 cm from its hinge, moved through a sixth of a turn by a tool that also pulls, with the
-/// noise of a tracker and of a force sensor.
+/// Recording of a handle 30 cm from its hinge. A tool moves it through a sixth of a turn and also pulls, with the noise
+/// of a tracker and of a force sensor.
 fn door() -> Recording {
     const RADIUS_M: f64 = 0.30;
     // A Lehmer generator (1951): the same picture on every machine.
