@@ -1,7 +1,7 @@
 //! Attempts that the database has rejected: one JSON file each in a folder beside it, until it accepts them.
 //!
-//! A file is named after the start of its attempt, but never before one that is already waiting. So they are imported
-//! in the order in which they were made, even if the clock was set back between them.
+//! A file is named after the start of its attempt, but never before one that is already waiting. The import
+//! thus keeps the order in which they were made, even if the clock was set back between them.
 
 use super::{Attempt, Store};
 use std::fs::File;

@@ -1,8 +1,7 @@
 //! The folder of recordings, their names, and the search for unfinished ones.
 //!
 //! While a recording is written, a locked marker file is beside it. A killed process leaves the marker without its
-//! lock. That distinguishes the recording from one that another window is writing, and from one already reported to the
-//! user.
+//! lock. Its recording thus differs from one that another window is writing, and from one already reported to the user.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
@@ -52,7 +51,7 @@ pub fn reserve(folder: &Path, world: &str) -> Result<(PathBuf, Marker), String> 
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => continue,
             Err(error) => return Err(refused(error)),
         };
-        // Where files cannot be locked, another window offers this one as unfinished: untidy, but nothing is lost.
+        // Without file locks, another window offers this file as unfinished: untidy, but nothing is lost.
         let _ = locked.try_lock();
         let marker = Marker { path: marker, _locked: locked };
         match OpenOptions::new().write(true).create_new(true).open(&path) {

@@ -9,7 +9,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
 use strum::{EnumIter, IntoEnumIterator as _};
 
-/// One action. Those without arguments come first, in the order of the menus.
+/// One action. Variants without arguments come first, in the order of the menus.
 #[derive(Clone, Debug, PartialEq, EnumIter)]
 pub enum Action {
     /// Chooses a log.

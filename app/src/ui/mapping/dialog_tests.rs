@@ -11,8 +11,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A cart of 2 kg with friction, pushed back and forth, as a test rig would write it: odd names, millimetres, and a
-/// force of the opposite sign whose header says volts.
+/// A cart of 2 kg with friction, pushed back and forth, as a test rig would write it: odd names and millimetres. The
+/// force has the opposite sign, and its header says volts.
 fn rig_table(folder: &Path) -> PathBuf {
     let mut text = "# Prüfstand 3\nTakt;Schlitten;Ausgang_V;Öl [°C]\n".to_owned();
     for i in 0..6_000 {

@@ -138,7 +138,7 @@ impl Draft {
     }
 
     fn take_columns(&mut self) {
-        // Where several names share a column, the program's own name is shown.
+        // Of several names for one column, the program's own is shown.
         let stranger = |name: &String| {
             units::split(name).is_none_or(|(quantity, _)| units::quantity_dimensions(quantity).is_none())
                 && !matches!(name.as_str(), "trial" | "label")

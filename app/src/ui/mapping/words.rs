@@ -1,4 +1,4 @@
-//! Reading the names of columns as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
+//! Reading of column names as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
 
 use super::file_units::unit_in;
 use estimator::log::units::Dimension;

@@ -1,5 +1,5 @@
-//! Agreement of the replay with the recording, in numbers (thesis, figures 5.18 to 5.22): simulated and measured
-//! forces, and the position of the virtual object while the measured fingers held it.
+//! Agreement of the replay with the recording, in numbers (thesis, figures 5.18 to 5.22). It compares the forces, and
+//! the position of the virtual object while the measured fingers held it.
 
 use crate::ui::jobs::Replayed;
 use crate::ui::prepare::Prepared;

@@ -117,7 +117,7 @@ impl Mechanism {
             let pixel = camera.pixel_of(*at, size) / ui.pixels_per_point();
             let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(11.5), p.secondary);
             let at = rect.min + egui::vec2(pixel.x - 0.5 * galley.size().x, pixel.y);
-            // Where they are close together, every second or third is enough.
+            // Numbers close together are thinned: every second or third is enough.
             if at.x > last + space::S && rect.contains_rect(Rect::from_min_size(at, galley.size())) {
                 last = at.x + galley.size().x;
                 painter.galley(at, galley, p.secondary);
