@@ -1,8 +1,8 @@
 //! The database: everything that it confirms has reached the disk.
 //!
 //! **The order of attempts.** A clock can be set back between two attempts, or be on a wrong day for a while. Every
-//! attempt therefore has a place, which is a time stamp assigned on insertion. Attempts are ordered by place and, at the same
-//! place, by insertion:
+//! attempt therefore has a place, which is a time stamp assigned on insertion. Attempts are ordered by place and, at
+//! the same place, by insertion:
 //! - one stored as it is made ([`Store::keep`]) is placed at its start, but never before one that was stored earlier in
 //!   this database;
 //! - one that is imported ([`Store::add`]) is placed at its start: an older one goes among the old ones, and does not

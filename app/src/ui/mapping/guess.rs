@@ -203,7 +203,7 @@ fn best_of_each(candidates: Vec<Candidate>) -> Vec<Candidate> {
     chosen
 }
 
-/// Reduces the choice to one complete form of recording, the one with the most columns.
+/// Reduces the choice to one complete form of recording, the richest present: tips, joints, tool, or coordinate.
 fn settle_forms(chosen: &mut Vec<Candidate>) {
     // Half a vector is useless; columns that depended on it are dropped, too.
     loop {

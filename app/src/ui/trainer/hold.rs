@@ -30,10 +30,10 @@ pub struct Hold {
     listening: Listening,
 }
 
-/// Responsiveness of a device other than the mouse: it has answered, and still does.
+/// Responsiveness of the device: it has answered, and still does.
 #[derive(Clone, Copy, Debug, Default)]
 struct Listening {
-    /// Time since it is monitored, s, and age of its newest sample, s.
+    /// Monitoring time, s, and age of the newest sample, s.
     for_s: f64,
     age_s: f64,
     answered: bool,
@@ -122,7 +122,7 @@ impl Trainer {
         self.hold.listening.age_s < BACK_S
     }
 
-    /// Runs once per frame: detects a device that stops responding.
+    /// Runs once per frame: pauses the world if a force-feedback device stops responding.
     pub(super) fn listen(&mut self, frame_s: f64) {
         let age_s = self.newest.as_ref().map_or(0.0, |snapshot| snapshot.timing.sample_age_s);
         let is_lost = self.hold.listening.hear(age_s, frame_s);
