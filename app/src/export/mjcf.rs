@@ -30,8 +30,8 @@ const TIP_AWAY_M: f64 = 0.03;
 /// Torsional and rolling friction of MuJoCo's pairs: its defaults; neither acts in a plane.
 const OTHER_FRICTION: &str = "0.005 0.0001 0.0001";
 
-/// Friction parameters of a joint. MuJoCo's dry friction creeps at rest and is rounded at low speed; these values reduce
-/// both.
+/// Friction parameters of a joint. MuJoCo's dry friction creeps at rest and is rounded at low speed; these values
+/// reduce both effects.
 const STIFF_FRICTION: &str = "0.002 1";
 const FIRM_FRICTION: &str = "0.99 0.999 0.001";
 /// Impedance of a stop with known stiffness (see `stop`), and its maximum rotation in a step, rad.
