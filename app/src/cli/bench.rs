@@ -1,5 +1,5 @@
-//! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it. Without
-//! a word behind it, every figure in one table (`whole`).
+//! `touchstone bench`. This file has `bench servo`: the timing of the servo on this machine, with and without drawing
+//! beside it. Without a subcommand, `bench` prints all figures in one table (`whole`).
 
 pub(crate) mod blind;
 pub(crate) mod delay;
@@ -33,7 +33,7 @@ use std::time::{Duration, Instant};
 
 /// Size of the pictures that are drawn beside the servo, pixels.
 const PICTURE: (u32, u32) = (1280, 720);
-/// The fingers go round once in this time, s.
+/// Period of the fingers' motion, s.
 const ROUND_S: f64 = 2.5;
 
 /// Arguments of `bench`.
@@ -152,13 +152,13 @@ impl What {
     }
 }
 
-/// What came out.
+/// Result of a measurement.
 struct Measured {
     timing: Timing,
     privileges: Privileges,
     guarded: u64,
     wall_s: f64,
-    /// Most damping of the passivity controller, N s/m.
+    /// Maximum damping of the passivity controller, N s/m.
     control: Option<f64>,
     frames: Option<u64>,
     renderer: Option<String>,
@@ -180,7 +180,7 @@ impl ServoBench {
         Ok(report(&measured)?)
     }
 
-    /// The pinch scene under fingers that go round, close and open: contacts come and go as they do for a person.
+    /// Runs the pinch scene under fingers that circle, close and open: contacts come and go as they do for a person.
     fn measure(&self, painter: Option<&Painter>) -> anyhow::Result<Measured> {
         let world = presets::stacking();
         let center = world.blocks[0].start.center_m;
@@ -196,7 +196,7 @@ impl ServoBench {
         let mut ticks = Vec::new();
         let begun = Instant::now();
         while begun.elapsed().as_secs_f64() < self.seconds && servo.is_running() {
-            // As a window does: at the pace of a screen.
+            // As in a window: at the refresh rate of a screen.
             std::thread::sleep(Duration::from_millis(16));
             let (sin, cos) = (std::f64::consts::TAU * begun.elapsed().as_secs_f64() / ROUND_S).sin_cos();
             let moved = haptics::Vec2::new(0.01 * sin, 0.012 * (1.0 + cos));
@@ -266,7 +266,7 @@ fn percentiles(t: &Timing) -> [(&'static str, Percentiles); 4] {
     [("period", t.period), ("lateness", t.lateness), ("compute", t.compute), ("force age", t.force_age)]
 }
 
-/// A thread that draws the newest state again and again.
+/// Thread that draws the newest state repeatedly.
 struct Painter {
     newest: Arc<std::sync::Mutex<Option<Snapshot>>>,
     stop: Arc<AtomicBool>,
@@ -298,7 +298,7 @@ impl Painter {
     }
 
     fn show(&self, snapshot: &Snapshot) {
-        // A painter that panicked is reported at the end.
+        // A panic of the painter is reported at the end.
         if let Ok(mut newest) = self.newest.lock() {
             *newest = Some(snapshot.clone());
         }

@@ -57,7 +57,7 @@ impl Convert {
         Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 
-    /// Neither the input nor its sidecar may be written over.
+    /// Error if the output would overwrite the input or its sidecar.
     fn spare_the_input(&self) -> anyhow::Result<()> {
         let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
             (Ok(a), Ok(b)) => a == b,

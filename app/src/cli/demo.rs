@@ -71,13 +71,13 @@ struct Hits {
     of: usize,
 }
 
-/// A recording that travels with the program: made by the scripted operator in a world that the fit does not see.
+/// Recording bundled with the program: made by the scripted operator in a world unknown to the fit.
 struct BuiltIn {
     name: &'static str,
     title: &'static str,
     csv: &'static str,
     meta: &'static str,
-    /// The world it was made in: opened only to compare in the end.
+    /// World of the recording: opened only for the final comparison.
     truth: &'static str,
 }
 
@@ -101,7 +101,7 @@ const RECORDINGS: [BuiltIn; 2] = [
 const PICTURE: [u32; 2] = [1280, 720];
 const WORKBENCH: [u32; 2] = [1600, 1000];
 
-/// A recording that travels with the program, by name, loaded by way of `folder`.
+/// Bundled recording of a name, loaded by way of `folder`.
 pub fn built_in(name: &str, folder: &Path) -> anyhow::Result<Vec<Recording>> {
     let found = RECORDINGS.iter().find(|built_in| built_in.name == name);
     let built_in = found.with_context(|| format!("there is no built-in recording `{name}`"))?;
@@ -168,7 +168,7 @@ impl Demo {
         })
     }
 
-    /// What the thesis's model leaves of the recording, and the world that has what was found.
+    /// Diagnoses the thesis's model on the recording. Returns the diagnosis, and the file of the extended world.
     fn diagnose(
         &self,
         built_in: &BuiltIn,
@@ -186,7 +186,7 @@ impl Demo {
         Ok((diagnosis, file))
     }
 
-    /// The pictures; without any Vulkan driver the demo goes on and says so.
+    /// Draws the pictures; without a Vulkan driver the demo continues and says so.
     fn pictures(&self, text: &mut String) -> Vec<PathBuf> {
         let mut made = Vec::new();
         let _ = writeln!(text, "\nPictures");
@@ -203,7 +203,7 @@ impl Demo {
         made
     }
 
-    /// One page about both recordings.
+    /// Writes one page about both recordings.
     fn report(&self, text: &mut String) -> anyhow::Result<PathBuf> {
         progress("report");
         let logs: Vec<PathBuf> = RECORDINGS.iter().map(|r| self.file(&format!("{}.csv", r.name))).collect();
@@ -233,7 +233,7 @@ impl Demo {
     }
 }
 
-/// How many estimates lie within two of their errors of what the recording was made with.
+/// Number of estimates within two standard errors of the true values.
 fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Hits> {
     let truth = World::from_json(built_in.truth)?;
     let (mut hits, mut all) = (0, 0);
@@ -256,7 +256,7 @@ fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     haptics::text_file::write(path, text).with_context(|| format!("the file could not be written: {}", path.display()))
 }
 
-/// Names and values of what a fit should find in a world.
+/// Names and true values of the parameters that a fit should estimate in a world.
 fn true_values(world: &World) -> Vec<(String, String, f64)> {
     let mut values = Vec::new();
     for block in &world.blocks {

@@ -1,4 +1,4 @@
-//! `touchstone device`: what could drive the hand, and a self-test in words.
+//! `touchstone device`: available devices, and a self-test with a text report.
 
 mod open;
 mod report;
@@ -95,7 +95,7 @@ struct OfDevice {
 }
 
 impl Device {
-    /// The report, and whether nothing failed outright.
+    /// Runs the test. Returns the report, and true if no check failed outright.
     pub(super) fn run(&self) -> anyhow::Result<(Output, bool)> {
         match &self.what {
             What::List(list) => Ok((list.run()?, true)),
@@ -200,7 +200,7 @@ impl Test {
         open::behind_a_network(opened, config, self.waves, world, 1.0 / self.rate)
     }
 
-    /// Lets the servo run; pushes in the second half, when that was asked for.
+    /// Runs the servo; pushes in the second half if that was requested.
     fn watch(&self, servo: &mut Servo) -> Vec<TickRecord> {
         let mut ticks = Vec::new();
         let begun = Instant::now();
@@ -211,7 +211,7 @@ impl Test {
             }
             let pushing = self.push > 0.0 && elapsed_s > 0.5 * self.seconds;
             servo.test_force(pushing.then(|| [Vec2::new(0.0, self.push); 2]));
-            // The servo works on its own thread; this one only empties the ring in time.
+            // The servo runs on its own thread; this one only empties the ring in time.
             std::thread::sleep(Duration::from_millis(50));
             servo.drain(&mut ticks);
         }

@@ -78,7 +78,7 @@ impl Diagnose {
 }
 
 impl Diagnose {
-    /// What to start from.
+    /// Options of the diagnosis.
     fn options(&self) -> anyhow::Result<Options> {
         let named_file = self.baseline.as_ref().map(PathBuf::from).filter(|b| b.extension().is_some());
         let world = match self.world.as_ref().or(named_file.as_ref()) {
@@ -90,19 +90,19 @@ impl Diagnose {
             None => None,
         };
         let baseline = self.baseline.clone().filter(|_| world.is_none());
-        // Tasks with a model of their own do not look at it: a wrong word is told all the same.
+        // Tasks with a model of their own ignore it: an invalid name is an error all the same.
         if let Some(name) = &baseline {
             estimator::diagnose::named(name)?;
         }
         Ok(Options { baseline, world, ..Options::default() })
     }
 
-    /// Whether every log has a line of its own.
+    /// True if every log has a line of its own.
     pub(super) fn is_fleet(&self) -> bool {
         self.json_lines
     }
 
-    /// Every log by itself; a sentence when some of them failed.
+    /// Diagnoses every log separately. Returns a sentence if some of them failed.
     pub(super) fn run_fleet(&self) -> anyhow::Result<Option<String>> {
         let options = self.options()?;
         if let Some(task) = &self.source.task {
@@ -130,7 +130,7 @@ impl Diagnose {
         // Standard output is for the lines alone.
         let then = if failed_before > 0 { format!(" ({failed_before} of them failed then)") } else { String::new() };
         eprintln!("{done} diagnosed, {kept} stood there already{then}, {failed} failed");
-        // A run that was begun again has not put right what failed.
+        // A resumed run has not repaired the earlier failures.
         let failed = failed + failed_before;
         Ok((failed > 0)
             .then(|| format!("{failed} of {} logs could not be diagnosed; their lines say why", self.logs.len())))
@@ -146,7 +146,7 @@ impl Diagnose {
         Ok(serde_json::to_value(diagnose(&recordings, options)?)?)
     }
 
-    /// Version, revision of the sources where the build knows it, and options: another answer may be expected when they change.
+    /// Version, revision of the sources if the build knows it, and options: a change of these may change the answer.
     fn asked(&self, options: &Options) -> String {
         let mut asked = format!("touchstone {}", env!("CARGO_PKG_VERSION"));
         if let Some(revision) = crate::report::provenance::revision() {
@@ -164,10 +164,10 @@ impl Diagnose {
     }
 }
 
-/// A diagnosis in words.
+/// Text of a diagnosis.
 pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
-    // The word of the JSON first.
+    // The word of the JSON comes first.
     let word = match diagnosis.verdict {
         Verdict::Causes => "causes: each is named below",
         Verdict::None => "none: nothing beyond the noise",
@@ -212,7 +212,7 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     for (k, other) in diagnosis.validation.iter().enumerate() {
         let (before, after) = (other.rms_before, other.rms_after);
         let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
-        // What has one coordinate is compared in the unit of the first recordings.
+        // An object with one coordinate is compared in the unit of the first recordings.
         let unit = other.unit.as_deref().or(diagnosis.baseline.unit.as_deref());
         let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
         let [low, high] = other.interval.map(|share| 100.0 * share);
@@ -237,7 +237,7 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// What is left of a channel in a state.
+/// Residual of a channel in a state.
 fn residual_line(left: &Residual) -> String {
     let [before, after] = [left.rms_before, left.rms_after].map(|rms| amount(rms, &left.unit));
     let noise = left.noise_floor.map_or_else(String::new, |noise| format!(", noise {}", amount(noise, &left.unit)));
@@ -245,7 +245,7 @@ fn residual_line(left: &Residual) -> String {
     format!("{}, {state}: {before} left, {after} with what was found{noise} ({} rows)", left.channel, left.rows)
 }
 
-/// What was compared, and how much of it is left.
+/// Compared model, and its residual.
 fn model_line(diagnosis: &Diagnosis) -> String {
     let Baseline { model, heldout_rms_n, of, unit, .. } = &diagnosis.baseline;
     let Some(unit) = unit else { return format!("model {model}: there was nothing to compare it with") };

@@ -1,10 +1,10 @@
-//! Whether there is enough data, as a short table.
+//! Sufficiency of the data, as a short table.
 
 use crate::ui::format;
 use estimator::online::enough::Enough;
 use std::fmt::Write;
 
-/// One line a parameter: how much of the wanted accuracy is reached, and what is missing. Empty without wishes.
+/// One line per parameter: attained share of the target accuracy, and the missing motion. Empty without targets.
 pub fn table(all: &[Enough]) -> String {
     let mut text = String::new();
     if all.is_empty() {

@@ -1,4 +1,4 @@
-//! `touchstone fit`: parameters with their errors, constraints, and a calibrated world.
+//! `touchstone fit`: parameters with their standard errors, constraints, and a calibrated world.
 
 use super::stated::Stated;
 use super::table::{parameter_line, with_error};
@@ -76,7 +76,7 @@ impl Fit {
     }
 }
 
-/// A fit in words and columns.
+/// Fit as text in columns.
 pub(super) fn describe(fit: &Fitted) -> String {
     let mut text = format!("task: {}\n", fit.task);
     for parameter in &fit.parameters {

@@ -1,4 +1,4 @@
-//! `touchstone history`: who practised what, when, and how well.
+//! `touchstone history`: the trainees' attempts with their lessons, times and scores.
 
 use super::Output;
 use crate::history::{self, Attempt, Conditions, Query, Store, table};
@@ -152,7 +152,7 @@ impl History {
     }
 }
 
-/// Attempts of one trainee at one lesson under the same conditions, in their order.
+/// Attempts of one trainee at one lesson under the same conditions, in order.
 fn groups(attempts: &[Attempt]) -> Vec<Vec<&Attempt>> {
     let mut found: Vec<Vec<&Attempt>> = Vec::new();
     for attempt in attempts {
@@ -165,7 +165,7 @@ fn groups(attempts: &[Attempt]) -> Vec<Vec<&Attempt>> {
     found
 }
 
-/// Those with a score, as learning is followed.
+/// Attempts with a score, as points of the learning curve.
 fn tries(group: &[&Attempt]) -> Vec<Try> {
     group.iter().filter_map(|attempt| attempt.as_try()).collect()
 }
@@ -225,7 +225,7 @@ fn in_words(trainees: &[String], groups: &[Vec<&Attempt>], csv: Option<&std::pat
     text
 }
 
-/// Takes in attempts, one a line, and says so of each once it is on the disk.
+/// Imports attempts, one per line, and reports each once it is on the disk.
 fn import(store: &mut Store, from: &std::path::Path) -> anyhow::Result<Output> {
     let source: Box<dyn Read> = if from == std::path::Path::new("-") {
         Box::new(std::io::stdin())
@@ -246,7 +246,7 @@ fn import(store: &mut Store, from: &std::path::Path) -> anyhow::Result<Output> {
         } else {
             known += 1;
         }
-        // Progress, and a word for who waits to hear that it is safe: not on standard output, which is the answer's.
+        // Progress, and a confirmation for a waiting caller: not on standard output, which is for the answer.
         let mut said = std::io::stderr().lock();
         let _ = writeln!(said, "kept {}", new + known).and_then(|()| said.flush());
     }

@@ -1,4 +1,4 @@
-//! `touchstone info`: what is in a log.
+//! `touchstone info`: the content of a log.
 
 use super::{LogArgs, Output};
 use clap::Args;
@@ -68,7 +68,7 @@ fn describe(recording: &Recording) -> String {
     text
 }
 
-/// The task with its states, where it can be used; a fault of it is told by what uses it.
+/// Definition of the task with its states, if it is usable; its user reports an error in it.
 fn definition(recording: &Recording, task: Task) -> Option<Definition> {
     Definition::of(recording, task).ok()
 }

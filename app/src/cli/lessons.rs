@@ -1,4 +1,4 @@
-//! `touchstone lessons`: what there is to learn, a lesson as it is written, what its experts need.
+//! `touchstone lessons`: the available lessons, the definition of a lesson, the results of its experts.
 
 use super::Output;
 use clap::Args;

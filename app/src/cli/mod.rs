@@ -1,4 +1,4 @@
-//! The command line: one command a file, `--json` everywhere, one sentence when something fails.
+//! The command line: one command per file, `--json` everywhere, one sentence on an error.
 //!
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
@@ -133,7 +133,7 @@ struct ControlArgs {
     passivity_control: Option<f64>,
 }
 
-/// What `--passivity-control` means without a number, N s/m.
+/// Value of `--passivity-control` without a number, N s/m.
 const USUAL_CONTROL: &str = "2";
 
 fn parse_control(text: &str) -> Result<f64, String> {
@@ -143,12 +143,12 @@ fn parse_control(text: &str) -> Result<f64, String> {
     })
 }
 
-/// A task on the command line of what needs one: a wrong one is wrong usage.
+/// Task on the command line; an invalid one is wrong usage.
 fn find_task(text: &str) -> Result<Chosen, String> {
     Chosen::find(text).map_err(|error| error.to_string())
 }
 
-/// Reads a log, with a word about it when it is long.
+/// Reads a log, with a progress message if it is long.
 fn read(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
     let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
     progress::during(&format!("reading {name}"), |share| {
@@ -170,11 +170,11 @@ impl LogArgs {
     }
 }
 
-/// What a command prints: text for people, or one JSON object.
+/// Output of a command: text for the user, or one JSON object.
 pub(crate) struct Output {
-    /// For people.
+    /// Text for the user.
     pub text: String,
-    /// For programs.
+    /// JSON for programs.
     pub json: serde_json::Value,
 }
 
@@ -182,7 +182,7 @@ impl Output {
     fn say(self, json: bool) {
         use std::io::Write;
         let text = if json { self.json.to_string() } else { self.text };
-        // A closed pipe (`| head`) is no fault of ours.
+        // A closed pipe (`| head`) is not an error.
         let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
     }
 }
@@ -218,7 +218,7 @@ pub fn main() -> ExitCode {
             return match args.run() {
                 Ok((output, problem)) => {
                     output.say(cli.json);
-                    // The page is there, but a log is missing in it.
+                    // The page is complete, but a log is missing in it.
                     problem.map_or(ExitCode::SUCCESS, |problem| fail(&anyhow::Error::msg(problem)))
                 }
                 Err(error) => fail(&error),
@@ -236,7 +236,7 @@ pub fn main() -> ExitCode {
             return match args.run() {
                 Ok((output, passed)) => {
                     output.say(cli.json);
-                    // A self-test that failed tells scripts so, after its report.
+                    // A failed self-test sets the exit code, after its report.
                     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
                 }
                 Err(error) => fail(&error),
@@ -258,17 +258,17 @@ fn fail(error: &anyhow::Error) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// Without line breaks and what else would reach the terminal as an order: names of files may have anything in them.
+/// Text without line breaks and control characters, which the terminal could interpret: file names may contain them.
 fn plain(text: &str) -> String {
     haptics::text_file::one_line(text)
 }
 
-/// The error as one line: what, then why.
+/// Error as one line: the problem, then its causes.
 fn sentence(error: &anyhow::Error) -> String {
     let chain: Vec<String> = error.chain().map(|cause| plain(&cause.to_string())).collect();
     let mut parts: Vec<&str> = Vec::new();
     for part in &chain {
-        // Many causes repeat themselves in their parent's sentence.
+        // Many causes are repeated in their parent's sentence.
         if !parts.iter().any(|before| before.contains(part.as_str())) {
             parts.push(part);
         }
@@ -291,7 +291,7 @@ fn open_app(args: AppArgs) -> ExitCode {
     }
 }
 
-/// Log messages go to standard error: warnings by default, more with `RUST_LOG`.
+/// Starts the log messages on standard error: warnings by default, more with `RUST_LOG`.
 fn start_log(quiet: bool) {
     let default = if quiet { "error" } else { "warn,wgpu_hal=off,wgpu_core=error,zbus=error" };
     let filter = tracing_subscriber::EnvFilter::try_from_default_env()

@@ -1,22 +1,22 @@
-//! A word on standard error about what takes longer than a second: what it is, and how far or how long. A terminal gets one every second;
-//! a file, where nobody waits and every line stays, only what changed, and the running time once a minute.
+//! Progress messages on standard error for work that takes longer than a second: its name, and its share done or
+//! running time. A terminal gets one every second; a file only gets changes, and the running time once a minute.
 
 use std::io::{IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Nothing is said about work that is done sooner, and again after as long.
+/// Interval of the messages; shorter work is silent.
 const EVERY: Duration = Duration::from_secs(1);
-/// In a file the running time is told so often.
+/// Interval of the running time in a file.
 const EVERY_KEPT: Duration = Duration::from_mins(1);
 
-/// How far a work has come, as far as it tells.
+/// Completed share of the work, if it reports one.
 #[derive(Clone, Debug, Default)]
 pub struct Share(Arc<AtomicU32>);
 
 impl Share {
-    /// Tells how much is done, 0 … 1.
+    /// Reports the completed share, 0 … 1.
     pub fn tell(&self, share: f64) {
         self.0.store((1e4 * share.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
     }
@@ -29,7 +29,7 @@ impl Share {
     }
 }
 
-/// How far, or how long where the work does not tell.
+/// Completed share, or running time if the work does not report one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Far {
     Time(Duration),
@@ -44,7 +44,7 @@ impl Far {
         }
     }
 
-    /// Whether a file needs another line after `before`.
+    /// True if a file needs another line after `before`.
     fn is_news_after(self, before: Option<Self>) -> bool {
         match (before, self) {
             (Some(Self::Time(before)), Self::Time(now)) => now.saturating_sub(before) >= EVERY_KEPT,
@@ -53,13 +53,13 @@ impl Far {
     }
 }
 
-/// Does `work`, and says `what` is being done while it takes longer than a second.
+/// Runs `work`, and reports `what` is being done while it takes longer than a second.
 pub fn during<T>(what: &str, work: impl FnOnce(&Share) -> T) -> T {
     let is_kept = !std::io::stderr().is_terminal();
     watched(what, (EVERY, is_kept), &|line| drop(writeln!(std::io::stderr(), "{line}")), work)
 }
 
-/// Looks `every` so often; `is_kept`: says only what is news.
+/// Checks at the interval `every`; `is_kept`: reports only changes.
 fn watched<T>(
     what: &str,
     (every, is_kept): (Duration, bool),
@@ -85,14 +85,14 @@ fn watched<T>(
                 }
             }
         };
-        // Without a thread there is no word, and the work is done all the same.
+        // Without a thread there is no message, and the work is done all the same.
         let _ = std::thread::Builder::new().name("progress".to_owned()).spawn_scoped(scope, tell);
         let _end = End(&done, &over);
         work(&share)
     })
 }
 
-/// Lets the word end with the work, also when that panics.
+/// Ends the messages with the work, also on a panic.
 struct End<'a>(&'a Mutex<bool>, &'a Condvar);
 
 impl Drop for End<'_> {

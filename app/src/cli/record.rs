@@ -66,7 +66,7 @@ enum Sensors {
     Ideal,
 }
 
-/// Longest recording, s: an hour at 1 kHz is half a gigabyte of ticks.
+/// Maximum length of a recording, s: an hour at 1 kHz is half a gigabyte of ticks.
 pub(super) const LONGEST_S: f64 = 3600.0;
 
 /// What `record --json` prints.
@@ -130,7 +130,7 @@ impl Record {
         }
     }
 
-    /// The scripted operator as it was asked for.
+    /// Scripted operator with the requested skill and mistake.
     fn scripted(&self, world: &World, state: &State) -> anyhow::Result<ScriptedOperator> {
         let skill = operator::skill(self.skill.as_deref().unwrap_or(operator::USUAL)).map_err(anyhow::Error::msg)?;
         let mistakes = self.mistakes()?;
@@ -142,7 +142,7 @@ impl Record {
         self.mistake.iter().map(|name| operator::mistake(name).map_err(anyhow::Error::msg)).collect()
     }
 
-    /// Who it was, for the sidecar; nothing about the steady operator without mistakes.
+    /// Description of the operator for the sidecar; `None` for the steady operator without mistakes.
     fn about_the_operator(&self) -> Option<serde_json::Value> {
         let skill = self.skill.as_deref().filter(|name| *name != operator::USUAL);
         (skill.is_some() || !self.mistake.is_empty())
@@ -177,7 +177,7 @@ impl Record {
         Ok(recording)
     }
 
-    /// Runs the servo's tick in simulated time until the operator is done or the time is up.
+    /// Runs the servo's tick in simulated time until the operator is done or the time limit is reached.
     fn run_servo(&self, world: World, state: State, device: Box<dyn Device>) -> Vec<TickRecord> {
         let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
         let mut servo =

@@ -1,4 +1,4 @@
-//! `touchstone report`: everything about one or several logs on one page.
+//! `touchstone report`: all results for one or several logs on one page.
 
 use super::stated::Stated;
 use super::{LogArgs, Output, progress, sentence};
@@ -72,7 +72,7 @@ struct Content {
 }
 
 impl Report {
-    /// The second value is a sentence when a log could not be read: the page is written all the same.
+    /// Writes the page. The second value is a sentence if a log could not be read.
     pub(super) fn run(&self) -> anyhow::Result<(Output, Option<String>)> {
         let sheets: Vec<Sheet> = self.logs.iter().map(|log| self.sheet(log)).collect();
         write(&self.title, &sheets, &self.out, &self.logs)?;
@@ -97,7 +97,7 @@ impl Report {
     }
 }
 
-/// Writes the page of `sheets`; never over one of the logs it is about.
+/// Writes the page of `sheets`; never over one of its logs.
 pub(super) fn write(title: &str, sheets: &[Sheet], out: &Path, logs: &[PathBuf]) -> anyhow::Result<()> {
     let place = |path: &Path| std::fs::canonicalize(path).ok();
     if let Some(log) = place(out).and_then(|out| logs.iter().find(|log| place(log).as_ref() == Some(&out))) {

@@ -1,4 +1,4 @@
-//! `touchstone score`: how well a task was done, from its recording.
+//! `touchstone score`: the score of a task, from its recording.
 
 use super::{LogArgs, Output};
 use anyhow::Context as _;
@@ -126,7 +126,7 @@ impl Score {
     }
 }
 
-/// An attempt at a lesson is graded by the lesson that travels in it, else by the one of its name.
+/// Grade of an attempt by the lesson embedded in its recording, or by the lesson of that name.
 fn grade_of(attempted: &Attempted, world: &World, recording: &Recording) -> anyhow::Result<Grade> {
     let lesson = match &attempted.definition {
         Some(lesson) => (**lesson).clone(),

@@ -66,7 +66,7 @@ impl Screenshot {
 
     fn panel_picture(&self, log: &Path) -> anyhow::Result<image::RgbaImage> {
         if self.panel == crate::ui::screenshot::Panel::Mapping {
-            // The dialog is there for logs that cannot be loaded as they stand.
+            // The dialog exists for logs that cannot be loaded as they are.
             let (log, meta) = (Some(log.to_path_buf()), self.source.meta.clone());
             let input = crate::ui::screenshot::PanelInput { log, meta, ..Default::default() };
             return crate::ui::screenshot::panel(&input, self.panel, self.size, self.dark);
@@ -76,7 +76,7 @@ impl Screenshot {
     }
 }
 
-/// The whole calibration workspace with these recordings loaded and fitted.
+/// Screenshot of the whole calibration workspace with these recordings loaded and fitted.
 pub(super) fn workbench(recordings: Vec<Recording>, size: [u32; 2], dark: bool) -> anyhow::Result<image::RgbaImage> {
     crate::ui::screenshot::recordings(recordings, crate::ui::screenshot::Panel::Workbench, None, size, dark)
 }
@@ -88,14 +88,14 @@ pub(super) fn save(picture: &image::RgbaImage, path: &Path) -> anyhow::Result<()
         .with_context(|| format!("the picture could not be written: {}", path.display()))
 }
 
-/// A scene with the scripted operator at work in it, `at` seconds into its performance.
+/// Picture of a scene with the scripted operator at work, `at` seconds into its performance.
 pub(super) fn scene_picture(
     scene: &str,
     at: Option<f64>,
     [width, height]: [u32; 2],
     dark: bool,
 ) -> anyhow::Result<image::RgbaImage> {
-    /// The first block is in the air, the crank on its first turn.
+    /// Instructive moment, s: the first block is in the air, the crank on its first turn.
     const TELLING_S: f64 = 5.6;
     const RATE_HZ: f64 = 1000.0;
     let world = crate::worlds::find(Path::new(scene))?;

@@ -1,4 +1,4 @@
-//! `touchstone segment`: which state held when.
+//! `touchstone segment`: the states over time.
 
 use super::{LogArgs, Output};
 use clap::{Args, ValueEnum};
@@ -63,7 +63,7 @@ impl Segment {
     }
 }
 
-/// How it agrees with the labels.
+/// Writes the agreement with the labels.
 fn agreement(text: &mut String, score: &Score) {
     let _ = writeln!(
         text,

@@ -1,4 +1,4 @@
-//! `touchstone simulate`: the measured motion through a world.
+//! `touchstone simulate`: simulation of the measured motion in a world.
 
 use super::{LogArgs, Output};
 use clap::Args;

@@ -1,4 +1,4 @@
-//! What is stated of parameters on the command line: known values, priors, bounds.
+//! The user's statements about parameters on the command line: known values, priors, bounds.
 
 use clap::Args;
 use haptics::recording::{Prior, Recording};

@@ -1,4 +1,4 @@
-//! A mechanism's motion as a tool sees it that holds on to it: places and forces in the frame of its recording.
+//! A mechanism's motion as seen by a tool that holds it: positions and forces in the frame of its recording.
 
 use super::rehearse::Like;
 use estimator::signal::noise::white_noise_under_fast_motion;
@@ -8,12 +8,13 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rand_distr::{Distribution, Normal};
 
-/// Columns of a tool's place, m, and of its force on the environment, N.
+/// Columns of a tool's position, m, and of its force on the environment, N.
 pub(super) const PLACES: [&str; 3] = ["x_m", "y_m", "z_m"];
 const FORCES: [&str; 3] = ["fx_N", "fy_N", "fz_N"];
 
-/// The motion and the drive of a recording along a coordinate (its first channel and its last), as a tool on `path` has them, whose sensors
-/// have the columns and the noise of `like`. What the hand pushes across is not there: no force along the path depends on it.
+/// Recording of a tool on `path`, converted from one along a coordinate (motion in its first channel, drive in its
+/// last). The sensors have the columns and the noise of `like`. The force of the hand perpendicular to the path is
+/// absent: no force along the path depends on it.
 pub fn seen_by_tool(along: &Recording, path: &MechanismPath, like: &Like<'_>, seed: u64) -> Recording {
     let mut rng = StdRng::seed_from_u64(seed ^ 0x70_01);
     let (Some(position), Some(drive)) = (along.channels.first(), along.channels.last()) else {
@@ -32,7 +33,7 @@ pub fn seen_by_tool(along: &Recording, path: &MechanismPath, like: &Like<'_>, se
     Recording { channels, ..along.clone() }
 }
 
-/// A column with white noise as in `like`; nothing where that has none.
+/// Column with white noise as in `like`; `None` where that has no such column.
 fn channel(
     name: &str,
     unit: &str,

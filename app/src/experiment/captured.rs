@@ -1,4 +1,4 @@
-//! Where the hand is wanted when, with a needle at its sheet and around the knob of a switch.
+//! Desired hand positions over time, with a needle at its membrane and around the knob of a switch.
 
 use super::timetable::{CLEARANCE_M, CLOSE_S, LEAST_FREE_S, REACH_S, Writer, unknown};
 use estimator::diagnose::{Experiment, Insertions, Throws};
@@ -6,37 +6,38 @@ use haptics::Vec2;
 use haptics::device::{HandGoal, HandImpedance, Skill};
 use haptics::world::{Membrane, Shape, Switch, World};
 
-/// A hand comes to a needle and to a knob from so far above, m.
+/// Height from which a hand approaches a needle and a knob, m.
 const OVER_NEEDLE_M: f64 = 0.010;
 const OVER_KNOB_M: f64 = 0.020;
-/// A needle is held more firmly than a block: it is pushed along its own length.
+/// Factor on the pinch force for a needle: it is pushed along its own length.
 const FIRMER: f64 = 1.4;
-/// Insertions are so far apart, m, and the first lies beside where the needle stood.
+/// Distance between insertions, m; the first one is beside the needle's initial position.
 const APART_M: f64 = 8e-3;
 const BESIDE_M: f64 = 2e-3;
-/// They keep within this share of the sheet.
+/// Share of the membrane used for insertions.
 const WITHIN: f64 = 0.8;
-/// Until so far beyond where it should have given way the hand pushes as if the sheet still held, and then less and less, m.
+/// Distance beyond the expected puncture over which the hand still compensates the membrane's full force, m. Over the
+/// same distance again the compensation falls to zero.
 const PUSHES_ON_M: f64 = 1e-3;
-/// A knob is pressed against its stop by this much of the arm's spring, m.
+/// Deflection of the arm's spring with which a knob is pressed against its stop, m.
 const PRESSED_M: f64 = 2.5e-3;
-/// Slower throws than this are called slow, faster ones fast, in the fastest speed.
+/// Limits below which a throw is called slow, and above which fast, as shares of the maximum speed.
 const SLOW: f64 = 0.3;
 const FAST: f64 = 0.7;
 
-/// Places of some insertions, m from the middle of the sheet.
+/// Position of insertion `k` of `count`, m from the centre of the membrane.
 pub(super) fn place_m(membrane: &Membrane, count: usize, k: usize) -> f64 {
     let apart = APART_M.min(2.0 * WITHIN * membrane.half_width_m / count.max(1) as f64);
     apart * (k as f64 - 0.5 * (count.max(1) - 1) as f64) + BESIDE_M
 }
 
 impl Writer {
-    /// Takes the needle, does the insertions, puts it back.
+    /// Takes the needle, performs the insertions, puts it back.
     pub(super) fn pierce(&mut self, membrane: &Membrane, world: &World, asked: &Experiment) -> Result<(), String> {
         let motion = Insertions::of(asked).ok_or_else(|| unknown(asked))?;
         let needle = world.blocks.iter().find(|b| b.shape == Shape::Needle);
         let needle = needle.ok_or("There is no needle in this world; do it on the real one and load the recording.")?;
-        // By its upper third, as a lesson teaches it.
+        // By its upper third, as in a lesson.
         let grip = Vec2::new(0.0, needle.height_m / 6.0);
         let over_point = Vec2::new(0.0, 0.5 * needle.height_m) + grip;
         let stands = needle.start.center_m + grip;
@@ -113,14 +114,14 @@ impl Writer {
     }
 }
 
-/// Whether a sheet was gone through at this place.
+/// State of an insertion: whether the membrane is pierced at this position.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pushed {
     through: bool,
 }
 
 impl Pushed {
-    /// How much farther than the needle the hand is wanted, m: the arms give under what the sheet presses back.
+    /// Lead of the hand over the needle, m: the arms deflect under the reaction of the membrane.
     fn ahead_m(&mut self, membrane: &Membrane, depth_m: f64) -> f64 {
         let law = &membrane.law;
         let beyond_m = depth_m - law.puncture_depth_m();

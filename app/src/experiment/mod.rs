@@ -1,7 +1,9 @@
-//! Experiments that a diagnosis asks for, performed: by the scripted operator on a simulated object, or shown to a person.
+//! Performance of the experiments that a diagnosis requests: by the scripted operator on a simulated object, or as
+//! guidance for a person.
 //!
-//! [`Timetable`] says where the hand is wanted when, [`MotionPlan`] where the coordinate of a mechanism is that has no handle, [`perform`]
-//! lets the scripted operator do it, [`rehearse`] does so with every object that the diagnosis leaves open and asks again each time: what would come out, and how surely?
+//! [`Timetable`] has the desired hand positions over time, [`MotionPlan`] the desired coordinate of a mechanism without
+//! a handle. [`perform`] lets the scripted operator do it. [`rehearse`] does so with every object that the diagnosis
+//! leaves open and diagnoses again each time: the likely result, and its reliability.
 
 mod along_path;
 mod captured;
@@ -17,10 +19,10 @@ pub use perform::{perform, what_is_known};
 pub use rehearse::{Like, Outcome, Rehearsal, Round, rehearse};
 pub use timetable::{Step, Timetable};
 
-/// The key of the sidecar under which a recording says that its object was simulated.
+/// Sidecar key under which a recording states that its object was simulated.
 pub const SIMULATED: &str = "simulated_object";
 
-/// What a recording says about the object that was simulated for it; nothing for a measurement.
+/// Description of the object simulated for a recording; `None` for a measurement.
 pub fn simulated_object(recording: &haptics::recording::Recording) -> Option<&str> {
     recording.meta.other.get(SIMULATED)?.as_str()
 }

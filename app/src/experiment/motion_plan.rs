@@ -1,5 +1,5 @@
-//! An experiment on a mechanism that is driven directly: where its coordinate is wanted when. A person does it on the real machine after
-//! the plan, the scripted operator on simulated ones.
+//! Experiment on a directly driven mechanism: its desired coordinate over time. A person performs it on the real
+//! machine according to the plan, the scripted operator on simulated ones.
 
 use super::along_path::{PLACES, seen_by_tool};
 use super::perform::what_is_known;
@@ -13,15 +13,16 @@ use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
 use std::fmt::Write as _;
 
-/// It rests before and after, s, and comes to rest in this time: a machine that follows it must not be stopped hard.
+/// Rest before and after, s, and time in which it comes to rest: a machine that follows the plan must not be stopped
+/// hard.
 const REST_S: f64 = 0.5;
 const SLOWS_S: f64 = 2.0;
-/// Points of a plan in a file come at this rate, Hz.
+/// Sampling rate of a plan in a file, Hz.
 const FILE_HZ: f64 = 50.0;
-/// Fastest sampling of a simulated recording, Hz.
+/// Maximum sampling rate of a simulated recording, Hz.
 const FASTEST_HZ: f64 = 1_000.0;
 
-/// Where a coordinate is wanted when.
+/// Desired coordinate over time.
 #[derive(Clone, Debug)]
 pub struct MotionPlan {
     strokes: Strokes,
@@ -29,7 +30,7 @@ pub struct MotionPlan {
 }
 
 impl MotionPlan {
-    /// The plan of an experiment; an error says why there is none.
+    /// Plan of an experiment; an error gives the reason why there is none.
     pub fn new(asked: &Experiment) -> Result<Self, String> {
         let strokes = Strokes::of(asked).ok_or_else(|| {
             format!("Nobody here knows the motion `{}`; do it on the real object and load the recording.", asked.id)
@@ -37,15 +38,15 @@ impl MotionPlan {
         Ok(Self { strokes, asked: asked.clone() })
     }
 
-    /// Length, s.
+    /// Duration, s.
     pub fn duration_s(&self) -> f64 {
         self.asked.seconds + 0.5 * SLOWS_S + 2.0 * REST_S
     }
 
-    /// Where the coordinate is wanted, m or rad.
+    /// Desired coordinate, m or rad.
     pub fn at(&self, time_s: f64) -> f64 {
         let slows_from_s = self.asked.seconds - 0.5 * SLOWS_S;
-        // From there its clock runs slower and slower (cos²), until it has stood still at the last stroke.
+        // From there its clock slows down (cos²), until it stops at the last stroke.
         let slowing = ((time_s - REST_S - slows_from_s) / SLOWS_S).clamp(0.0, 1.0);
         let slowed_s = SLOWS_S * (0.5 * slowing + (std::f64::consts::PI * slowing).sin() / std::f64::consts::TAU);
         let moved_s = (time_s - REST_S).clamp(0.0, slows_from_s) + slowed_s;
@@ -57,12 +58,12 @@ impl MotionPlan {
         (self.asked.middle - self.asked.half_range, self.asked.middle + self.asked.half_range)
     }
 
-    /// As a table with the column names of logs: the coordinate over time.
+    /// Plan as a table with the column names of logs: the coordinate over time.
     pub fn to_csv(&self, coordinate: Coordinate) -> String {
         self.table(&names(coordinate)[..1], &|q| vec![q])
     }
 
-    /// The same for a tool: its place over time, in the frame of its recording and in as many axes as that has.
+    /// Plan for a tool: its position over time, in the frame of its recording and in as many axes as that has.
     pub fn places_to_csv(&self, path: &MechanismPath, is_planar: bool) -> String {
         let axes = if is_planar { 2 } else { 3 };
         self.table(&PLACES[..axes], &|q| path.point_m(q)[..axes].to_vec())
@@ -79,8 +80,8 @@ impl MotionPlan {
         text
     }
 
-    /// The scripted operator does it on the mechanism of a suspect, seen by the sensors that recorded `like`. Nothing when `goes_on`
-    /// says no; an error is a sentence.
+    /// Simulated recording of the scripted operator with the mechanism of a candidate cause, with the sensors of
+    /// `like`. `None` if `goes_on` returns false; an error is a sentence.
     pub fn perform(
         &self,
         suspect: &Suspect,
@@ -108,7 +109,7 @@ impl MotionPlan {
             fast: self.asked.fast,
         };
         let Some(pulled) = pull.run(seed, goes_on)? else { return Ok(None) };
-        // A tool has other sensors: their noise comes with them.
+        // A tool has other sensors: their noise is added later.
         let sensor = if by_tool { PullSensor::default() } else { sensor(like.recording, mechanism.coordinate) };
         let name = format!("simulated, {about}");
         let mut recording = sensor.recording(&name, mechanism.coordinate, &pulled, seed);
@@ -127,7 +128,7 @@ impl MotionPlan {
         Ok(Some(recording))
     }
 
-    /// The mechanism with the weight on its lever, which is level in the middle of the motion.
+    /// Mechanism with the added weight on its lever, which is horizontal in the middle of the motion.
     fn hung(&self, mechanism: &Mechanism, share: f64, gravity_m_s2: f64) -> Mechanism {
         let mut mechanism = mechanism.clone();
         let (weight_n, lever_m) = (self.asked.added_weight_n, self.asked.added_lever_m);
@@ -150,7 +151,7 @@ fn names(coordinate: Coordinate) -> [&'static str; 3] {
     }
 }
 
-/// How often the first recording was sampled, Hz.
+/// Sampling rate of the first recording, Hz.
 pub(super) fn rate_hz(recording: &Recording) -> Result<f64, String> {
     let times = recording.time_s.as_deref().unwrap_or_default();
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -160,7 +161,7 @@ pub(super) fn rate_hz(recording: &Recording) -> Result<f64, String> {
     Ok((1.0 / usual).min(FASTEST_HZ))
 }
 
-/// Sensors as noisy as those of a recording.
+/// Sensors with the noise of a recording.
 fn sensor(recording: &Recording, coordinate: Coordinate) -> PullSensor {
     let [position, rate, drive] = names(coordinate).map(|name| recording.channel(name));
     PullSensor {

@@ -1,4 +1,4 @@
-//! The scripted operator does an experiment on a simulated object.
+//! Performance of an experiment by the scripted operator on a simulated object.
 
 use super::sensing::see_through;
 use super::{SIMULATED, Timetable};
@@ -14,13 +14,13 @@ use std::collections::BTreeMap;
 
 /// Servo period, s.
 const DT_S: f64 = 1e-3;
-/// Every so many ticks are kept: 200 samples a second.
+/// Number of ticks per recorded sample: 200 samples per second.
 const EVERY: usize = 5;
-/// How often the wish to end is looked at, ticks.
+/// Interval between checks for cancellation, ticks.
 const LOOKS: usize = 500;
 
-/// The recording that comes of it; nothing when `goes_on` (which is told the share done) says no. `about`: which object was simulated.
-/// `noise_n`: of one force sample.
+/// Simulated recording; `None` if `goes_on` (which receives the completed share) returns false. `about` names the
+/// simulated object; `noise_n` is the noise of one force sample, N.
 pub fn perform(
     table: &Timetable,
     asked: &Experiment,
@@ -57,7 +57,7 @@ pub fn perform(
     Some(recording)
 }
 
-/// What is known of an experiment beforehand, as a sidecar states it: the weight that is hung on.
+/// Values of an experiment known in advance, for the sidecar: the added weight.
 pub fn what_is_known(asked: &Experiment) -> BTreeMap<String, f64> {
     let weight = (asked.added_weight_n > 0.0).then(|| ("added_weight_N".to_owned(), asked.added_weight_n));
     weight.into_iter().collect()
@@ -83,7 +83,7 @@ mod tests {
             let of = |name: &str| recording.channel(name).expect("a channel")[..until].iter().sum::<f64>();
             (of(names[0]) + of(names[1])) / until as f64
         };
-        // Nothing is touched for a second: only the fault shows.
+        // A second without contact: only the fault is visible.
         assert!((mean(["fx1_N", "fx2_N"], 180) - 0.3).abs() < 0.01);
         let crank = world.crank.as_ref().expect("a crank");
         let (x1, x2) = (recording.channel("x1_m").expect("x"), recording.channel("x2_m").expect("x"));

@@ -1,4 +1,5 @@
-//! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
+//! Predicted outcome of an experiment: it is simulated on every object that the diagnosis leaves open, and each
+//! recording is diagnosed.
 
 use super::tool::{insert, is_tool};
 use super::{MotionPlan, Timetable, perform};
@@ -6,65 +7,65 @@ use estimator::diagnose::{Diagnosis, Experiment, NextExperiment, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Recording, Task};
 
-/// An alternative less probable than this is as good as excluded (as in the estimator's settling of several recordings).
+/// Probability below which an alternative counts as excluded (as in the estimator's settling of several recordings).
 const OPEN: f64 = 0.047;
 
-/// One performance on one object.
+/// Single performance on one object.
 #[derive(Clone, Debug)]
 pub struct Round {
-    /// Only what was simulated is left of what the experiment should tell apart.
+    /// True if only the simulated cause remains among the alternatives to be discriminated.
     pub settled: bool,
-    /// What was named, strongest first.
+    /// Diagnosed causes, strongest first.
     pub named: Vec<String>,
-    /// What else it could still be.
+    /// Remaining alternatives.
     pub open: Vec<String>,
     /// The recording.
     pub recording: Recording,
 }
 
-/// What came of one object.
+/// Outcome for one object.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// The cause that was in it.
+    /// Simulated cause.
     pub id: String,
     /// Its performances.
     pub rounds: Vec<Round>,
-    /// Why there are none, in a sentence.
+    /// Reason why there are none, in a sentence.
     pub problem: Option<String>,
 }
 
 impl Outcome {
-    /// In how many rounds the question was settled rightly.
+    /// Number of rounds with the correct answer.
     pub fn settled(&self) -> usize {
         self.rounds.iter().filter(|r| r.settled).count()
     }
 }
 
-/// An experiment, rehearsed.
+/// Simulated experiment.
 #[derive(Clone, Debug)]
 pub struct Rehearsal {
-    /// One an object that could be the real one.
+    /// Outcomes, one per candidate object.
     pub outcomes: Vec<Outcome>,
 }
 
 impl Rehearsal {
-    /// Rounds that settled the question rightly, and all.
+    /// Number of rounds with the correct answer, and of all.
     pub fn settled(&self) -> (usize, usize) {
         (self.outcomes.iter().map(Outcome::settled).sum(), self.outcomes.iter().map(|o| o.rounds.len()).sum())
     }
 }
 
-/// What simulated recordings have to be like.
+/// Properties of the simulated recordings.
 #[derive(Clone, Copy, Debug)]
 pub struct Like<'a> {
-    /// The first recording of the real object: a mechanism's sensors are as noisy as its.
+    /// First recording of the real object: the sensors of a simulated mechanism have its noise.
     pub recording: &'a Recording,
-    /// Noise of a finger's force sample, N.
+    /// Noise of a finger's force sample (1 σ), N.
     pub noise_n: f64,
 }
 
 impl Like<'_> {
-    /// The same as one sample of a finger has it: what a diagnosis of needles and switches tells is that of means.
+    /// Noise of one sample of a finger, N: the diagnosis of needles and switches states that of means.
     fn sample_noise_n(&self) -> f64 {
         let is_captured = matches!(self.recording.meta.task, Some(Task::Needle | Task::Switch));
         let own = self.recording.channel("fx1_N").filter(|_| is_captured).map(white_noise_under_fast_motion);
@@ -72,13 +73,13 @@ impl Like<'_> {
     }
 }
 
-/// How the experiment is done on an object.
+/// Way to perform the experiment on an object.
 enum Way {
-    /// By two fingers.
+    /// Held by two fingers.
     Held(Box<Timetable>),
-    /// Along the coordinate of what has no handle.
+    /// Driven along the coordinate of a mechanism without a handle.
     Driven(MotionPlan),
-    /// By a single tool that is a needle.
+    /// Performed with a single tool that is a needle.
     Tool,
 }
 
@@ -93,7 +94,7 @@ impl Way {
         Timetable::new(&suspect.world, asked, motion).map(|table| Self::Held(Box::new(table.leaking_once_held())))
     }
 
-    /// Nothing when `goes_on` said no.
+    /// Recording of the performance; `None` if `goes_on` returned false.
     fn perform(
         &self,
         suspect: &Suspect,
@@ -112,8 +113,8 @@ impl Way {
     }
 }
 
-/// Does the experiment `rounds` times on each suspect among what it should tell apart, and asks `again` with the recording in addition.
-/// An error is a sentence, or nothing when `goes_on` said no.
+/// Simulates the experiment `rounds` times on each candidate that it should discriminate, and calls `again` with the
+/// additional recording. An error is a sentence, or `None` if `goes_on` returned false.
 pub fn rehearse(
     suspects: &[Suspect],
     next: &NextExperiment,
@@ -140,7 +141,7 @@ pub fn rehearse(
         };
         for round in 0..rounds {
             let before = (k as f64 * rounds as f64 + round as f64) / total;
-            // Half of the time goes into the motion, half into the answer.
+            // Half of the time is for the motion, half for the diagnosis.
             let tell = |share: f64| goes_on(before + 0.5 * share / total);
             let recording = match way.perform(suspect, (asked, &like), 1 + round, &tell) {
                 Ok(recording) => recording.ok_or(None)?,
@@ -188,7 +189,7 @@ mod tests {
     use rand::rngs::StdRng;
     use rand_distr::{Distribution, Normal};
 
-    /// A recording that leaves something open, with all that a rehearsal needs of it.
+    /// Recording with an open question, with the inputs of a rehearsal.
     struct Asked {
         recording: [Recording; 1],
         options: Options,
@@ -212,13 +213,13 @@ mod tests {
             diagnose(&both, &self.options).map_err(|error| error.to_string())
         }
 
-        /// Twice on each suspect, with so much noise of a force sample.
+        /// Twice on each candidate, with this noise of a force sample.
         fn rehearsed(&self, noise_n: f64, goes_on: &dyn Fn(f64) -> bool) -> Result<Rehearsal, Option<String>> {
             let like = Like { recording: &self.recording[0], noise_n };
             rehearse(&self.suspects, &self.next, (2, like), &|more| self.again(more), goes_on)
         }
 
-        /// Each of these causes is settled in both rounds.
+        /// Checks that each of these causes is settled in both rounds.
         fn settles(&self, noise_n: f64, ids: &[&str]) {
             let rehearsal = self.rehearsed(noise_n, &|_| true).expect("rehearsed");
             for id in ids {
@@ -260,7 +261,7 @@ mod tests {
         let options = Options { baseline: Some("mass+viscous+coulomb".to_owned()), ..Options::default() };
         let asked = Asked::of(case.recordings.remove(0), options);
         asked.settles(asked.answer.noise_floor_n, &["eccentric-mass", "gravity-tilt"]);
-        // The real object, moved by the generator's own hand as the answer asks.
+        // The real object, moved by the generator's own hand as the diagnosis requests.
         let motion = asked.next.experiment.as_ref().expect("for a program");
         let real = object.perform(motion, 9).expect("the hand knows the motion");
         let answer = asked.again(&real).expect("an answer");
@@ -268,7 +269,7 @@ mod tests {
         assert!(settled.settled, "{:?} or {:?}", settled.named, settled.open);
     }
 
-    /// The hinge of a generated recording, led by a tool on its handle in a level plane.
+    /// Hinge of a generated recording, moved by a tool on its handle in a horizontal plane.
     fn led_by_a_tool(along: &Recording, noise: [f64; 2], seed: u64) -> Recording {
         const HANDLE_M: f64 = 0.25;
         let mut rng = StdRng::seed_from_u64(seed);
@@ -279,7 +280,7 @@ mod tests {
             let values = angle.iter().zip(torque).map(|(q, tau)| of(*q, *tau) + white.sample(&mut rng)).collect();
             Channel { name: name.to_owned(), unit: String::new(), values }
         };
-        // The hand also pulls outwards, and not always as hard: that is how one feels that there is a hinge.
+        // The hand also pulls outwards, with a varying force: only then is the hinge noticeable.
         let pull_n = |q: f64| 2.0 + (3.0 * q).sin();
         let channels = vec![
             made("x_m", noise[0], &|q, _| 0.4 + HANDLE_M * q.cos()),
@@ -301,7 +302,7 @@ mod tests {
         let asked = Asked::of(first, options);
         let ids: Vec<&str> = asked.next.separates.iter().map(String::as_str).collect();
         asked.settles(asked.answer.noise_floor_n, &ids);
-        // The real object, led as the answer asks: its angle is counted from where the first recording began.
+        // The real object, moved as the diagnosis requests: its angle is relative to the start of the first recording.
         let suspect = asked.suspects.first().expect("a suspect");
         let path = suspect.world.mechanism.as_ref().and_then(|m| m.path).expect("a circle");
         let MechanismPath::Revolute { zero, axis, .. } = path else { panic!("a hinge turns: {path:?}") };

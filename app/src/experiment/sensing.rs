@@ -1,4 +1,4 @@
-//! A recording, seen through sensors that are wrong: what the world did stays, what is read of its forces changes.
+//! Sensor faults applied to a recording: the motion is unchanged, only the force readings change.
 
 use estimator::diagnose::SensorFault;
 use haptics::Vec2;
@@ -7,7 +7,7 @@ use haptics::recording::Recording;
 /// Names of the forces of both fingers, and of a single tool, which has the first finger's sensor.
 const FORCES: [(usize, [&str; 2]); 3] = [(0, ["fx1_N", "fy1_N"]), (1, ["fx2_N", "fy2_N"]), (0, ["fx_N", "fy_N"])];
 
-/// Replaces the forces by what such sensors would have read. `held_from_s`: since when something is held.
+/// Replaces the forces by the readings of such sensors. `held_from_s`: time from which an object is held.
 pub fn see_through(recording: &mut Recording, fault: &SensorFault, held_from_s: f64) {
     let Some(times) = recording.time_s.clone().filter(|_| *fault != SensorFault::default()) else { return };
     for (finger, names) in FORCES {
@@ -27,7 +27,7 @@ pub fn see_through(recording: &mut Recording, fault: &SensorFault, held_from_s: 
     }
 }
 
-/// The force along a mechanism's coordinate, and what its sensor makes of it.
+/// Applies the fault to the force along a mechanism's coordinate.
 pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
     let Some(times) = recording.time_s.clone().filter(|_| *fault != SensorFault::default()) else { return };
     let Some(channel) = recording.channels.iter_mut().find(|c| ["f_N", "tau_Nm"].contains(&c.name.as_str())) else {
@@ -43,7 +43,7 @@ pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
     channel.values = times.iter().map(|time_s| read(*time_s)).collect();
 }
 
-/// What a finger's sensor reads at each time, N.
+/// Reading of a finger's sensor at each time, N.
 fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), drifts_from_s: f64) -> Vec<Vec2> {
     let cross = fault.cross[finger];
     times
@@ -57,12 +57,12 @@ fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), dr
         .collect()
 }
 
-/// For how long a drift has gone on at its first rate, s: one that settles comes to rest there in its time constant.
+/// Equivalent duration of a drift at its initial rate, s: a settling one saturates at its time constant.
 fn drifted_for(time_s: f64, settles_s: f64) -> f64 {
     if settles_s > 0.0 { -settles_s * (-time_s / settles_s).exp_m1() } else { time_s }
 }
 
-/// The force at a time, between samples in a straight line; the first and the last go on.
+/// Force at a time by linear interpolation; constant before the first sample and after the last.
 fn at(times: &[f64], felt: &[Vec2], time_s: f64) -> Vec2 {
     let after = times.partition_point(|t| *t <= time_s);
     match (after.checked_sub(1).and_then(|i| felt.get(i)), felt.get(after)) {
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use haptics::recording::Channel;
 
-    /// A force that grows evenly in y and stays in x, a second of it.
+    /// Recording of one second with a force that grows linearly in y and is constant in x.
     fn ramp() -> Recording {
         let times: Vec<f64> = (0..101).map(|k| 3.0 + 0.01 * f64::from(k)).collect();
         let channel = |name: &str, of: &dyn Fn(f64) -> f64| Channel {
@@ -97,7 +97,7 @@ mod tests {
         Recording { time_s: Some(times), channels, ..Recording::default() }
     }
 
-    /// What is read at half a second: both axes of the first finger, then of the second.
+    /// Readings at half a second: both axes of the first finger, then of the second.
     fn half_way(fault: &SensorFault) -> [f64; 4] {
         let mut recording = ramp();
         see_through(&mut recording, fault, 3.4);

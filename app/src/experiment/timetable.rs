@@ -1,4 +1,4 @@
-//! Where the hand is wanted when, for an experiment in a world: come, take hold, move, let go, keep off.
+//! Desired hand positions over time, for an experiment in a world: approach, grasp, move, release, retreat.
 
 use estimator::diagnose::{Experiment, Strokes};
 use haptics::Vec2;
@@ -7,54 +7,54 @@ use haptics::law::{Effect, GravityTilt, Inertia, Law, Motion, Role, Weight};
 use haptics::world::{Crank, State, World};
 use std::f64::consts::TAU;
 
-/// Goals are so far apart, s: the arm is a hundred times slower.
+/// Interval between goals, s: the arm is a hundred times slower.
 const PERIOD_S: f64 = 2e-3;
 /// Spare opening of the fingers around an object, m on both sides together.
 pub(super) const CLEARANCE_M: f64 = 0.006;
-/// Nothing is touched for so long at least before and after, s: sensors show their zero.
+/// Minimum time without contact before and after, s: sensors show their zero.
 pub(super) const LEAST_FREE_S: f64 = 1.0;
-/// A reach through the air, closing or opening, and a rest between them, s.
+/// Duration of a reach through the air, of closing or opening, and of a rest between them, s.
 pub(super) const REACH_S: f64 = 1.0;
 pub(super) const CLOSE_S: f64 = 0.6;
 const REST_S: f64 = 0.4;
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
-/// Pinch over what just holds, so that nothing slips.
+/// Factor on the minimum pinch force, so that nothing slips.
 const SPARE_PINCH: f64 = 1.6;
-/// How far away the hand goes when it lets go, m.
+/// Distance by which the hand retreats after release, m.
 const AWAY_M: f64 = 0.014;
-/// Angles that are looked at for where a crank rests.
+/// Number of angles in the search for a crank's rest position.
 const ANGLES: u32 = 1_440;
 
-/// A part of an experiment, in words for people.
+/// Step of an experiment, with text for the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// When it ends, s since the beginning.
+    /// End of the step, s since the start.
     pub until_s: f64,
-    /// What to do meanwhile.
+    /// Instruction.
     pub words: String,
-    /// Whether the object is held.
+    /// True if the object is held.
     pub holds: bool,
 }
 
 /// An experiment in a world.
 #[derive(Clone, Debug)]
 pub struct Timetable {
-    /// The world, with what is hung on, the object at rest.
+    /// World with the added weight and the object at rest.
     pub world: World,
-    /// Where the hand is wanted.
+    /// Desired hand positions.
     pub route: Route,
-    /// What is done when.
+    /// Steps in order.
     pub steps: Vec<Step>,
 }
 
 impl Timetable {
-    /// The experiment on the object of a world; an error says why it cannot be done there. `motion`: in words.
+    /// Experiment on the object of a world; an error gives the reason why it is not possible there. `motion`: as text.
     pub fn new(world: &World, asked: &Experiment, motion: &str) -> Result<Self, String> {
         let world = made_ready(world, asked)?;
-        // Who follows it finds the weight hung on.
+        // The weight is already attached for the user.
         let motion = motion.split_once("; ").filter(|_| asked.added_weight_n > 0.0).map_or(motion, |(_, rest)| rest);
-        // Letting go has steps of its own.
+        // The release has steps of its own.
         let motion = motion.split(", and let go").next().unwrap_or(motion);
         let mut writer = Writer::at_rest(&world);
         if let Some(crank) = &world.crank {
@@ -75,7 +75,7 @@ impl Timetable {
         Ok(Self { world, route, steps })
     }
 
-    /// The same where whatever leaks begins to when it is held: a diagnosis counts a leak from when it could first see it.
+    /// The same with a leak that starts at the grasp: a diagnosis counts a leak from its first possible detection.
     #[must_use]
     pub fn leaking_once_held(mut self) -> Self {
         let held_from_s = self.steps.iter().find(|step| step.holds).map(|step| step.until_s);
@@ -85,19 +85,19 @@ impl Timetable {
         self
     }
 
-    /// Length, s.
+    /// Duration, s.
     pub fn duration_s(&self) -> f64 {
         self.route.duration_s()
     }
 
-    /// What is done at a time, and how long still, s.
+    /// Step at a time, and its remaining time, s.
     pub fn step_at(&self, time_s: f64) -> Option<(&Step, f64)> {
         let step = self.steps.iter().find(|step| time_s < step.until_s)?;
         Some((step, step.until_s - time_s))
     }
 }
 
-/// The world with the weight that is hung on, and the crank where it rests when nobody holds it.
+/// World with the added weight, and with the crank at its rest position.
 fn made_ready(world: &World, asked: &Experiment) -> Result<World, String> {
     let mut world = world.clone();
     if let Some(crank) = &mut world.crank {
@@ -114,7 +114,7 @@ fn made_ready(world: &World, asked: &Experiment) -> Result<World, String> {
     Ok(world)
 }
 
-/// A weight on the handle: gravity takes it as it takes the object, wherever that points.
+/// Adds a weight on the handle, in the direction of the object's own weight.
 fn hang(effects: &mut Vec<Effect>, weight_n: f64, gravity_m_s2: f64) {
     let add = |effects: &mut Vec<Effect>, law: &'static dyn Law, value: f64| match effects
         .iter_mut()
@@ -130,7 +130,7 @@ fn hang(effects: &mut Vec<Effect>, weight_n: f64, gravity_m_s2: f64) {
     }
 }
 
-/// Where the crank comes to rest by itself, rad: friction apart, the lowest place of what its laws hold.
+/// Rest position of the crank, rad: without friction, the minimum of its potential energy.
 fn rest_rad(crank: &Crank) -> f64 {
     let step = TAU / f64::from(ANGLES);
     let pull = |angle: f64| -> f64 {
@@ -138,7 +138,7 @@ fn rest_rad(crank: &Crank) -> f64 {
         let conserves = |e: &&Effect| !e.law().is_dry() && !e.remembers() && e.role() != Role::Inertia;
         crank.effects.iter().filter(conserves).map(|e| e.force(&motion)).sum()
     };
-    // From straight down: there a crank without any force stays.
+    // From straight down: a crank without any force stays there.
     let (mut energy, mut lowest) = (0.0, (0.0, -0.25 * TAU));
     for k in 0..ANGLES {
         let angle = -0.25 * TAU + step * f64::from(k);
@@ -151,7 +151,7 @@ fn rest_rad(crank: &Crank) -> f64 {
     if angle > 0.5 * TAU { angle - TAU } else { angle }
 }
 
-/// Writes goals one after the other.
+/// Writer of consecutive goals.
 pub(super) struct Writer {
     pub(super) goals: Vec<HandGoal>,
     steps: Vec<Step>,
@@ -173,7 +173,7 @@ impl Writer {
         self.go(seconds, self.at);
     }
 
-    /// In minimum jerk.
+    /// Moves with minimum jerk.
     pub(super) fn go(&mut self, seconds: f64, to: HandGoal) {
         let (from, count) = (self.at, (seconds / PERIOD_S).round().max(1.0) as usize);
         for k in 1..=count {
@@ -193,13 +193,13 @@ impl Writer {
         self.steps.push(Step { until_s, words: words.into(), holds });
     }
 
-    /// Keeps off, comes and closes; what is held is `width_m` wide and `at` there. `over_m`: from how far above it is reached for.
+    /// Waits, approaches and closes on an object of `width_m` at `at`. `over_m`: height from which it is approached.
     pub(super) fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
         self.wait(free_s.max(LEAST_FREE_S));
         self.say("Touch nothing.", false);
         let open = HandGoal { center_m: at, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
         if over_m > 0.0 {
-            // On the straight way a finger would come down on top of it.
+            // On the direct path a finger would come down on top of it.
             self.go(REACH_S, HandGoal { center_m: at + Vec2::new(0.0, over_m), ..open });
         }
         self.go(REACH_S, open);
@@ -210,7 +210,7 @@ impl Writer {
         self.say("Take hold.", true);
     }
 
-    /// Opens, goes away and keeps off.
+    /// Opens, retreats and waits.
     pub(super) fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
         self.wait(REST_S);
         self.go(CLOSE_S, HandGoal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
@@ -224,7 +224,7 @@ impl Writer {
 
     fn turn(&mut self, crank: &Crank, world: &World, asked: &Experiment, motion: &str) -> Result<(), String> {
         let strokes = Strokes::of(asked).ok_or_else(|| unknown(asked))?;
-        // Places count from the turn in which the handle hangs.
+        // Positions count from the turn in which the handle points down.
         let rest = crank.start_rad;
         let turns = TAU * ((asked.middle - rest) / TAU).round();
         let hangs = world.gravity_m_s2
@@ -234,7 +234,7 @@ impl Writer {
         let pinch_n = (2.0 * Skill::default().pinch_n).max(SPARE_PINCH * needed);
         let width_m = crank.handle_width_m;
         let held = |angle: f64, across_n: f64| {
-            // Both fingers' springs pull where the hand is wanted beside the circle.
+            // Both fingers' springs pull where the desired position is beside the circle.
             let beside_m = across_n / (2.0 * HandImpedance::default().stiffness_n_m);
             let (sin, cos) = angle.sin_cos();
             let center_m = crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + beside_m);
@@ -261,7 +261,7 @@ impl Writer {
         Ok(())
     }
 
-    /// From a coordinate to another, no faster than `fast` a second.
+    /// Moves from one coordinate to another, no faster than `fast` per second.
     fn along(&mut self, from: f64, to: f64, fast: f64, held: &dyn Fn(f64) -> HandGoal) {
         let seconds = (PEAK * (to - from).abs() / fast.max(1e-6)).max(REST_S);
         let count = (seconds / PERIOD_S).round().max(1.0) as usize;
@@ -278,7 +278,7 @@ impl Writer {
             [asked.seconds, asked.half_range, asked.fast, asked.across_n].iter().all(|v| v.is_finite() && *v > 0.0);
         let block = world.blocks.first().filter(|_| sane).ok_or_else(|| unknown(asked))?;
         let at = block.start.center_m;
-        // The arm gives under the weight.
+        // The arm deflects under the weight.
         let sag_m = 0.5 * block.mass_kg * world.gravity_m_s2 / HandImpedance::default().stiffness_n_m;
         let lifted = at + Vec2::new(0.0, 2.0 * asked.half_range + sag_m);
         let takes_s = (PEAK * (lifted - at).norm() / asked.fast).max(REST_S);
@@ -296,7 +296,7 @@ impl Writer {
     }
 }
 
-/// What its own friction takes at the fastest speed, N.
+/// Friction of the crank at the maximum speed, N.
 fn usual_drag_n(crank: &Crank, asked: &Experiment) -> f64 {
     let motion = Motion {
         velocity: crank.radius_m * asked.fast,

@@ -1,4 +1,5 @@
-//! Insertions by a single tool, as a test stand makes them: the needle goes where it is wanted, and its sensor reads what the sheet does.
+//! Insertions by a single tool, as on a test stand: the needle follows its command, and its sensor reads the membrane's
+//! force.
 
 use super::captured::place_m;
 use super::motion_plan::rate_hz;
@@ -14,18 +15,18 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rand_distr::{Distribution, Normal};
 
-/// Rest before and after, s, and longest step of the sheet's law, s.
+/// Rest before and after, s, and maximum step of the membrane's law, s.
 const REST_S: f64 = 0.5;
 const STEP_S: f64 = 1e-4;
-/// The wish to end is looked at so often, samples.
+/// Interval between checks for cancellation, samples.
 const LOOKS: usize = 500;
 
-/// Whether a single tool was recorded, not two fingers.
+/// True if a single tool was recorded, not two fingers.
 pub fn is_tool(recording: &Recording) -> bool {
     recording.channel("fx_N").is_some() && recording.channel("fx1_N").is_none()
 }
 
-/// The recording that comes of it; nothing when `goes_on` says no. An error is a sentence.
+/// Simulated recording; `None` if `goes_on` returns false. An error is a sentence.
 pub fn insert(
     suspect: &Suspect,
     (asked, like): (&Experiment, &Like<'_>),
@@ -55,7 +56,7 @@ pub fn insert(
             let rate_m_s = (motion.depth_m(time_s + step_s) - motion.depth_m(time_s - step_s)) / (2.0 * step_s);
             out_n = membrane.law.force_n(depth_m, rate_m_s, &mut history);
         }
-        // Up is positive: a force of the needle on the sheet points down.
+        // Up is positive: a force of the needle on the membrane points down.
         rows.push([x_m, -depth_m, 0.0, -out_n]);
         if sample % LOOKS == 0 && !goes_on(sample as f64 / count as f64) {
             return Ok(None);
@@ -70,7 +71,7 @@ pub fn insert(
     Ok(Some(recording))
 }
 
-/// As a tool's recording, by sensors as noisy as those of another.
+/// Tool's recording by sensors with the noise of another.
 fn seen(rows: &[[f64; 4]], rate_hz: f64, like: &Recording, seed: u64) -> Recording {
     let mut rng = StdRng::seed_from_u64(seed ^ 0x1005);
     let mut channel = |k: usize, name: &str, unit: &str| {

@@ -1,6 +1,7 @@
-//! One coordinate under its laws as a joint of other simulators: inertia, damper, dry friction, spring, stops, weight.
+//! One coordinate under its laws as a joint of other simulators: inertia, damper, Coulomb friction, spring, stops,
+//! weight.
 //!
-//! No law is written here again: each is asked for its force at motions that show one number of it.
+//! No law is repeated here: each is evaluated at motions that isolate one of its parameters.
 
 use super::frame::Vec3;
 use super::scene::Scene;
@@ -11,53 +12,53 @@ use haptics::law::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// A coordinate of a file.
+/// Joint coordinate of a file.
 pub struct Coordinate {
-    /// Turns, or slides.
+    /// True for a revolute joint, false for a prismatic one.
     pub turns: bool,
-    /// Along, or about, in the world's frame; of length 1.
+    /// Axis of rotation or direction of sliding, in the world's frame; unit vector.
     pub axis: Vec3,
-    /// Where it starts, m or rad.
+    /// Initial position, m or rad.
     pub start: f64,
-    /// N s/m or N m s/rad.
+    /// Viscous damping, N s/m or N m s/rad.
     pub damping: f64,
-    /// Dry friction, N or N m.
+    /// Coulomb friction, N or N m.
     pub dry: f64,
-    /// Stiffness, N/m or N m/rad, and the place where it is at rest.
+    /// Stiffness, N/m or N m/rad, and rest position, m or rad.
     pub spring: Option<(f64, f64)>,
-    /// The least and the most place that it can go to.
+    /// Lower and upper limit of the position, m or rad.
     pub range: [Option<f64>; 2],
-    /// How hard its ends are, N/m or N m/rad, where that is known.
+    /// Stiffness of the stops, N/m or N m/rad, if known.
     pub stop: Option<f64>,
 }
 
-/// What the laws of a coordinate say, along the file's coordinate.
+/// Effect of a coordinate's laws, along the file's coordinate.
 pub struct Laws {
-    /// kg or kg m².
+    /// Inertia, kg or kg m².
     pub inertia: f64,
-    /// What gravity asks of a drive at the coordinate's zero and a quarter turn on, N or N m; alike where it slides.
+    /// Drive force against gravity at the coordinate's zero and a quarter turn further, N or N m; equal for a slide.
     pub weight: [f64; 2],
-    /// Everything else.
+    /// All other laws.
     pub joint: Coordinate,
 }
 
-/// A coordinate as its laws see it, and as the file has it.
+/// Coordinate in terms of its laws and of the file.
 pub struct Seen<'a> {
-    /// In remarks.
+    /// Name in remarks.
     pub object: &'a str,
-    /// Along, or about.
+    /// Axis of rotation or direction of sliding.
     pub axis: Vec3,
-    /// Turns, or slides, in the file.
+    /// True if it rotates in the file.
     pub turns: bool,
-    /// Path of the laws' coordinate for one of the file's: a crank's arm, else 1.
+    /// Travel of the laws' coordinate per unit of the file's: a crank's arm, otherwise 1.
     pub arm: f64,
-    /// Start, in the file's coordinate.
+    /// Initial position, in the file's coordinate.
     pub start: f64,
-    /// `up · t` at the file's zero and a quarter turn on.
+    /// `up · t` at the file's zero and a quarter turn further.
     pub up_along: [f64; 2],
 }
 
-/// Reads what the laws say and remarks what a joint cannot have.
+/// Evaluates the laws and remarks on effects that a joint cannot have.
 pub fn read(effects: &[Effect], seen: &Seen<'_>, scene: &mut Scene) -> Laws {
     let joint = Coordinate {
         turns: seen.turns,
@@ -83,7 +84,7 @@ impl Laws {
         let at = |motion: Motion| seen.arm * effect.force(&motion);
         let id = effect.law().id();
         if id == Inertia.id() {
-            // The integrator reads it in the same way: it is the law's only value.
+            // As in the integrator: inertia is the law's only value.
             self.inertia += seen.arm * seen.arm * haptics::law::inertia(std::slice::from_ref(effect));
             return (Fate::Kept, "mass and inertia of the body".to_owned());
         }
@@ -104,7 +105,7 @@ impl Laws {
             return (Fate::LeftOut, why_not(effect.law().entry()));
         }
         if id == CoulombFriction.id() || effect.role() == Role::Presliding {
-            // Faster than anything moves: what such friction comes to in the end.
+            // Faster than any motion: the asymptotic value of such friction.
             self.joint.dry += at(Motion { velocity: 1e3, direction: 1.0, ..Motion::default() }).max(0.0);
             return if id == CoulombFriction.id() {
                 (Fate::Kept, "the joint's dry friction".to_owned())
@@ -135,7 +136,7 @@ impl Laws {
         if stiffness <= 0.0 {
             return (Fate::LeftOut, "a force that is the same everywhere is no spring".to_owned());
         }
-        // Two springs are one, at rest where their forces cancel.
+        // Two springs combine into one, at rest where their forces cancel.
         let rest = seen.start - at(seen.start) / stiffness;
         let (before, before_rest) = self.joint.spring.unwrap_or((0.0, 0.0));
         let total = before + stiffness;
@@ -154,7 +155,7 @@ fn value(effect: &Effect, name: &str) -> Option<f64> {
     effect.values.get(index).copied()
 }
 
-/// Why a joint cannot have a law.
+/// Reason why a joint cannot represent a law.
 fn why_not(entry: &Entry) -> String {
     if entry.kind == Kind::Instrument {
         return "a fault of the measurement, not of the object".to_owned();
@@ -163,7 +164,7 @@ fn why_not(entry: &Entry) -> String {
     format!("joints have no {} ({} with {})", entry.title.to_lowercase(), entry.equation, values.join(", "))
 }
 
-/// Whether a mechanism's coordinate turns.
+/// True if a mechanism's coordinate is an angle.
 pub fn turns(unit: Unit) -> bool {
     unit == Unit::Angular
 }

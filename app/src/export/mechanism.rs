@@ -7,12 +7,12 @@ use super::scene::{Body, Moves, Outline, Scene};
 use haptics::law::inertia;
 use haptics::world::{Crank, Mechanism, MechanismPath, Switch};
 
-/// Of an arm whose length nobody measured, m.
+/// Length of an arm without a measured length, m.
 const SOME_ARM_M: f64 = 0.1;
-/// Least share of the inertia that lies in the body itself: no program takes a body without.
+/// Minimum share of the inertia in the body itself: every simulator requires some.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// A crank: a handle on an arm about a level axis.
+/// Adds a crank: a handle on an arm about a horizontal axis.
 pub fn add_crank(crank: &Crank, scene: &mut Scene) {
     let name = scene.free_name("crank");
     let seen = Seen {
@@ -33,7 +33,8 @@ pub fn add_crank(crank: &Crank, scene: &mut Scene) {
     }
 }
 
-/// A switch: its lever between its stops, with everything but the snap. Its knob goes to the right, which is clockwise.
+/// Adds a switch: its lever between its stops, with everything but the snap. Its knob moves to the right, which is
+/// clockwise.
 pub fn add_switch(switch: &Switch, scene: &mut Scene) {
     let (lever_m, points) = (switch.lever_m, &switch.curve.points);
     let name = scene.free_name("switch");
@@ -70,10 +71,10 @@ pub fn add_switch(switch: &Switch, scene: &mut Scene) {
     scene.remark(&name, "snap", Fate::LeftOut, why);
 }
 
-/// What a switch's two ways differ by, from their middle, N: the mean over the way between its ends.
+/// Half the difference between a switch's two branches, N: the mean over the travel between its ends.
 fn dry_n(switch: &Switch) -> f64 {
     let half_n = |at_m: f64| 0.5 * (switch.curve.force_n(at_m, 1.0) - switch.curve.force_n(at_m, 0.0));
-    // Straight between the points.
+    // Piecewise linear between the points.
     let pieces = switch.curve.points.windows(2).map(|pair| (pair[0].at_m, pair[1].at_m));
     let (way_m, area) = pieces.fold((0.0, 0.0), |(way_m, area), (from_m, to_m)| {
         let length_m = to_m - from_m;
@@ -82,7 +83,7 @@ fn dry_n(switch: &Switch) -> f64 {
     if way_m > 0.0 { (area / way_m).max(0.0) } else { 0.0 }
 }
 
-/// A mechanism where its path lies, or at the origin: a slide along x, a hinge whose zero hangs.
+/// Adds a mechanism on its path, or at the origin: a slide along x, a hinge whose zero points down.
 pub fn add(mechanism: &Mechanism, scene: &mut Scene) {
     let name = scene.free_name("mechanism");
     if inertia(&mechanism.effects) <= 0.0 {
@@ -141,7 +142,7 @@ fn add_hinge(
     scene: &mut Scene,
 ) {
     let (axis, zero) = (axis.normalize(), zero.normalize());
-    // Along the path at zero, and a quarter turn on.
+    // Along the path at zero, and a quarter turn further.
     let up_along = if mechanism.path.is_some() { [axis.cross(&zero).z, -zero.z] } else { [0.0; 2] };
     let seen = Seen { object: name, axis, turns: true, arm: 1.0, start: 0.0, up_along };
     let laws = read(&mechanism.effects, &seen, scene);
@@ -149,19 +150,19 @@ fn add_hinge(
     add_turning(name, center_m, zero, radius_m, laws, outline, scene);
 }
 
-/// A body about an axis, with its mass where gravity's moment on it is the laws'.
+/// Adds a body about an axis, with its mass at the position where gravity's moment equals that of the laws.
 fn add_turning(name: &str, center_m: Vec3, zero: Vec3, radius_m: f64, laws: Laws, outline: Outline, scene: &mut Scene) {
     let axis = laws.joint.axis;
     let [at_zero, quarter_on] = laws.weight;
     let most = at_zero.hypot(quarter_on);
-    // Gravity across the axis: its strength, and its angle from the zero.
+    // Gravity perpendicular to the axis: its magnitude, and its angle from the zero.
     let (along_zero, along_side) = (scene.gravity.dot(&zero), scene.gravity.dot(&axis.cross(&zero)));
     let across = along_zero.hypot(along_side);
     let moment_kg_m = if across > 1e-9 { most / across } else { 0.0 };
     if moment_kg_m == 0.0 && most > 0.0 {
         scene.remark(name, "weight", Fate::LeftOut, "there is no gravity across the axis");
     }
-    // The nearer to the axis, the heavier it must be; at the handle if the inertia allows.
+    // Closer to the axis, the mass must be larger; it is at the handle if the inertia allows.
     let reach_m = if moment_kg_m > 0.0 { radius_m.min(laws.inertia / moment_kg_m) } else { 0.0 };
     let mass_kg = if reach_m > 0.0 { moment_kg_m / reach_m } else { laws.inertia / (radius_m * radius_m) };
     let angle = at_zero.atan2(quarter_on) + along_side.atan2(along_zero);

@@ -1,7 +1,8 @@
-//! MuJoCo's format. A body's joint coordinates are this world's own: x, y and angle of a block, the angle of a crank.
+//! MuJoCo's format. A body's joint coordinates are those of this program: x, y and angle of a block, the angle of a
+//! crank.
 //!
-//! MuJoCo's contacts are accelerations, not forces: a stiffness goes over as the square of the frequency at which the body bounces
-//! on its two corners, a damper as the rate at which that dies away.
+//! MuJoCo parameterizes contacts by acceleration, not force. A stiffness becomes the square of the frequency at which
+//! the body bounces on its two corners, and a damper the decay rate of that bounce.
 
 use super::Fate;
 use super::frame::{Vec3, of_plane, turned, turning};
@@ -10,28 +11,30 @@ use super::scene::{Body, DEPTH_M, Moves, Outline, Scene, Surface, axis_of};
 use super::xml::{Element, numbers};
 use haptics::world::World;
 
-/// Short enough for the stiffest of usual contacts, s.
+/// Time step, s; short enough for the stiffest usual contact.
 const STEP_S: f64 = 5e-4;
-/// Half of the size of what has no end, m.
+/// Half the size of an unbounded object, m.
 const FAR_M: f64 = 1.0;
-/// A fingertip's radius, m, mass, kg, and how far from ringing its spring is.
+/// Fingertip: radius, m, mass, kg, and damping ratio of its spring.
 const TIP_RADIUS_M: f64 = 0.003;
 const TIP_KG: f64 = 0.05;
 const TIP_DAMPING_RATIO: f64 = 0.7;
-/// What a tip touches gives much less than by MuJoCo's default: the spring behind the tip is the pad, and a contact that gives as well
-/// takes most of the grip away (MuJoCo's time constant, s, and damping ratio).
+/// Contact parameters of a tip (MuJoCo's time constant, s, and damping ratio). They are much stiffer than MuJoCo's
+/// default: the spring behind the tip is the pad, and a compliant contact in series would take most of the grip away.
 const TIP_CONTACT: &str = "0.002 1";
-/// Rounds that MuJoCo takes after each step so that what friction holds does not creep: a held block would sink by millimetres a second.
+/// Number of MuJoCo's iterations after each step against creep of frictional contacts: a held block would otherwise
+/// sink by millimetres per second.
 const ROUNDS_AGAINST_CREEP: u32 = 10;
-/// How far to each side of the workspace's middle the tips wait, m.
+/// Distance of the waiting tips from the workspace's centre, to each side, m.
 const TIP_AWAY_M: f64 = 0.03;
 /// Torsional and rolling friction of MuJoCo's pairs: its defaults; neither acts in a plane.
 const OTHER_FRICTION: &str = "0.005 0.0001 0.0001";
 
-/// MuJoCo's dry friction of joints creeps at rest and bends at slow speeds; so it does much less than by default.
+/// Friction parameters of a joint. MuJoCo's dry friction creeps at rest and is rounded at low speed; these values
+/// reduce both effects.
 const STIFF_FRICTION: &str = "0.002 1";
 const FIRM_FRICTION: &str = "0.99 0.999 0.001";
-/// A known stop's: see `stop`; and the most that it may turn in a step, rad.
+/// Impedance of a stop with known stiffness (see `stop`), and its maximum rotation in a step, rad.
 const STOP_SHARE: f64 = 0.01;
 const STOP_PER_STEP: f64 = 0.5;
 
@@ -85,7 +88,7 @@ pub fn write(world: &World, scene: &mut Scene, fingers: bool) -> Element {
     }
 }
 
-/// A contact's frequency and damping as MuJoCo has them.
+/// Frequency and damping of a contact in MuJoCo's form.
 fn solref(stiffness_n_m: f64, damping_n_s_m: f64, mass_kg: f64) -> String {
     numbers(&[-2.0 * stiffness_n_m / mass_kg, -2.0 * damping_n_s_m / mass_kg])
 }
@@ -124,7 +127,7 @@ fn body(of: &Body) -> Element {
         .containing_all(outline(of))
 }
 
-/// About x, y and z, kg m²; only the one about the joint's axis acts.
+/// Moments of inertia about x, y and z, kg m²; only the one about the joint's axis acts.
 pub fn inertias(of: &Body) -> [f64; 3] {
     match of.outline {
         Outline::Box { size_m: [width, depth, height], .. } => {
@@ -139,7 +142,7 @@ fn joints(of: &Body, angle_rad: f64) -> Vec<Element> {
     let named = |suffix: &str| Element::new("joint").with("name", format!("{}{suffix}", of.name));
     match &of.moves {
         Moves::InPlane { start_m, upright, .. } => {
-            // Axes are given in the body's own frame, which may start turned.
+            // Axes are given in the body's own frame, which may start rotated.
             let own = |axis: Vec3| numbers(turned(axis, turning(), -angle_rad).as_slice());
             let slide = |suffix, axis: Vec3, at_m: f64| {
                 named(suffix).with("type", "slide").with("axis", own(axis)).with("ref", at_m)
@@ -155,14 +158,14 @@ fn joints(of: &Body, angle_rad: f64) -> Vec<Element> {
     }
 }
 
-/// What one coordinate has to speed up, kg or kg m².
+/// Inertia along one coordinate, kg or kg m².
 fn inertia_along(of: &Body, along: &Coordinate) -> f64 {
     if along.turns { of.inertia_kg_m2 + of.mass_kg * of.middle_m.norm_squared() } else { of.mass_kg }
 }
 
-/// An end as a spring of known stiffness, damped by no more than the joint. A limit's own force is what is left of the free acceleration plus the share `d` of a spring's
-/// pull, which is scaled so that the
-/// share falls out; with a small one it is that spring (`STOP_SHARE` of the outer force is the error).
+/// Joint limit as a spring of known stiffness, damped no more than the joint. A limit's force is the remaining free
+/// acceleration plus the share `d` of a spring's pull. The pull is scaled so that `d` cancels; with a small `d` the
+/// limit is that spring (error: `STOP_SHARE` of the outer force).
 fn stop(joint: Element, stiffness: f64, inertia: f64) -> Element {
     let rate_1_s = (stiffness / inertia).sqrt().min(STOP_PER_STEP / STEP_S);
     joint
@@ -229,7 +232,7 @@ fn outline(of: &Body) -> Vec<Element> {
     }
 }
 
-/// The blocks of a scene with how they touch.
+/// Blocks of a scene with their surfaces.
 fn blocks(scene: &Scene) -> impl Iterator<Item = (&Body, &Surface)> {
     scene.bodies.iter().filter_map(|body| match &body.outline {
         Outline::Box { contact, .. } => Some((body, contact)),
@@ -244,7 +247,7 @@ fn pair(a: &str, b: &str, friction: f64) -> Element {
         .with("friction", format!("{friction} {friction} {OTHER_FRICTION}"))
 }
 
-/// The ground's own friction and give under each block: MuJoCo would take the larger friction of the two.
+/// Friction and compliance of the ground under each block: MuJoCo would take the larger friction of the two.
 fn ground_pairs(scene: &Scene) -> Vec<Element> {
     let on = |(body, _): (&Body, &Surface)| {
         let of = scene.grounds.iter().map(|ground| {
@@ -256,7 +259,7 @@ fn ground_pairs(scene: &Scene) -> Vec<Element> {
     blocks(scene).flat_map(on).collect()
 }
 
-/// Blocks whose friction differs touch with the geometric mean of it.
+/// Contact pairs of blocks with different friction, by its geometric mean.
 fn block_pairs(scene: &Scene) -> Vec<Element> {
     let all: Vec<(&Body, &Surface)> = blocks(scene).collect();
     let with = |index: usize| {
@@ -267,7 +270,7 @@ fn block_pairs(scene: &Scene) -> Vec<Element> {
     (0..all.len()).flat_map(with).collect()
 }
 
-/// Cables, and where they are tied.
+/// Cables and their anchors.
 fn cables(world: &World, scene: &mut Scene, things: &mut Vec<Element>) -> Vec<Element> {
     let tied = world.blocks.iter().enumerate().filter_map(|(index, block)| Some((index, block.cable?)));
     let mut tendons = Vec::new();
@@ -300,7 +303,7 @@ struct Hand {
     start: Element,
 }
 
-/// Fingertips on springs as stiff as the pads; a motor's control is where a tip is led, m.
+/// Fingertips on springs as stiff as the pads; a motor's control is the desired tip position, m.
 fn hand(world: &World, scene: &mut Scene) -> Hand {
     let (pad, middle) = (&world.pad, world.hand.workspace.center_m);
     let how = "each tip a ball on springs as stiff as the pad, of a mass of its own; lead it by its motors, in m";
@@ -329,7 +332,7 @@ fn hand(world: &World, scene: &mut Scene) -> Hand {
         let ball = Element::new("geom").with("name", name).with("type", "sphere").with("size", TIP_RADIUS_M);
         let body = Element::new("body").with("name", name).with("pos", numbers(&[tip_m[0], 0.0, tip_m[1]]));
         hand.bodies.push(body.with("gravcomp", 1).containing_all(joints).containing(
-            // Its surface, not its middle, is where the tip is.
+            // The tip is its surface, not its centre.
             ball.with("pos", numbers(&[side * TIP_RADIUS_M, 0.0, 0.0])).with("mass", TIP_KG),
         ));
         let touch = |what: &str, friction: f64| pair(name, what, friction).with("solref", TIP_CONTACT);

@@ -1,7 +1,8 @@
-//! A world for other simulators: MuJoCo's MJCF, URDF and SDF, each as far as it has a counterpart, with a list of what it has not.
+//! Export of a world to other simulators: MuJoCo's MJCF, URDF and SDF, each as far as it has a counterpart, with a list
+//! of omissions.
 //!
-//! [`scene`] says what of a world is solid bodies on joints, in the frame of those programs; [`mjcf`], [`urdf`] and [`sdf`]
-//! write that. Numbers of laws come from the laws themselves, asked at chosen motions ([`joint`]).
+//! [`scene`] converts a world to rigid bodies on joints, in the frame of those programs; [`mjcf`], [`urdf`] and [`sdf`]
+//! write it. Parameters come from the laws themselves, evaluated at chosen motions ([`joint`]).
 
 mod frame;
 mod joint;
@@ -31,7 +32,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Its name for people.
+    /// Name for the user.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mjcf => "MuJoCo MJCF",
@@ -40,7 +41,7 @@ impl Format {
         }
     }
 
-    /// The format that a file's ending asks for: `.xml` is MuJoCo's.
+    /// Format of a file extension: `.xml` is MuJoCo's.
     pub fn of_ending(path: &std::path::Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "xml" | "mjcf" => Some(Self::Mjcf),
@@ -83,7 +84,7 @@ pub struct Exported {
     pub text: String,
     /// Names of the movable bodies in the file.
     pub bodies: Vec<String>,
-    /// What became of every part of the world.
+    /// Remarks on every part of the world.
     pub remarks: Vec<Remark>,
 }
 
@@ -94,11 +95,11 @@ impl Exported {
     }
 }
 
-/// Where the plane of a world lies in the file: said in the file, and for people.
+/// Orientation of the world's plane in the file, as text for the file and the user.
 pub const FRAME: &str =
     "x to the right and z up are this world's x and y; y points away from the viewer; lengths in m, SI throughout";
 
-/// Writes a world in another format; `fingers` adds two fingertips on springs, where the format has motors for them.
+/// Writes a world in another format; `fingers` adds two fingertips on springs, if the format has motors for them.
 pub fn export(world: &World, format: Format, fingers: bool) -> Exported {
     let mut scene = scene::of_world(world);
     let root = match format {

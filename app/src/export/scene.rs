@@ -1,4 +1,4 @@
-//! What of a world is solid bodies on joints, in the frame of other simulators.
+//! Rigid bodies on joints from a world, in the frame of other simulators.
 
 use super::frame::{Vec3, of_plane, turning};
 use super::joint::Coordinate;
@@ -6,60 +6,60 @@ use super::{Fate, Remark, mechanism, xml};
 use haptics::Vec2;
 use haptics::world::{Block, Shape, World};
 
-/// Blocks have no third size here, and other simulators want one, m.
+/// Depth of blocks, m: they have none here, but other simulators require one.
 pub const DEPTH_M: f64 = 0.02;
 
-/// Everything that a file can show.
+/// Exportable content of a world.
 pub struct Scene {
     /// Name for the file.
     pub name: String,
     /// Gravity, m/s².
     pub gravity: Vec3,
-    /// What moves.
+    /// Movable bodies.
     pub bodies: Vec<Body>,
-    /// What does not.
+    /// Fixed surfaces.
     pub grounds: Vec<Ground>,
-    /// What became of the parts.
+    /// Remarks on the parts.
     pub remarks: Vec<Remark>,
 }
 
-/// A half-space that pushes.
+/// Half-space that supports bodies.
 pub struct Ground {
     /// `floor` or `plane`.
     pub name: &'static str,
     /// A point of the surface, m.
     pub point_m: Vec3,
-    /// Out of the solid.
+    /// Outward unit normal.
     pub normal: Vec3,
     /// Coulomb coefficient.
     pub friction: f64,
-    /// Of one point of contact, N/m.
+    /// Stiffness per contact point, N/m.
     pub stiffness_n_m: f64,
-    /// Of one point of contact, N s/m.
+    /// Damping per contact point, N s/m.
     pub damping_n_s_m: f64,
 }
 
-/// A rigid body; its own frame is parallel to the world's where its coordinates are zero.
+/// Rigid body; its own frame is parallel to the world's where its coordinates are zero.
 pub struct Body {
-    /// Name in the file, unlike any other.
+    /// Unique name in the file.
     pub name: String,
     /// Origin of its frame where its coordinates are zero, m.
     pub origin_m: Vec3,
-    /// kg.
+    /// Mass, kg.
     pub mass_kg: f64,
     /// Centre of mass in its own frame, m.
     pub middle_m: Vec3,
     /// Moment of inertia about the centre of mass, about the joint's axis, kg m².
     pub inertia_kg_m2: f64,
-    /// Share of the weight that gravity has on it; only MJCF can have it other than 1.
+    /// Factor on gravity for this body; only MJCF supports values other than 1.
     pub weighs: f64,
-    /// How it moves.
+    /// Motion of the body.
     pub moves: Moves,
-    /// What it looks like.
+    /// Shape of the body.
     pub outline: Outline,
 }
 
-/// How a body moves.
+/// Motion of a body.
 pub enum Moves {
     /// Freely in the plane: two lengths and, unless it keeps upright, an angle about [`turning`].
     InPlane {
@@ -67,58 +67,58 @@ pub enum Moves {
         start_m: Vec2,
         /// Angle at the start, rad.
         angle_rad: f64,
-        /// Keeps its angle.
+        /// True if its angle is fixed.
         upright: bool,
     },
     /// Along one coordinate.
     Along(Coordinate),
 }
 
-/// What a body looks like.
+/// Shape of a body.
 pub enum Outline {
     /// A box of a width, a depth and a height, m.
     Box {
         /// Sizes, m.
         size_m: [f64; 3],
-        /// Against the ground and each other.
+        /// Contact with the ground and other blocks.
         contact: Surface,
     },
     /// An arm from the axis to a handle, a cylinder along the axis.
     Arm {
         /// Middle of the handle in the body's frame, m.
         handle_m: Vec3,
-        /// Along the handle.
+        /// Direction of the handle.
         axis: Vec3,
         /// Radius of the handle, m.
         radius_m: f64,
     },
-    /// A ball, for something with no shape in the world, m.
+    /// Ball, for an object without a shape in the world, m.
     Mark {
         /// Its middle in the body's frame, m.
         at_m: Vec3,
     },
 }
 
-/// How a body touches.
+/// Contact properties of a body.
 #[derive(Clone, Copy)]
 pub struct Surface {
-    /// Against other blocks.
+    /// Coulomb coefficient with other blocks.
     pub friction: f64,
-    /// Against fingers.
+    /// Coulomb coefficient with fingers.
     pub finger_friction: f64,
-    /// N/m for each point of contact.
+    /// Stiffness per contact point, N/m.
     pub stiffness_n_m: f64,
-    /// N s/m for each point of contact.
+    /// Damping per contact point, N s/m.
     pub damping_n_s_m: f64,
 }
 
 impl Scene {
-    /// Says what became of a part.
+    /// Adds a remark on a part.
     pub fn remark(&mut self, object: &str, what: &str, fate: Fate, how: impl Into<String>) {
         self.remarks.push(Remark { object: object.to_owned(), what: what.to_owned(), fate, how: how.into() });
     }
 
-    /// A name for a body.
+    /// Unique name for a body.
     pub fn free_name(&self, wanted: &str) -> String {
         let taken: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
         xml::name(wanted, &taken)
@@ -221,7 +221,7 @@ fn add_block(block: &Block, scene: &mut Scene) {
     lost(block.shape == Shape::Needle, "point", "it is a box here, without a point that pierces");
 }
 
-/// Axis of a body's only or last turning coordinate.
+/// Axis of a body's only or last rotational coordinate.
 pub fn axis_of(body: &Body) -> Vec3 {
     match &body.moves {
         Moves::InPlane { .. } => turning(),

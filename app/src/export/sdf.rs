@@ -1,4 +1,4 @@
-//! SDF as Gazebo reads it: a world of models, with gravity, friction and give of surfaces, springs of joints.
+//! SDF for Gazebo: a world of models, with gravity, friction and compliance of surfaces, springs of joints.
 
 use super::Fate;
 use super::frame::{Vec3, of_plane, turning};

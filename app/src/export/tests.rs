@@ -61,8 +61,8 @@ fn near(a: f64, b: f64) -> bool {
 
 #[test]
 fn every_format_has_the_crank_s_numbers() {
-    // At 22 mm: c = 1 N s/m is 0.000484 N m s, Fc = 0.02 N is 0.00044 N m; 0.16 N weigh as 16.31 g at the handle, and the other
-    // 13.69 g of its inertia of 30 g turn with the arm.
+    // At 22 mm: c = 1 N s/m is 0.000484 N m s, Fc = 0.02 N is 0.00044 N m. A weight of 0.16 N is 16.31 g at the handle,
+    // and the other 13.69 g of its inertia of 30 g rotate with the arm.
     let world = presets::crank();
     let (damping, dry, mass) = (0.000_484, 0.000_44, 0.16 / 9.81);
     let inertia = (0.03 - mass) * 0.022 * 0.022;
@@ -132,7 +132,7 @@ fn a_switch_is_a_lever_between_its_stops() {
     let spring_1_s2 = -of("solreflimit");
     assert!((spring_1_s2 * switch.mass_kg / switch.curve.stop_n_m - 1.0).abs() < 1e-3, "{spring_1_s2}");
     assert_eq!(file.all("inertial").next().expect("a mass")["pos"], format!("0 0 {lever_m}"));
-    // Going to and fro costs what lies between the branches: twice the friction over twice the way.
+    // The work of a full cycle is the area between the branches: twice the friction over twice the travel.
     let between_j: f64 = points
         .windows(2)
         .map(|p| {

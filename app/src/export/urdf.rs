@@ -8,7 +8,7 @@ use super::scene::{Body, DEPTH_M, Ground, Moves, Outline, Scene, axis_of};
 use super::xml::{Element, numbers};
 use haptics::world::World;
 
-/// Limits that the format asks for where none is known: N or N m, m/s or rad/s, m.
+/// Limits required by the format where none is known: N or N m, m/s or rad/s, m.
 const NO_LIMIT: f64 = 1e3;
 /// Size of the ground, m.
 const GROUND_M: f64 = 2.0;
@@ -26,7 +26,7 @@ pub fn write(world: &World, scene: &mut Scene) -> Element {
         .containing_all(bodies)
 }
 
-/// Neither URDF nor SDF has cables.
+/// Remarks that cables are omitted: neither URDF nor SDF has them.
 pub fn without_cables(world: &World, scene: &mut Scene) {
     for index in (0..world.blocks.len()).filter(|index| world.blocks[*index].cable.is_some()) {
         let name = scene.bodies[index].name.clone();
@@ -88,7 +88,7 @@ fn remarks(scene: &mut Scene) {
         }
     }
     for (object, what, fate, how) in all {
-        // What the laws said of joints in general is not true of this format.
+        // General remarks of the laws on joints do not apply to this format.
         scene.remarks.retain(|r| !(r.object == object && r.what == what && r.fate != fate));
         scene.remark(&object, what, fate, how);
     }
@@ -102,14 +102,14 @@ fn turned_origin(at_m: Vec3, axis: Vec3, angle_rad: f64) -> Element {
     origin(at_m).with("rpy", numbers(&roll_pitch_yaw(axis, angle_rad)))
 }
 
-/// A turn about an axis as the angles of both formats, rad.
+/// Rotation about an axis as the angles of both formats, rad.
 pub fn roll_pitch_yaw(axis: Vec3, angle_rad: f64) -> [f64; 3] {
     let axis = nalgebra::Unit::new_normalize(axis);
     let (roll, pitch, yaw) = nalgebra::Rotation3::from_axis_angle(&axis, angle_rad).euler_angles();
     [roll, pitch, yaw]
 }
 
-/// Turns z to a direction of the plane: what lies level then faces there.
+/// Rotation of z to a direction of the plane: a horizontal surface then faces there.
 pub fn facing(normal: Vec3) -> [f64; 3] {
     roll_pitch_yaw(Vec3::y(), normal.x.atan2(normal.z))
 }
@@ -193,7 +193,7 @@ fn joint(of: &Body) -> Element {
     }
 }
 
-/// Ends from where the world starts.
+/// Limits relative to the world's initial position.
 pub fn reach(along: &Coordinate) -> [f64; 2] {
     let [low, high] = along.range.map(|end| end.map(|place| place - along.start));
     [low.unwrap_or(-NO_LIMIT), high.unwrap_or(NO_LIMIT)]

@@ -13,29 +13,29 @@ pub struct Element {
 }
 
 impl Element {
-    /// An empty one.
+    /// Empty element.
     pub fn new(name: &'static str) -> Self {
         Self { name, attributes: Vec::new(), children: Vec::new(), text: None }
     }
 
-    /// One that holds text only.
+    /// Element that contains only text.
     pub fn text(name: &'static str, text: impl std::fmt::Display) -> Self {
         Self { text: Some(plain(&text.to_string())), ..Self::new(name) }
     }
 
-    /// With an attribute.
+    /// Adds an attribute.
     pub fn with(mut self, name: &'static str, value: impl std::fmt::Display) -> Self {
         self.attributes.push((name, plain(&value.to_string())));
         self
     }
 
-    /// With an element inside.
+    /// Adds a child element.
     pub fn containing(mut self, child: Self) -> Self {
         self.children.push(child);
         self
     }
 
-    /// With elements inside.
+    /// Adds child elements.
     pub fn containing_all(mut self, children: impl IntoIterator<Item = Self>) -> Self {
         self.children.extend(children);
         self
@@ -60,13 +60,13 @@ impl Element {
     }
 }
 
-/// Numbers as they stand in a file: short, and the same bits when they are read.
+/// Numbers for a file: short, with an exact round trip.
 pub fn numbers(values: &[f64]) -> String {
-    // Minus zero reads badly and means nothing here.
+    // Minus zero is confusing and has no meaning here.
     values.iter().map(|value| (value + 0.0).to_string()).collect::<Vec<_>>().join(" ")
 }
 
-/// Text without what no XML document can hold, whatever a world was called.
+/// Text without characters that XML forbids.
 fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c }).collect()
 }
@@ -83,7 +83,7 @@ pub fn document(root: &Element, heading: &[String]) -> String {
     text
 }
 
-/// A name that every program takes, and that no other body has: letters, digits, `-` and `_`.
+/// Name valid in every program and unique among the bodies: letters, digits, `-` and `_`.
 pub fn name(wanted: &str, taken: &[String]) -> String {
     let tame: String =
         wanted.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '_' }).collect();
@@ -92,7 +92,7 @@ pub fn name(wanted: &str, taken: &[String]) -> String {
     if is_free(&tame) {
         return tame;
     }
-    // One more number than names that are taken: one of them is free.
+    // One more candidate than taken names: one of them is free.
     let most = taken.len() + RESERVED.len() + 2;
     (2..=most).map(|n| format!("{tame}_{n}")).find(|name| is_free(name)).unwrap_or(tame)
 }

@@ -1,25 +1,25 @@
-//! Attempts that the database did not take: one JSON file each in a folder beside it, until it takes them.
+//! Attempts that the database has rejected: one JSON file each in a folder beside it, until it accepts them.
 //!
-//! A file is called after when its attempt began, and never before one that waits already, so that they are taken in in the order in
-//! which they were made, also when the clock was set back between them.
+//! A file is named after the start of its attempt, but never before one that is already waiting. The import
+//! thus keeps the order in which they were made, even if the clock was set back between them.
 
 use super::{Attempt, Store};
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The folder of a database at this path.
+/// Folder of a database at this path.
 fn folder(database: &Path) -> PathBuf {
     database.with_extension("waiting")
 }
 
-/// What a file's name says of its place; nothing of a name that was not given here.
+/// Position encoded in a file's name; `None` for a foreign name.
 fn place(path: &Path) -> Option<(i128, u32)> {
     let (moment, number) = path.file_stem()?.to_str()?.rsplit_once('-')?;
     Some((moment.parse().ok()?, number.parse().ok()?))
 }
 
-/// What waits, in its order.
+/// Waiting files, in order.
 fn waiting(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let waits = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
@@ -28,7 +28,7 @@ fn waiting(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Keeps an attempt beside the database; it is on the disk when this returns.
+/// Stores an attempt beside the database; it is on the disk on return.
 pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
     let refused = |error: std::io::Error| {
         format!("The attempt could not be kept ({error}); check the disk and its permissions: {}.", database.display())
@@ -36,7 +36,7 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
     let folder = folder(database);
     std::fs::create_dir_all(&folder).map_err(refused)?;
     let text = serde_json::to_string_pretty(attempt).map_err(|error| refused(error.into()))?;
-    // Whole or not at all: written under another name first.
+    // All or nothing: written under another name first.
     let mut whole = tempfile::NamedTempFile::new_in(&folder).map_err(refused)?;
     whole.write_all(text.as_bytes()).and_then(|()| whole.as_file().sync_all()).map_err(refused)?;
     let began = (attempt.began.as_nanosecond(), 0_u32);
@@ -46,7 +46,7 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
         let path = folder.join(format!("{moment}-{number}.json"));
         match whole.persist_noclobber(&path) {
             Ok(_) => {
-                // The name, too, must be on the disk; where folders cannot be synced it comes there by itself.
+                // The name, too, must be on the disk; where folders cannot be synced, this happens by itself.
                 let _ = File::open(&folder).and_then(|folder| folder.sync_all());
                 return Ok(path);
             }
@@ -57,8 +57,8 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
     }
 }
 
-/// Takes in what waits beside the database: how many, and what is wrong with the rest. What cannot be read stays where it is; where the
-/// database refuses one, that is the error, and those behind it wait on.
+/// Imports the attempts that wait beside the database. Returns their number, and the problems of unreadable files,
+/// which stay where they are. If the database rejects one, that is the error, and those behind it continue to wait.
 pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>, Result<(), String>) {
     let (mut taken, mut problems) = (0, Vec::new());
     for path in waiting(&folder(database)) {
@@ -71,7 +71,7 @@ pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>, Resul
             }
             Ok(attempt) => match store.keep_waiting(&attempt) {
                 Ok(_) => {
-                    // Should the file stay, it is known already at the next start.
+                    // If the file remains, it is recognized as a duplicate at the next start.
                     let _ = std::fs::remove_file(&path);
                     taken += 1;
                 }

@@ -1,4 +1,4 @@
-//! The history beside the window: a thread that has the database, asked and answered without waiting.
+//! History for the window: a thread that owns the database and answers requests without blocking.
 
 use super::{Attempt, Query, Store, aside};
 use jiff::Timestamp;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-/// What is asked.
+/// Request to the thread.
 enum Request {
     Add(Box<Attempt>),
     AddTrainee(String, Timestamp),
@@ -15,24 +15,24 @@ enum Request {
     Export(PathBuf, Query),
 }
 
-/// What comes back.
+/// Answer of the thread.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// An attempt is on the disk: in the database, or beside it until that takes it.
+    /// An attempt is on the disk: in the database, or beside it until that accepts it.
     Kept(Box<Attempt>),
     /// Names of all trainees.
     Trainees(Vec<String>),
     /// Attempts, the oldest first.
     Attempts(Query, Vec<Attempt>),
-    /// A table was written here.
+    /// A table was written to this file.
     Exported(PathBuf),
-    /// Attempts of earlier were taken in, so many.
+    /// Number of earlier attempts that were imported.
     TakenIn(usize),
-    /// One sentence.
+    /// Problem, in one sentence.
     Problem(String),
 }
 
-/// The thread, from outside. When this is dropped, everything that was asked for is done first.
+/// Handle of the thread. On drop, all pending requests are completed first.
 pub struct History {
     requests: Option<Sender<Request>>,
     answers: Receiver<Answer>,
@@ -40,7 +40,7 @@ pub struct History {
 }
 
 impl History {
-    /// Starts the thread. `wake` is called after every answer: a window that sleeps looks then.
+    /// Starts the thread. `wake` is called after every answer, so that a sleeping window polls.
     pub fn start(database: PathBuf, wake: impl Fn() + Send + 'static) -> Result<Self, String> {
         let (requests, asked) = channel();
         let (sender, answers) = channel();
@@ -60,22 +60,22 @@ impl History {
         let _ = self.requests.as_ref().map(|requests| requests.send(request));
     }
 
-    /// Keeps an attempt that was made just now.
+    /// Stores an attempt that was made just now.
     pub fn add(&self, attempt: Attempt) {
         self.ask(Request::Add(Box::new(attempt)));
     }
 
-    /// Adds a trainee; the names of all come back.
+    /// Adds a trainee; the answer contains all names.
     pub fn add_trainee(&self, name: &str) {
         self.ask(Request::AddTrainee(name.to_owned(), Timestamp::now()));
     }
 
-    /// Asks for the names of all trainees.
+    /// Requests the names of all trainees.
     pub fn read_trainees(&self) {
         self.ask(Request::Trainees);
     }
 
-    /// Asks for attempts.
+    /// Requests attempts.
     pub fn read(&self, query: Query) {
         self.ask(Request::Read(query));
     }
@@ -85,7 +85,7 @@ impl History {
         self.ask(Request::Export(to, query));
     }
 
-    /// What has come back since the last call; never waits.
+    /// Answers since the last call; never blocks.
     pub fn poll(&self) -> Vec<Answer> {
         self.answers.try_iter().collect()
     }
@@ -103,9 +103,9 @@ impl Drop for History {
 
 struct Keeper {
     database: PathBuf,
-    /// Nothing where it could not be opened yet.
+    /// Database; `None` while it could not be opened.
     store: Option<Store>,
-    /// True while attempts wait beside it that it has refused.
+    /// True while rejected attempts wait beside it.
     has_refused: bool,
 }
 
@@ -119,7 +119,7 @@ impl Keeper {
         }
     }
 
-    /// The open database; what waits beside it is taken in when it opens.
+    /// Open database; attempts that wait beside it are imported when it opens.
     fn open(&mut self, answer: &dyn Fn(Answer)) -> Result<&mut Store, String> {
         if self.store.is_none() {
             self.store = Some(Store::open(&self.database)?);
@@ -130,7 +130,7 @@ impl Keeper {
         self.store.as_mut().ok_or_else(|| "The history is not open.".to_owned())
     }
 
-    /// Takes in what waits beside the database; an error where that refuses one.
+    /// Imports the attempts that wait beside the database; an error if it rejects one.
     fn take_in(&mut self, answer: &dyn Fn(Answer)) -> Result<(), String> {
         let Some(store) = &mut self.store else { return Ok(()) };
         let (taken, problems, all) = aside::take_in(&self.database, store);
@@ -142,7 +142,7 @@ impl Keeper {
         all
     }
 
-    /// Keeps an attempt, behind those that wait: none may overtake another.
+    /// Stores an attempt behind those that wait: none may overtake another.
     fn keep(&mut self, attempt: &Attempt, answer: &dyn Fn(Answer)) -> Result<(), String> {
         self.open(answer)?;
         if self.has_refused {
@@ -156,7 +156,7 @@ impl Keeper {
             Request::Add(attempt) => {
                 if let Err(problem) = self.keep(&attempt, answer) {
                     aside::keep(&self.database, &attempt)?;
-                    // It is opened anew for the next one: what was wrong may be over then.
+                    // It is reopened for the next one: the problem may be resolved then.
                     self.store = None;
                     answer(Answer::Problem(format!(
                         "{problem} The attempt is kept beside it and taken in at the next start."

@@ -1,7 +1,8 @@
-//! Who practised what, when, and how well: an embedded database on this machine.
+//! The trainees' attempts with their conditions and scores: an embedded database on this machine.
 //!
-//! [`Store`] is the database itself: whatever it says is kept has reached the disk. [`History`] is a thread that has one, for the
-//! window; an attempt that the database does not take is kept beside it and taken in at the next start ([`aside`]).
+//! [`Store`] is the database itself: everything that it confirms has reached the disk. [`History`] is a thread that
+//! owns one, for the window. An attempt that the database rejects is stored beside it and imported at the next start
+//! ([`aside`]).
 
 mod aside;
 mod keeper;
@@ -67,12 +68,12 @@ pub struct Attempt {
 }
 
 impl Attempt {
-    /// Whether the other is of the same trainee at the same lesson under the same conditions.
+    /// True if both are of the same trainee at the same lesson under the same conditions.
     pub fn is_like(&self, other: &Self) -> bool {
         (&self.trainee, &self.lesson, self.conditions) == (&other.trainee, &other.lesson, other.conditions)
     }
 
-    /// As learning is followed: by its score; nothing without one.
+    /// Point of the learning curve, by its score; `None` without one.
     pub fn as_try(&self) -> Option<Try> {
         let began_s = self.began.as_microsecond() as f64 * 1e-6;
         Some(Try { began_s, value: self.score?, meets_criterion: self.meets_criterion })
@@ -80,14 +81,14 @@ impl Attempt {
 }
 
 impl Conditions {
-    /// `, 150 ms, predicted`; nothing for a line without delay.
+    /// `, 150 ms, predicted`; empty for a link without latency.
     pub fn in_words(&self) -> String {
         let delay = if self.delay_ms > 0.0 { format!(", {} ms", self.delay_ms) } else { String::new() };
         format!("{delay}{}", if self.predicted { ", predicted" } else { "" })
     }
 }
 
-/// The user's history; `None` where the system names no folder for data.
+/// The user's history; `None` if the system defines no data folder.
 pub fn of_user() -> Option<PathBuf> {
     eframe::storage_dir("touchstone").map(|folder| folder.join("history.sqlite"))
 }

@@ -1,10 +1,10 @@
-//! What the database looks like, and how an older one becomes one of today.
+//! The database schema, and the migration of older files.
 //!
-//! Each step is frozen once it was released: files of every version are out there. A new version is a new step.
+//! Each step is frozen once released: files of every version exist. A new version is a new step.
 
 use rusqlite::Connection;
 
-/// Steps in order; a file of version n has had the first n.
+/// Migration steps in order; a file of version n has had the first n.
 const STEPS: [&str; 3] = [
     // 1: trainees and their attempts.
     "CREATE TABLE trainees (
@@ -28,11 +28,12 @@ const STEPS: [&str; 3] = [
         grade_version INTEGER NOT NULL,
         recording TEXT
     ) STRICT;",
-    // 2: the same attempt is kept once, however often it is taken in; and it is found by who and what.
+    // 2: the same attempt is stored once, however often it is imported; and it is found by trainee and lesson.
     "DELETE FROM attempts WHERE id NOT IN (SELECT min(id) FROM attempts GROUP BY trainee, lesson, began);
     CREATE UNIQUE INDEX attempts_once ON attempts (trainee, lesson, began);",
-    // 3: the order does not hang on the clock (see the module `store`), and two attempts may begin at the same moment. Nobody knows any
-    // more what was kept on this machine and what was imported: all stand where they began, and what is kept next comes after them all.
+    // 3: the order is independent of the clock (see the module `store`), and two attempts may start at the same moment.
+    // Attempts made here and imported ones can no longer be distinguished: all are placed at their start, and later
+    // ones come after them all.
     "ALTER TABLE attempts ADD COLUMN placed TEXT NOT NULL DEFAULT '';
     UPDATE attempts SET placed = began;
     ALTER TABLE attempts ADD COLUMN live INTEGER NOT NULL DEFAULT 0;
@@ -45,7 +46,7 @@ const STEPS: [&str; 3] = [
 /// Version of today's files.
 pub const VERSION: u32 = STEPS.len() as u32;
 
-/// Brings a file to today's version, all or nothing. An error is a sentence.
+/// Migrates a file to the current version, all or nothing. An error is a sentence.
 pub fn migrate(connection: &mut Connection) -> Result<(), String> {
     let said = |error: rusqlite::Error| format!("its tables cannot be brought up to date ({error})");
     let version: u32 = connection.query_row("PRAGMA user_version", [], |row| row.get(0)).map_err(said)?;
@@ -57,7 +58,7 @@ pub fn migrate(connection: &mut Connection) -> Result<(), String> {
             "it was written by a newer touchstone (version {version}; this one knows {VERSION}); update the program"
         ));
     }
-    // Another process may be doing the same: the version counts that stands there once nobody else writes.
+    // Another process may be doing the same: the version is read once nobody else writes.
     let whole = connection.transaction_with_behavior(rusqlite::TransactionBehavior::Immediate).map_err(said)?;
     let version: u32 = whole.query_row("PRAGMA user_version", [], |row| row.get(0)).map_err(said)?;
     for step in STEPS.iter().skip(version as usize) {

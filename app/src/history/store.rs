@@ -1,16 +1,19 @@
-//! The database: what it says is kept has reached the disk.
+//! The database: everything that it confirms has reached the disk.
 //!
-//! **The order of attempts.** A clock can be set back between two attempts, or stand on a wrong day for a while. So every attempt has a
-//! place, a moment that is noted when it comes in, and attempts go by their place and, at one place, by the order in which they came in:
-//! - one that is kept as it is made ([`Store::keep`]) stands where it began, but never before what was kept before it in this database;
-//! - one that is imported ([`Store::add`]) stands where it began: an older one goes among the old ones, and moves nothing that is kept later.
+//! **The order of attempts.** A clock can be set back between two attempts, or be on a wrong day for a while. Every
+//! attempt therefore has a place, which is a time stamp assigned on insertion. Attempts are ordered by place and, at
+//! the same place, by insertion:
+//! - one stored as it is made ([`Store::keep`]) is placed at its start, but never before one that was stored earlier in
+//!   this database;
+//! - one that is imported ([`Store::add`]) is placed at its start: an older one goes among the old ones, and does not
+//!   affect later ones.
 //!
-//! `began` stays what the clock said. What a clock that was set *forward* by mistake has dated stays there, and what is kept afterwards
-//! comes behind it; only imports can then stand at the wrong side.
+//! `began` is always the reading of the clock. An attempt dated by a clock set *forward* by mistake stays there, and
+//! later ones come behind it; only imports can then be on the wrong side.
 //!
-//! **Which attempts are the same.** Two attempts may begin at the same moment, by a clock that was set back. One that is imported is
-//! known already when one of the same trainee, lesson, conditions, beginning, duration, end and score is there. One that is kept as it is
-//! made is never known.
+//! **Duplicates.** Two attempts may start at the same moment, by a clock that was set back. An imported one is a
+//! duplicate if the database has one of the same trainee, lesson, conditions, start, duration, completion and score.
+//! One stored as it is made is never a duplicate.
 
 use super::{Attempt, Conditions, schema};
 use jiff::Timestamp;
@@ -18,31 +21,31 @@ use rusqlite::{Connection, OptionalExtension as _, Row, Transaction, Transaction
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long another process may hold the file, until that is said.
+/// Time to wait for another process that locks the file.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Which attempts; nothing stands for all.
+/// Filter of attempts; `None` stands for all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Query {
-    /// Of this trainee.
+    /// Name of the trainee.
     pub trainee: Option<String>,
-    /// At this lesson.
+    /// Id of the lesson.
     pub lesson: Option<String>,
 }
 
-/// An open database. Errors are sentences.
+/// Open database. Errors are sentences.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
     path: PathBuf,
-    /// Everything in it was read once.
+    /// True once everything in it was read.
     is_readable: bool,
 }
 
 impl Store {
-    /// Opens the file, or makes it.
+    /// Opens the file, or creates it.
     pub fn open(path: &Path) -> Result<Self, String> {
-        // A damaged schema is quoted as it stands, lines and all.
+        // A damaged schema is quoted as it is, with line breaks.
         let refused = |why: &str| {
             format!("The history cannot be opened: {}. File: {}.", haptics::text_file::one_line(why), path.display())
         };
@@ -74,7 +77,7 @@ impl Store {
         made.map(|_| ()).map_err(|error| self.said(&error))
     }
 
-    /// Names of all trainees, in the order of the alphabet.
+    /// Names of all trainees, in alphabetical order.
     pub fn trainees(&self) -> Result<Vec<String>, String> {
         let names = || -> rusqlite::Result<Vec<String>> {
             let mut asked = self.connection.prepare("SELECT name FROM trainees ORDER BY name COLLATE NOCASE")?;
@@ -83,39 +86,39 @@ impl Store {
         names().map_err(|error| self.said(&error))
     }
 
-    /// Keeps an attempt that was made just now: after everything that was kept before it, whatever the clock says.
+    /// Stores an attempt that was made just now: after everything stored before it, whatever the clock says.
     pub fn keep(&mut self, attempt: &Attempt) -> Result<(), String> {
         self.insert(attempt, true, false).map(drop)
     }
 
-    /// Keeps an attempt that was made just now and waited beside the database; false if it is known already.
+    /// Stores an attempt that was made just now and waited beside the database; false if it is a duplicate.
     pub(super) fn keep_waiting(&mut self, attempt: &Attempt) -> Result<bool, String> {
         self.insert(attempt, true, true)
     }
 
-    /// Takes in an attempt of another history, at its date. One that is known already stays as it is: false then.
+    /// Imports an attempt of another history, at its date. A duplicate is skipped: false then.
     pub fn add(&mut self, attempt: &Attempt) -> Result<bool, String> {
         self.insert(attempt, false, true)
     }
 
-    /// `live`: made just now. `once`: not if it is known.
+    /// Inserts an attempt. `live`: made just now. `once`: skip a duplicate.
     fn insert(&mut self, attempt: &Attempt, live: bool, once: bool) -> Result<bool, String> {
         if !self.is_readable {
-            // A damaged file may take a row and never give it back: then it takes none.
+            // A damaged file may accept a row and never return it: then it must not accept any.
             self.attempts_and_problems(&Query::default())?;
             self.is_readable = true;
         }
         self.add_trainee(&attempt.trainee, attempt.began)?;
         let mut added = || -> rusqlite::Result<usize> {
-            // Nobody else keeps one between the look at the last place and the note of the next.
+            // Nobody else inserts one between the query of the last place and the new one.
             let whole = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             let placed = if live { place(&whole, attempt.began)? } else { attempt.began };
-            // One that was just added; a damaged list may not have it all the same, and that is no attempt which is known already.
+            // One that was just added; a damaged table may still lack it, which must not pass for a duplicate.
             let find = "SELECT id FROM trainees WHERE name = ?1";
             let trainee: i64 = whole.query_row(find, [attempt.trainee.trim()], |row| row.get(0))?;
             let rows = insert(&whole, (attempt, trainee), placed, live, once)?;
             if rows > 0 {
-                // As it will be asked for: it stands there under the name of who made it.
+                // As it will be queried: it is stored under the trainee's name.
                 let again = "SELECT 1 FROM attempts JOIN trainees ON trainees.id = attempts.trainee
                     WHERE attempts.id = last_insert_rowid() AND trainees.name = ?1";
                 whole.query_row(again, [attempt.trainee.trim()], |_| Ok(()))?;
@@ -126,12 +129,12 @@ impl Store {
         added().map(|rows| rows > 0).map_err(|error| self.said(&error))
     }
 
-    /// Attempts in their order, the oldest first. One that cannot be read is left out; [`Store::attempts_and_problems`] says so.
+    /// Attempts in order, the oldest first. An unreadable one is skipped; [`Store::attempts_and_problems`] reports it.
     pub fn attempts(&self, query: &Query) -> Result<Vec<Attempt>, String> {
         self.attempts_and_problems(query).map(|(attempts, _)| attempts)
     }
 
-    /// Attempts, the oldest first, and a sentence if a damaged one had to be left out: the others can be looked at all the same.
+    /// Attempts, the oldest first, and a sentence if a damaged one had to be skipped.
     pub fn attempts_and_problems(&self, query: &Query) -> Result<(Vec<Attempt>, Option<String>), String> {
         let rows = || -> rusqlite::Result<(Vec<Placed>, Option<String>)> {
             let mut asked = self.connection.prepare(
@@ -156,25 +159,25 @@ impl Store {
             Ok((read, problem))
         };
         let (mut read, problem) = rows().map_err(|error| self.said(&error))?;
-        // By the moment: as words, fractions of a second would come before whole ones.
+        // By the moment: as text, fractions of a second would come before whole ones.
         read.sort_by_key(|(placed, id, _)| (*placed, *id));
         Ok((read.into_iter().map(|(_, _, attempt)| attempt).collect(), problem))
     }
 }
 
-/// Where an attempt stands, the number of its row, and what it is.
+/// Place of an attempt, its row number, and the attempt.
 type Placed = (Timestamp, i64, Attempt);
 
-/// Where an attempt stands that is kept now.
+/// Place of an attempt that is stored now.
 fn place(whole: &Transaction<'_>, began: Timestamp) -> rusqlite::Result<Timestamp> {
     let newest = "SELECT placed FROM attempts WHERE live ORDER BY id DESC LIMIT 1";
     let last = whole.query_row(newest, [], |row| Ok(row.get::<_, String>(0).ok())).optional()?.flatten();
-    // One that is damaged says nothing.
+    // A damaged place is ignored.
     let last: Option<Timestamp> = last.and_then(|text| text.parse().ok());
     Ok(last.map_or(began, |last| began.max(last)))
 }
 
-/// Number of rows that came in.
+/// Number of inserted rows.
 fn insert(
     whole: &Transaction<'_>,
     (attempt, trainee): (&Attempt, i64),
@@ -223,7 +226,7 @@ fn set_up(connection: &mut Connection) -> Result<(), String> {
         _ => error.to_string(),
     };
     connection.busy_timeout(PATIENCE).map_err(said)?;
-    // Readers and one writer at a time; what is committed is on the disk before it counts.
+    // Readers and one writer at a time; a commit is on the disk before it counts.
     let _mode: Option<String> =
         connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).optional().map_err(said)?;
     connection.pragma_update(None, "synchronous", "FULL").map_err(said)?;
@@ -231,14 +234,14 @@ fn set_up(connection: &mut Connection) -> Result<(), String> {
     schema::migrate(connection)
 }
 
-/// A row of [`Store::attempts`]. Where its place is damaged it stands where it began.
+/// Row of [`Store::attempts`]. If its place is damaged, it is placed at its start.
 fn placed(row: &Row<'_>) -> rusqlite::Result<Placed> {
     let attempt = attempt(row)?;
     let place = row.get::<_, String>(13).ok().and_then(|text| text.parse().ok());
     Ok((place.unwrap_or(attempt.began), row.get(14)?, attempt))
 }
 
-/// What was done.
+/// Attempt of a row.
 fn attempt(row: &Row<'_>) -> rusqlite::Result<Attempt> {
     let text = |place: usize| row.get::<_, String>(place);
     let wrong = |place: usize, error: Box<dyn std::error::Error + Send + Sync>| {

@@ -1,10 +1,10 @@
-//! Attempts as a table for other programs: one line each, every measure a column.
+//! Attempts as a table for other programs: one line each, one column per measure.
 
 use super::Attempt;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// What every attempt has.
+/// Columns of every attempt.
 const COLUMNS: [&str; 13] = [
     "trainee",
     "lesson",
@@ -21,7 +21,7 @@ const COLUMNS: [&str; 13] = [
     "recording",
 ];
 
-/// The table, with a line of names. Measures that only some attempts have are empty in the others. An error is a sentence.
+/// Table with a header line. Measures that only some attempts have are empty in the others. An error is a sentence.
 pub fn csv(attempts: &[Attempt]) -> Result<String, String> {
     let measures: Vec<Vec<(String, String)>> = attempts.iter().map(|attempt| leaves(&attempt.measures)).collect();
     let names: BTreeSet<&str> = measures.iter().flatten().map(|(name, _)| name.as_str()).collect();
@@ -42,7 +42,7 @@ pub fn csv(attempts: &[Attempt]) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| failed(&error))
 }
 
-/// The entries of [`COLUMNS`].
+/// Values of [`COLUMNS`].
 fn own(attempt: &Attempt) -> [String; 13] {
     let Attempt { trainee, lesson, conditions, began, duration_s, completed, score, .. } = attempt;
     [
@@ -62,7 +62,7 @@ fn own(attempt: &Attempt) -> [String; 13] {
     ]
 }
 
-/// Every value in nested objects, by its names joined with dots; lists as they are written.
+/// All values in nested objects, by their names joined with dots; lists as they are written.
 fn leaves(value: &Value) -> Vec<(String, String)> {
     fn walk(prefix: &str, value: &Value, found: &mut Vec<(String, String)>) {
         match value {

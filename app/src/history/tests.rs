@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// A file of version 1 as it was written then: this text never changes.
+/// File of version 1 as it was written then: this text never changes.
 const VERSION_1: &str = "
     CREATE TABLE trainees (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, created TEXT NOT NULL) STRICT;
     CREATE TABLE attempts (
@@ -107,7 +107,7 @@ fn a_file_of_the_first_version_becomes_one_of_today_with_everything_in_it() {
         file.query_row("PRAGMA user_version", [], |row| row.get(0)).expect("a version")
     };
     assert_eq!(version(&path), super::schema::VERSION);
-    // What is kept next comes after them all, also when the clock was set back meanwhile.
+    // Later attempts come after them all, even if the clock was set back meanwhile.
     let next = attempt("Ada", "pinch", "2026-02-01T08:00:00Z");
     store.keep(&next).expect("kept");
     assert_eq!(store.attempts(&of("Ada")).expect("rows"), [ada[0].clone(), ada[1].clone(), next]);
@@ -119,7 +119,7 @@ fn a_file_of_the_second_version_loses_nothing() {
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
     let file = Connection::open(&path).expect("made");
     file.execute_batch(VERSION_1).expect("written");
-    // What the second step did, word for word.
+    // The second step, word for word.
     file.execute_batch(
         "DELETE FROM attempts WHERE id NOT IN (SELECT min(id) FROM attempts GROUP BY trainee, lesson, began);
         CREATE UNIQUE INDEX attempts_once ON attempts (trainee, lesson, began);
@@ -173,7 +173,7 @@ fn a_clock_that_was_set_back_changes_no_order_and_loses_nothing() {
     assert_eq!(store.attempts(&Query::default()).expect("rows"), all);
     let hers: Vec<Attempt> = all.iter().filter(|a| a.trainee == "Grace").cloned().collect();
     assert_eq!(store.attempts(&of("Grace")).expect("rows"), hers);
-    // An import goes by its date, among the old ones, and what is kept next is the newest all the same.
+    // An import is placed by its date, among the old ones, and later attempts are still the newest.
     let old = attempt("Ada", "pinch", "2026-11-20T08:00:00Z");
     let late = attempt("Ada", "pinch", "2027-01-01T00:00:00Z");
     assert_eq!((store.add(&old), store.add(&late), store.add(&old)), (Ok(true), Ok(true), Ok(false)));
@@ -200,7 +200,7 @@ fn what_waits_is_taken_in_in_the_order_in_which_it_was_made() {
     let mut store = Store::open(&path).expect("made");
     assert_eq!(aside::take_in(&path, &mut store), (all.len(), Vec::new(), Ok(())));
     assert_eq!(store.attempts(&Query::default()).expect("rows"), all);
-    // A file that could not be removed is known at the next start.
+    // A file that could not be removed is recognized at the next start.
     aside::keep(&path, &all[3]).expect("kept beside");
     assert_eq!(aside::take_in(&path, &mut store), (1, Vec::new(), Ok(())));
     assert_eq!(store.attempts(&Query::default()).expect("rows").len(), all.len());
@@ -236,7 +236,7 @@ fn a_damaged_table_of_several_lines_is_told_in_one_sentence() {
     assert!(refused.contains("trainees") && !refused.contains('\n'), "{refused:?}");
 }
 
-/// What the thread answers, as it comes.
+/// History, and a channel that signals each answer of the thread.
 fn started(path: &Path) -> (History, Receiver<()>) {
     let (woken, wakes) = channel();
     let history = History::start(path.to_path_buf(), move || {
@@ -246,7 +246,7 @@ fn started(path: &Path) -> (History, Receiver<()>) {
     (history, wakes)
 }
 
-/// Answers up to the first that is wanted.
+/// Answers up to the first one wanted.
 fn until(history: &History, wakes: &Receiver<()>, wanted: impl Fn(&Answer) -> bool) -> Vec<Answer> {
     let mut all = Vec::new();
     while !all.iter().any(&wanted) {
@@ -277,7 +277,7 @@ fn an_attempt_that_a_broken_file_refuses_waits_beside_it_and_is_taken_in_later()
     let answers = until(&history, &wakes, |a| matches!(a, Answer::Attempts(..)));
     assert_eq!(answers, [Answer::TakenIn(1), Answer::Attempts(Query::default(), vec![done.clone()])]);
     drop(history);
-    // It does not wait any more.
+    // It no longer waits.
     let mut store = Store::open(&path).expect("opened");
     assert_eq!(aside::take_in(&path, &mut store), (0, Vec::new(), Ok(())));
 }

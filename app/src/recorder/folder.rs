@@ -1,25 +1,25 @@
-//! Where recordings are kept, how they are called, and which of them did not get their end.
+//! The folder of recordings, their names, and the search for unfinished ones.
 //!
-//! While a recording is written a marker lies beside it and is locked. A process that is killed leaves the marker without its lock:
-//! that tells the recording from one that another window is writing, and from one that the user was told of.
+//! While a recording is written, a locked marker file is beside it. A killed process leaves the marker without its
+//! lock. Its recording thus differs from one that another window is writing, and from one already reported to the user.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Ending of recordings.
+/// File extension of recordings.
 const ENDING: &str = "mcap";
-/// Ending of markers.
+/// File extension of markers.
 const MARKER: &str = "recording";
-/// So many recordings of one world on one day get names.
+/// Maximum number of recordings of one world per day.
 const MOST_A_DAY: u32 = 9_999;
 
-/// The user's folder for recordings; `None` where the system names no folder for data.
+/// The user's folder for recordings; `None` if the system defines no data folder.
 pub fn of_user() -> Option<PathBuf> {
     eframe::storage_dir("touchstone").map(|folder| folder.join("recordings"))
 }
 
-/// Says that a recording is being written.
+/// Marker of a recording that is being written.
 pub struct Marker {
     path: PathBuf,
     /// Locked as long as it is open.
@@ -27,14 +27,14 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// The recording has its end, or what is wrong with it was said.
+    /// Removes the marker: the recording is complete, or its problem was reported.
     pub fn remove(self) {
-        // Should it stay, the recording is offered once more at the next start.
+        // If the marker remains, the recording is offered once more at the next start.
         let _ = std::fs::remove_file(&self.path);
     }
 }
 
-/// A new file for a recording in this world, and its marker. The error is one sentence.
+/// Creates the file of a recording in this world, and its marker. The error is one sentence.
 pub fn reserve(folder: &Path, world: &str) -> Result<(PathBuf, Marker), String> {
     let refused = |error: std::io::Error| {
         let folder = folder.display();
@@ -45,13 +45,13 @@ pub fn reserve(folder: &Path, world: &str) -> Result<(PathBuf, Marker), String> 
     for number in 1..=MOST_A_DAY {
         let path = folder.join(format!("{stem}_{number}.{ENDING}"));
         let marker = path.with_extension(MARKER);
-        // Before the file: there is no moment in which a killed process leaves a recording that nobody looks for.
+        // Before the file: at no moment can a killed process leave a recording without a marker.
         let locked = match OpenOptions::new().write(true).create_new(true).open(&marker) {
             Ok(locked) => locked,
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => continue,
             Err(error) => return Err(refused(error)),
         };
-        // Where files cannot be locked, another window offers this one as unfinished: untidy, and nothing is lost.
+        // Without file locks, another window offers this file as unfinished: untidy, but nothing is lost.
         let _ = locked.try_lock();
         let marker = Marker { path: marker, _locked: locked };
         match OpenOptions::new().write(true).create_new(true).open(&path) {
@@ -76,7 +76,7 @@ pub fn unfinished(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The recording of a marker that nobody holds.
+/// Recording of a marker that nobody has locked.
 fn left_behind(marker: &Path) -> Option<PathBuf> {
     let file = OpenOptions::new().write(true).open(marker).ok()?;
     if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
@@ -84,21 +84,22 @@ fn left_behind(marker: &Path) -> Option<PathBuf> {
     }
     let recording = marker.with_extension(ENDING);
     if has_end(&recording) {
-        // Killed before the first byte, or between the end of the file and the removal of the marker; or the recording is gone.
+        // Killed before the first byte, or between the end of the file and the removal of the marker; or the recording
+        // was deleted.
         let _ = std::fs::remove_file(marker);
         return None;
     }
     Some(recording)
 }
 
-/// True for a file that ends as MCAP does, and for an empty one or none at all.
+/// True for a file with MCAP's end magic, and for an empty or missing one.
 fn has_end(recording: &Path) -> bool {
     use std::io::{Read as _, Seek as _, SeekFrom};
     const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
     let Ok(mut file) = File::open(recording) else { return true };
     let (mut end, length) = ([0; MAGIC.len()], MAGIC.len() as u64);
     let size = file.metadata().map_or(0, |facts| facts.len());
-    // One that only has its first eight bytes has no end.
+    // A file with only its first eight bytes has no end.
     size == 0
         || size > 2 * length
             && file.seek(SeekFrom::End(-(length.cast_signed()))).is_ok()
@@ -106,28 +107,28 @@ fn has_end(recording: &Path) -> bool {
             && end == MAGIC
 }
 
-/// The user knows of it: it is not offered again.
+/// Removes the marker: the user knows of the recording, so it is not offered again.
 pub fn forget(recording: &Path) {
-    // Should it fail, the recording is offered once more.
+    // If this fails, the recording is offered once more.
     let _ = std::fs::remove_file(recording.with_extension(MARKER));
 }
 
-/// A world's name as a part of a file's name.
+/// World name as part of a file name.
 fn plain(world: &str) -> String {
     let plain: String = world.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '-' }).take(40).collect();
     let plain = plain.trim_matches('-');
     if plain.is_empty() { "world".to_owned() } else { plain.to_owned() }
 }
 
-/// The day in universal time, `2026-11-21`. The standard library knows no local time.
+/// Date in UTC, `2026-11-21`. The standard library has no local time.
 fn date(now: SystemTime) -> String {
     let seconds = now.duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let (year, month, day) = civil(i64::try_from(seconds / 86_400).unwrap_or(0));
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Year, month and day of a number of days since 1970-01-01, in the Gregorian calendar (H. Hinnant, *chrono-compatible low-level
-/// date algorithms*: years begin in March, eras have 400 of them).
+/// Year, month and day of a number of days since 1970-01-01, in the Gregorian calendar. Source: H. Hinnant,
+/// *chrono-compatible low-level date algorithms* (years begin in March, eras have 400 of them).
 fn civil(days: i64) -> (i64, i64, i64) {
     let days = days + 719_468;
     let (era, day_of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
@@ -181,7 +182,7 @@ mod tests {
         let (path, marker) = reserve(folder.path(), "crank").expect("reserves");
         std::fs::write(&path, b"\x89MCAP0\r\n and no end").expect("writes");
         assert_eq!(unfinished(folder.path()), Vec::<PathBuf>::new(), "it is being written");
-        // A killed process: the lock is gone, the marker stays.
+        // A killed process: the lock is released, the marker stays.
         drop(marker);
         assert_eq!(unfinished(folder.path()), std::slice::from_ref(&path));
         forget(&path);

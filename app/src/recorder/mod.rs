@@ -1,7 +1,7 @@
-//! Recording to the disk while somebody trains: a thread of its own takes every tick from the servo and writes it.
+//! Recording to the disk during training: a thread of its own takes every tick from the servo and writes it.
 //!
-//! Neither the servo nor the window waits for it, and memory does not grow with the length. A killed program leaves a file that
-//! opens up to its last second; [`folder`] finds it at the next start.
+//! Neither the servo nor the window waits for it, and memory does not grow with the length. A killed program leaves a
+//! file that is readable up to its last second; [`folder`] finds it at the next start.
 
 pub mod folder;
 mod work;
@@ -21,18 +21,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// A window that is closed waits so long for the end of the file.
+/// Maximum time for which a closing window waits for the end of the file.
 const FAREWELL: Duration = Duration::from_secs(3);
-/// A file that has become so large is ended and followed by the next one, bytes: about four hours at 1 kHz. It stays well below what
-/// the reader takes at once.
+/// File size above which a file is ended and followed by the next one, bytes: about four hours at 1 kHz. It is well
+/// below the reader's limit.
 pub const FILE_BYTES: u64 = 1 << 30;
 
-/// How the servo keeps its time, for the sidecar.
+/// Timing of the servo, for the sidecar.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ServoFacts {
-    /// What it measured.
+    /// Measured timing.
     pub timing: Timing,
-    /// What the system granted to it.
+    /// Privileges granted by the system.
     pub privileges: Option<Privileges>,
 }
 
@@ -43,64 +43,64 @@ impl ServoFacts {
     }
 }
 
-/// What is recorded, and where to.
+/// Settings of a recording.
 #[derive(Clone, Debug)]
 pub struct Order {
-    /// Folder of the file; it is made if it is not there.
+    /// Folder of the file; it is created if missing.
     pub folder: PathBuf,
-    /// The world that is touched.
+    /// World of the recording.
     pub world: Arc<World>,
-    /// The device that touches it.
+    /// Specification of the operator's device.
     pub device: Option<DeviceSpec>,
-    /// How the hand's sensors see it.
+    /// Model of the hand's sensors.
     pub sensors: SensorModel,
-    /// Draws the sensors' noise.
+    /// Seed of the sensor noise.
     pub seed: u64,
-    /// A file that has become so large is followed by the next one, bytes ([`FILE_BYTES`]).
+    /// File size above which the next file starts, bytes ([`FILE_BYTES`]).
     pub file_bytes: u64,
-    /// How the servo keeps its time until now.
+    /// Timing of the servo until now.
     pub servo: ServoFacts,
-    /// What else the sidecar states: its `known` values and further keys.
+    /// Additional metadata of the sidecar: `known` values and further keys.
     pub stated: Meta,
 }
 
-/// How far a recording is.
+/// Progress of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
     /// The newest file, once there is one.
     pub path: Option<PathBuf>,
     /// Number of files.
     pub files: usize,
-    /// Ticks that were written, to all files.
+    /// Ticks written, in all files.
     pub ticks: u64,
-    /// Time that they cover, s.
+    /// Duration that they cover, s.
     pub length_s: f64,
     /// Size of all files on the disk, bytes.
     pub bytes: u64,
     /// Ticks that were lost because the disk did not keep up.
     pub dropped: u64,
-    /// Ticks that a file cannot hold: a value is not a number, or time stands still.
+    /// Ticks that a file cannot store: a value is not a number, or time does not advance.
     pub left_out: u64,
-    /// Why the recording ended by itself, in one sentence.
+    /// Reason why the recording ended by itself, in one sentence.
     pub problem: Option<String>,
-    /// True when nothing more will be written.
+    /// True if nothing more will be written.
     pub ended: bool,
-    /// Ticks of the files before this one.
+    /// Ticks of the earlier files.
     earlier_ticks: u64,
-    /// Their size, bytes.
+    /// Size of the earlier files, bytes.
     earlier_bytes: u64,
 }
 
-/// A recording that is complete.
+/// Completed recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
     /// The file; the newest one if there are several.
     pub path: PathBuf,
-    /// What was recorded.
+    /// Final status.
     pub status: Status,
 }
 
-/// What is to become of the file.
+/// Fate of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Wish {
@@ -109,7 +109,7 @@ enum Wish {
     Discard,
 }
 
-/// What the window and the recording thread have in common.
+/// State shared by the window and the recording thread.
 struct Shared {
     wish: AtomicU8,
     status: Mutex<Status>,
@@ -127,18 +127,18 @@ impl Shared {
     }
 
     fn status(&self) -> MutexGuard<'_, Status> {
-        // What is in it is whole after every assignment.
+        // The value is consistent after every assignment.
         self.status.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The file that is written now.
+    /// Sets the file that is now being written.
     fn begin(&self, path: &Path, files: usize) {
         let mut status = self.status();
         status.path = Some(path.to_path_buf());
         status.files = files;
     }
 
-    /// What is stated at the end.
+    /// Metadata for the end of the file.
     fn late(&self) -> Map<String, Value> {
         self.late.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -153,12 +153,12 @@ pub struct Recorder {
     shared: Arc<Shared>,
     source: TapSource,
     thread: Option<JoinHandle<()>>,
-    /// Closed by the end of the thread, whatever ends it.
+    /// Closed at the end of the thread, for any reason.
     over: Receiver<()>,
 }
 
 impl Recorder {
-    /// Begins to write every tick. Errors are one sentence; those of the disk come in [`Status::problem`].
+    /// Starts to write every tick. Errors are one sentence; those of the disk come in [`Status::problem`].
     pub fn start(source: &TapSource, order: Order) -> Result<Self, String> {
         let tap = source.open().ok_or("The last recording is still being written; try again in a moment.")?;
         Self::begin(source, tap, order)
@@ -181,33 +181,33 @@ impl Recorder {
         Ok(Self { shared, source: source.clone(), thread: Some(thread), over })
     }
 
-    /// How far it is.
+    /// Progress of the recording.
     pub fn status(&self) -> Status {
         self.shared.status().clone()
     }
 
-    /// True when nothing more will be written.
+    /// True if nothing more will be written.
     pub fn has_ended(&self) -> bool {
         self.shared.status().ended || self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Keeps for the end of the file how the servo keeps its time.
+    /// Sets the servo timing for the end of the file.
     pub fn tell(&self, servo: ServoFacts) {
         *self.shared.servo() = servo;
     }
 
-    /// Keeps for the end of the file what its sidecar states in addition, or in another way than at the beginning.
+    /// Sets a sidecar entry for the end of the file, in addition to those of the start or as a replacement.
     pub fn state(&self, key: &str, value: Value) {
         self.shared.late.lock().unwrap_or_else(PoisonError::into_inner).insert(key.to_owned(), value);
     }
 
-    /// Ends it: no further tick is taken, the file gets its end in the background.
+    /// Ends the recording: no further tick is taken, the file is finished in the background.
     pub fn stop(mut self) -> Stopping {
         self.end(Wish::Keep);
         Stopping { shared: Arc::clone(&self.shared), thread: self.thread.take() }
     }
 
-    /// Ends it, and its file is removed.
+    /// Ends the recording and removes its file.
     pub fn discard(mut self) {
         self.end(Wish::Discard);
         self.thread = None; // it does that alone
@@ -215,8 +215,8 @@ impl Recorder {
 
     fn end(&self, wish: Wish) {
         self.shared.wish.store(wish as u8, Ordering::Relaxed);
-        // Here and not on the thread: a world that is swapped in next must not get into the file. After the wish: the thread asks
-        // for it once the tap is closed.
+        // Here and not on the thread: a world that is swapped in next must not get into the file. After the request is
+        // set: the thread reads it once the tap is closed.
         self.source.close();
     }
 }
@@ -227,7 +227,7 @@ impl Drop for Recorder {
             return;
         }
         self.end(Wish::Keep);
-        // Nothing is ever sent: the wait ends with the thread, or when a disk that hangs has been given time enough.
+        // Nothing is ever sent: the wait ends with the thread, or after the time limit if the disk hangs.
         let _ = self.over.recv_timeout(FAREWELL);
     }
 }
@@ -239,7 +239,7 @@ pub struct Stopping {
 }
 
 impl Stopping {
-    /// Waits for the end of the file; a job for a thread in the background. The error is one sentence.
+    /// Waits for the end of the file; for a background thread. The error is one sentence.
     pub fn wait(mut self) -> Result<Finished, String> {
         let ended = self.thread.take().map(JoinHandle::join);
         let status = self.shared.status().clone();

@@ -1,4 +1,4 @@
-//! What the recording thread does.
+//! Work of the recording thread.
 
 use super::folder::{self, Marker};
 use super::{Order, Shared, Wish};
@@ -11,22 +11,23 @@ use haptics::servo::tap::Tap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The ring is emptied this often; it holds seconds. Nobody calls: a tick of the servo may not wake a thread.
+/// Interval at which the ring is emptied; it holds seconds. The thread polls, because a tick of the servo may not wake
+/// a thread.
 const REST: Duration = Duration::from_millis(25);
-/// The window hears of the progress this often.
+/// Interval between progress reports to the window.
 const TOLD_EVERY: Duration = Duration::from_millis(100);
-/// It is looked this often whether the file is still there.
+/// Interval between checks that the file still exists.
 const LOOKED_EVERY: Duration = Duration::from_secs(1);
-/// A file with fewer ticks is nothing to measure from.
+/// Minimum number of ticks of a usable file.
 const FEWEST_TICKS: u64 = 2;
 
-/// Records until told otherwise, until the servo is gone, or until the disk refuses.
+/// Records until requested otherwise, until the servo is gone, or until the disk fails.
 pub(super) fn run(tap: Tap, order: &Order, shared: &Shared) {
     let mut files = Vec::new();
     let problem = record(tap, order, shared, &mut files).err();
     if shared.wish() == Wish::Discard {
         for path in &files {
-            // It may be gone already.
+            // It may be missing already.
             let _ = std::fs::remove_file(path);
         }
     }
@@ -35,7 +36,7 @@ pub(super) fn run(tap: Tap, order: &Order, shared: &Shared) {
     status.ended = true;
 }
 
-/// File after file, all of which are in `files`.
+/// Writes file after file, and adds each to `files`.
 fn record(tap: Tap, order: &Order, shared: &Shared, files: &mut Vec<PathBuf>) -> Result<(), String> {
     let rows = Rows::new(order.sensors, order.seed);
     let mut source = Source { tap, shared, rows, held: None, start_s: None, last_s: None, told: Instant::now() };
@@ -49,7 +50,7 @@ fn record(tap: Tap, order: &Order, shared: &Shared, files: &mut Vec<PathBuf>) ->
         if ticks < FEWEST_TICKS && shared.wish() != Wish::Discard {
             let _ = std::fs::remove_file(&path);
             files.pop();
-            // What came before it is a recording all the same.
+            // The earlier files are a recording all the same.
             let before = files.last().ok_or("The recording is too short to be calibrated from.")?;
             shared.begin(before, files.len());
         }
@@ -59,7 +60,7 @@ fn record(tap: Tap, order: &Order, shared: &Shared, files: &mut Vec<PathBuf>) ->
     }
 }
 
-/// One file.
+/// File that is being written.
 struct Growing {
     path: PathBuf,
     marker: Marker,
@@ -82,14 +83,14 @@ impl Growing {
             Ok(stream) => Ok(Self { path, marker, stream, meta }),
             Err(error) => {
                 marker.remove();
-                // Nothing is in it.
+                // The file is empty.
                 let _ = std::fs::remove_file(&path);
                 Err(sentence(&error.to_string()))
             }
         }
     }
 
-    /// Writes what is known only now, and the end of the file. True when another file is to follow.
+    /// Writes the metadata known only now, and the end of the file. True if another file follows.
     fn end(mut self, filled: Result<bool, String>, shared: &Shared) -> Result<bool, String> {
         let status = shared.status().clone();
         let recorder =
@@ -102,7 +103,7 @@ impl Growing {
             stream.finish_with(meta).map_err(|error| sentence(&error.to_string()))?;
             Ok(full)
         });
-        // What went wrong is said: nobody has to look for the file at the next start.
+        // The problem is reported: nobody has to look for the file at the next start.
         self.marker.remove();
         let mut status = shared.status();
         status.earlier_ticks = status.ticks;
@@ -123,12 +124,12 @@ fn attachments(order: &Order) -> Vec<Attachment> {
     std::iter::once(world).chain(device.map(|text| json("device.json", text))).collect()
 }
 
-/// Where the ticks come from, whichever file they go to.
+/// Source of the ticks, independent of their file.
 struct Source<'a> {
     tap: Tap,
     shared: &'a Shared,
     rows: Rows,
-    /// A tick that found its file full.
+    /// Tick that found its file full.
     held: Option<TickRecord>,
     /// Time of the first tick in the servo's clock, s.
     start_s: Option<f64>,
@@ -138,11 +139,11 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Fills a file; true when it is full and ticks are left.
+    /// Fills a file; true if it is full and ticks remain.
     fn fill(&mut self, file: &mut Growing, most_bytes: u64) -> Result<bool, String> {
         let mut looked = Instant::now();
         loop {
-            // Asked before the ring is emptied: what came in until then is in the file.
+            // Read before the ring is emptied: everything up to this moment is in the file.
             let over = self.tap.is_over();
             while let Some(tick) = self.held.take().or_else(|| self.tap.pop()) {
                 if file.stream.bytes() >= most_bytes && file.stream.rows() >= FEWEST_TICKS {
@@ -206,14 +207,14 @@ impl Source<'_> {
     }
 }
 
-/// A file that was removed takes bytes as before; they are nowhere.
+/// Error if the file was removed: it would still accept bytes, which nobody could read.
 fn still_there(path: &Path) -> Result<(), String> {
     match std::fs::metadata(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(format!(
             "The recording ended because its file was moved or removed while it was written: {}.",
             path.display()
         )),
-        // A folder that cannot be looked at for a moment is no reason to end.
+        // A folder that is temporarily unreadable is no reason to end.
         _ => Ok(()),
     }
 }

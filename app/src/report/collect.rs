@@ -1,4 +1,4 @@
-//! Runs the stages over one log: segment, fit, calibrate, simulate, diagnose. What fails is a sentence in its place.
+//! Runs the stages on one log: segment, fit, calibrate, simulate, diagnose. A failed stage is replaced by a sentence.
 
 use super::source::Source;
 use crate::ui::plots::Residuals;
@@ -12,35 +12,35 @@ use estimator::segment::{Segmentation, segment};
 use estimator::simulate::{Simulation, simulate};
 use haptics::recording::Recording;
 
-/// Recordings of one log that are drawn; further ones stand in the table.
+/// Maximum number of drawn recordings per log; further ones are only in the table.
 pub const MOST_DRAWN: usize = 4;
 
-/// Warnings of these kinds tell how the columns were understood.
+/// Kinds of warnings that explain how the columns were read.
 const NOTES: [&str; 2] = ["columns", "text-column"];
 
 /// One log of a report.
 #[derive(Debug)]
 pub struct Sheet {
-    /// Where it came from.
+    /// Source of the log.
     pub source: Source,
-    /// What is in it, or why it could not be read.
+    /// Content of the log, or the reason why it could not be read.
     pub content: Result<Content, String>,
 }
 
-/// What the stages made of a log.
+/// Results of the stages for a log.
 #[derive(Debug)]
 pub struct Content {
-    /// All of it.
+    /// All recordings.
     pub recordings: Vec<Recording>,
-    /// The first few, ready to be drawn.
+    /// The first few, prepared for drawing.
     pub drawn: Vec<Drawn>,
     /// Segments, parameters, constraints, the calibrated world.
     pub analysis: Result<Analysis, String>,
-    /// How much of the usual accuracy was reached, and which motion is missing.
+    /// Attained share of the target accuracy per parameter, with the missing motion.
     pub enough: Vec<Enough>,
-    /// What the plain model of the task gets wrong.
+    /// Diagnosis of the base model of the task.
     pub diagnosis: Result<Diagnosis, String>,
-    /// What the calibrated world gets wrong; absent where it failed or says the same.
+    /// Diagnosis of the calibrated world; `None` where it failed or agrees.
     pub of_world: Option<Diagnosis>,
 }
 
@@ -49,16 +49,16 @@ pub struct Content {
 pub struct Drawn {
     /// Its curves.
     pub prepared: Prepared,
-    /// Its states, where they can be told.
+    /// States of the recording, where segmentation is possible.
     pub segmentation: Option<Segmentation>,
-    /// The measured motion through the calibrated world.
+    /// Simulation of the measured motion in the calibrated world.
     pub simulation: Result<Simulation, String>,
-    /// Curves of the diagnosis, where there is one along the motion.
+    /// Curves of the diagnosis, if there is one along the motion.
     pub residuals: Option<Residuals>,
 }
 
 impl Sheet {
-    /// Of a log that was read, or that could not be.
+    /// Sheet of a log that was read, or that could not be.
     pub fn new(source: Source, read: Result<Vec<Recording>, String>) -> Self {
         Self { source, content: read.map(Content::new) }
     }
@@ -74,7 +74,7 @@ impl Content {
         let of_world = analysis.as_ref().ok().filter(|_| diagnosis.is_ok()).and_then(|a| {
             let options = diagnose::Options { world: Some(a.world.clone()), ..diagnose::Options::default() };
             let found = diagnose::diagnose(&recordings, &options).ok()?;
-            // Tasks that compare without a world would say everything twice.
+            // Tasks that are compared without a world would repeat everything.
             diagnosis
                 .as_ref()
                 .is_ok_and(|plain| plain.causes != found.causes || plain.causes.is_empty())
@@ -88,7 +88,7 @@ impl Content {
                 prepared: Prepared::new(recording.clone()),
                 segmentation: match &analysis {
                     Ok(analysis) => analysis.segmentations.get(k).cloned().flatten(),
-                    // A fit may fail where states can be told.
+                    // Segmentation can succeed where a fit fails.
                     Err(_) => segment(recording, None, None).ok(),
                 },
                 simulation: match &analysis {
@@ -101,12 +101,12 @@ impl Content {
         Self { recordings, drawn, analysis, enough, diagnosis, of_world }
     }
 
-    /// Sentences about the quality of the data, each once.
+    /// Warnings about data quality, each once.
     pub fn warnings(&self) -> Vec<&str> {
         self.said(|kind| !NOTES.contains(&kind))
     }
 
-    /// Sentences about how the file was read, each once: nothing to worry about.
+    /// Notes on how the file was read, each once: no cause for concern.
     pub fn notes(&self) -> Vec<&str> {
         self.said(|kind| NOTES.contains(&kind))
     }
@@ -121,18 +121,19 @@ impl Content {
         found
     }
 
-    /// Parameters that were measured, and all that were looked for. A value whose error is larger than itself is none.
+    /// Numbers of identified parameters and of all parameters. A value with an error larger than itself counts as
+    /// unidentified.
     pub fn identified(&self) -> (usize, usize) {
         let all = self.analysis.as_ref().map_or(&[][..], |a| &a.fit.parameters);
         (all.iter().filter(|p| p.identified && !is_lost(p)).count(), all.len())
     }
 }
 
-/// Parameters that are as well known near zero as anywhere: places, angles, what a sensor reads at rest.
+/// Parameters for which zero is an ordinary value: positions, angles, sensor zeros.
 const OF_EITHER_SIGN: [&str; 9] =
     ["center_", "offset", "gravity_phase", "surface_position", "added_level", "bias", "position", "angle", "phase"];
 
-/// Whether a size is lost in its own error: nothing, or twice as much, is as likely.
+/// True if a magnitude is lost in its own error: zero, or twice the value, is as likely.
 pub fn is_lost(parameter: &Parameter) -> bool {
     let sizes = parameter.value.zip(parameter.std_error);
     let is_place = OF_EITHER_SIGN.iter().any(|name| parameter.name.starts_with(name));

@@ -1,9 +1,9 @@
-//! `report.html`: everything that the other commands say of one or several logs, on one page that needs nothing else: no network, no
+//! `report.html`: the results of all commands for one or several logs, on one self-contained page: no network, no
 //! script, no font.
 //!
-//! * [`collect`] runs the stages, the same ones that the other commands run; what fails becomes a sentence.
-//! * [`page`] writes the sections, [`chart`] the pictures in them (SVG, drawn in the window's colours), [`style`] the look.
-//! * [`source`] and [`provenance`] say what went in, with hashes, so that it can be repeated.
+//! * [`collect`] runs the same stages as the other commands; a failure becomes a sentence.
+//! * [`page`] writes the sections, [`chart`] the pictures in them (SVG, in the window's colours), [`style`] the look.
+//! * [`source`] and [`provenance`] record the inputs with hashes, so that the report is reproducible.
 
 pub mod chart;
 pub mod collect;
@@ -20,8 +20,8 @@ use crate::ui::session::sentence;
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 
-/// Writes a page about log files, each with its sidecar where that does not stand beside it. `given` takes every recording, counted
-/// over all files, and returns it as it is to be analysed. An error is a sentence.
+/// Writes a page about log files, each with its sidecar if that is elsewhere. `given` receives every recording, counted
+/// over all files, and returns it with the user's statements for the analysis. An error is a sentence.
 pub fn of_files(
     files: &[(PathBuf, Option<PathBuf>)],
     out: &Path,

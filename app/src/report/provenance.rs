@@ -1,24 +1,25 @@
-//! What made a report: the program, its arguments, when.
+//! Provenance of a report: the program, its arguments, the date.
 
 use jiff::Timestamp;
 
-/// Versions and circumstances of one run.
+/// Versions and conditions of one run.
 #[derive(Clone, Debug)]
 pub struct Provenance {
     /// The program's version.
     pub version: &'static str,
-    /// Revision of the sources, where the build knew it: told (`TOUCHSTONE_REVISION`), or asked of git by a release build.
+    /// Revision of the sources, if the build knew it: given by `TOUCHSTONE_REVISION`, or asked of git by a release
+    /// build.
     pub revision: Option<&'static str>,
-    /// System and processor that it was built for.
+    /// Target system and processor of the build.
     pub platform: String,
     /// The command line.
     pub command: String,
-    /// When, in UTC. `SOURCE_DATE_EPOCH` fixes it, for reports that must come out the same.
+    /// Date in UTC. `SOURCE_DATE_EPOCH` fixes it, for reproducible reports.
     pub date: String,
 }
 
 impl Provenance {
-    /// Of this run.
+    /// Provenance of this run.
     pub fn now() -> Self {
         let arguments: Vec<String> = std::env::args_os().map(|a| quoted(&a.to_string_lossy())).collect();
         let program = std::env::args_os().next().map(std::path::PathBuf::from);
@@ -48,7 +49,7 @@ fn date(at: Timestamp) -> String {
     at.strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
-/// An argument as a shell takes it back.
+/// Argument, quoted for a shell.
 fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+:,@%".contains(c);
     if !argument.is_empty() && argument.chars().all(plain) {
@@ -68,7 +69,7 @@ mod tests {
     use std::path::Path;
     use std::process::Command;
 
-    /// False where there is no git.
+    /// Runs git; false if git is not installed.
     fn git(folder: &Path, arguments: &[&str]) -> bool {
         let who = ["-c", "user.name=Ada", "-c", "user.email=ada@example.org", "-c", "init.defaultBranch=main"];
         let output = Command::new("git").arg("-C").arg(folder).args(who).args(arguments).output();
@@ -81,7 +82,7 @@ mod tests {
         let (main, linked) = (folder.path().join("main"), folder.path().join("linked"));
         std::fs::create_dir_all(main.join("inner")).expect("a folder");
         if !git(&main, &["init", "--quiet"]) {
-            // Not by `println!`, which the harness keeps to itself when a test passes.
+            // Not by `println!`, which the harness captures when a test passes.
             let _ = writeln!(std::io::stderr(), "skipped: there is no git");
             return;
         }

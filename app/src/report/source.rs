@@ -1,4 +1,4 @@
-//! The files that went in, with their SHA-256.
+//! The input files, with their SHA-256.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -6,15 +6,15 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Longest sidecar that is printed in full, bytes.
+/// Maximum size of a sidecar printed in full, bytes.
 const PRINTED: u64 = 16_384;
 
 /// One file.
 #[derive(Clone, Debug)]
 pub struct Hashed {
-    /// As it was given.
+    /// Path as given.
     pub path: PathBuf,
-    /// Length, bytes, and SHA-256 in hexadecimal digits; a sentence where it could not be read.
+    /// Length, bytes, and SHA-256 in hexadecimal digits; a sentence if it could not be read.
     pub digest: Result<(u64, String), String>,
 }
 
@@ -23,9 +23,9 @@ pub struct Hashed {
 pub struct Source {
     /// The log.
     pub log: Hashed,
-    /// Its sidecar, where it has one.
+    /// Its sidecar, if it has one.
     pub sidecar: Option<Hashed>,
-    /// What the sidecar says, where it is text of a readable length.
+    /// Content of the sidecar, if it is text of a readable length.
     pub stated: Option<String>,
 }
 
@@ -57,7 +57,7 @@ impl Hashed {
 
 fn digest(path: &Path) -> io::Result<(u64, String)> {
     if !path.is_file() {
-        // A pipe would be waited for, a folder has no bytes.
+        // Reading a pipe would block; a folder has no bytes.
         return Err(io::Error::other(if path.exists() { "it is no file" } else { "it is not there" }));
     }
     let (mut file, mut hash, mut length) = (File::open(path)?, Sha256::new(), 0);

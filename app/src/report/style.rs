@@ -44,7 +44,7 @@ pub fn state_variable(state: SystemState) -> String {
     format!("state-{}", state.name())
 }
 
-/// Everything that stands in the page's `<style>`.
+/// Content of the page's `<style>` element.
 pub fn css() -> String {
     format!(
         ":root{{color-scheme:light dark;{}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{}}}}}\n{RULES}",
@@ -53,7 +53,7 @@ pub fn css() -> String {
     )
 }
 
-/// A colour as pages and pictures write it.
+/// Colour in hexadecimal notation for pages and pictures.
 pub fn hex(color: Color32) -> String {
     let [r, g, b, _] = color.to_array();
     format!("#{r:02x}{g:02x}{b:02x}")

@@ -1,7 +1,8 @@
-//! Videos of the hand: any format, read by the program `ffmpeg` into small pictures that a time cursor can walk through.
+//! Videos of the hand: any format, decoded by the program `ffmpeg` into small pictures for the time cursor.
 //!
-//! A video is kept as JPEG pictures at an even rate, so that any moment is there at once, forwards and backwards; a minute takes some
-//! 30 MB. `ffmpeg` gets the file and nothing else: no playlist in it can reach the network or other files.
+//! A video is stored as JPEG pictures at an even rate, so that any moment is available at once, forwards and backwards;
+//! a minute takes some 30 MB. `ffmpeg` gets the file and nothing else: no playlist in it can reach the network or other
+//! files.
 
 mod pictures;
 mod program;
@@ -14,18 +15,18 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// Pictures a second at most: more shows nothing new beside a plot.
+/// Maximum frame rate, Hz: a higher one shows nothing new beside a plot.
 const MOST_HZ: f64 = 30.0;
-/// Pixels of the longer side at most.
+/// Maximum size of the longer side, pixels.
 const MOST_PIXELS: u32 = 720;
-/// Longest video, s.
+/// Maximum duration of a video, s.
 const LONGEST_S: f64 = 1_800.0;
-/// Memory for its pictures, bytes.
+/// Maximum memory for its pictures, bytes.
 const MOST_BYTES: usize = 400 << 20;
-/// The pictures that motion is looked for in: pixels.
+/// Size of the pictures for motion detection, pixels.
 const MOTION_PIXELS: [usize; 2] = [64, 36];
 
-/// Why a video cannot be shown. Each is a sentence.
+/// Reason why a video cannot be shown. Each is a sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum VideoError {
     /// The reader is not installed.
@@ -36,67 +37,67 @@ pub enum VideoError {
     /// The reader did not start.
     #[error("The program ffmpeg cannot be started ({0}).")]
     NotStarted(std::io::Error),
-    /// There is no such file, or it must not be read.
+    /// There is no such file, or reading is not permitted.
     #[error("The video cannot be read ({problem}): {}", file.display())]
     NoFile {
-        /// What the system says.
+        /// Error of the system.
         problem: std::io::Error,
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// There are no pictures in the file.
+    /// The file contains no pictures.
     #[error("This is no video that can be read ({problem}): {}", file.display())]
     NoVideo {
-        /// What the reader says.
+        /// Error of the reader.
         problem: String,
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// It takes too long or too much.
+    /// It is too long or too large.
     #[error("The video is too long to be shown ({problem}); cut out the part that was recorded: {}", file.display())]
     TooLong {
-        /// How long.
+        /// Exceeded limit, as text.
         problem: String,
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// The user does not want it any more.
+    /// The user has cancelled.
     #[error("Reading the video was cancelled.")]
     Cancelled,
 }
 
-/// A video of a recording: which file, and where it lies in time.
+/// Video of a recording: its file, and its position in time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VideoSource {
     /// The file.
     #[serde(with = "crate::ui::any_path")]
     pub file: PathBuf,
-    /// Number of the recording that it shows.
+    /// Index of the recording that it shows.
     #[serde(default)]
     pub recording: usize,
-    /// Time of the recording at which the video's first picture was taken, s.
+    /// Time of the recording at the video's first picture, s.
     #[serde(default)]
     pub begins_at_s: f64,
 }
 
-/// A video that was read.
+/// Decoded video.
 #[derive(Clone, Debug)]
 pub struct Video {
-    /// Pictures a second.
+    /// Frame rate, Hz.
     pub rate_hz: f64,
     /// Width and height, pixels.
     pub size: [usize; 2],
     /// All pictures as JPEG, one after another.
     bytes: Vec<u8>,
-    /// Where each one ends in `bytes`.
+    /// End of each picture in `bytes`.
     ends: Vec<usize>,
 }
 
-/// What somebody who waits for it can be told, and can say.
+/// Progress and cancellation of a read.
 pub struct Watch<'a> {
-    /// Told the share done, 0 … 1.
+    /// Receives the completed share, 0 … 1.
     pub progress: &'a dyn Fn(f64),
-    /// Set when nobody wants it any more.
+    /// Set to cancel.
     pub cancelled: &'a AtomicBool,
 }
 
@@ -138,19 +139,19 @@ impl Video {
         self.ends.len()
     }
 
-    /// How long it is, s.
+    /// Duration, s.
     pub fn duration_s(&self) -> f64 {
         self.count() as f64 / self.rate_hz
     }
 
-    /// Number of the picture that is shown at a time of the video, s; `None` before its beginning and after its end.
+    /// Index of the picture at a time of the video, s; `None` before its start and after its end.
     pub fn index_at(&self, time_s: f64) -> Option<usize> {
-        // A cursor that was put exactly onto a picture must not miss it by rounding.
+        // A cursor placed exactly on a picture must not miss it by rounding.
         let index = (time_s * self.rate_hz + 1e-6).floor();
         (index >= 0.0 && index < self.count() as f64).then_some(index as usize)
     }
 
-    /// A picture, decoded; takes milliseconds. `None` past the end, or where the file is damaged.
+    /// Decoded picture; takes milliseconds. `None` past the end, or if the file is damaged.
     pub fn picture(&self, index: usize) -> Option<image::RgbImage> {
         let end = *self.ends.get(index)?;
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
@@ -158,7 +159,7 @@ impl Video {
     }
 }
 
-/// How much moves in a video: times of the video, s, and the mean change of brightness from picture to picture, 0 … 255.
+/// Motion in a video: times of the video, s, and the mean change of brightness from picture to picture, 0 … 255.
 ///
 /// # Errors
 /// As [`Video::read`].
@@ -175,12 +176,12 @@ pub fn motion(file: &Path, cancelled: &AtomicBool) -> Result<(Vec<f64>, Vec<f64>
     };
     let pictures: Vec<&[u8]> = grey.chunks_exact(wide * high).collect();
     let changes: Vec<f64> = pictures.windows(2).map(|pair| change([pair[0], pair[1]])).collect();
-    // What moves between two pictures moves at the middle between them.
+    // Motion between two pictures is assigned to the midpoint of their times.
     let times = (0..changes.len()).map(|k| (k as f64 + 0.5) / rate_hz).collect();
     Ok((times, changes))
 }
 
-/// True for what begins like a video: MP4 and its like, Matroska, AVI, MPEG, Ogg, GIF.
+/// True for the file signature of a video: MP4 and related formats, Matroska, AVI, MPEG, Ogg, GIF.
 pub fn looks_like_video(start: &[u8]) -> bool {
     let at = |offset: usize, mark: &[u8]| start.get(offset..offset + mark.len()) == Some(mark);
     at(4, b"ftyp")

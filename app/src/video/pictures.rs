@@ -1,22 +1,22 @@
-//! JPEG pictures in a stream: where one ends, and what it shows.
+//! JPEG pictures in a stream: finding their ends, and decoding them.
 
 use image::{ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
-/// The longer side of a picture that is decoded, pixels.
+/// Maximum size of the longer side of a decoded picture, pixels.
 const MOST_PIXELS: u32 = 4096;
 
-/// Finds where pictures end in a stream of JPEG pictures that comes in pieces.
+/// Finds the ends of pictures in a stream of JPEG pictures that arrives in chunks.
 #[derive(Debug, Default)]
 pub struct Cutter {
-    /// Bytes of the stream before the end of each picture.
+    /// Number of stream bytes before the end of each picture.
     pub ends: Vec<usize>,
     after_mark: bool,
 }
 
 impl Cutter {
-    /// A piece that begins `before` bytes into the stream. Within a picture's data the mark 0xff is followed by a zero or a
-    /// restart, so the end mark is unmistakable.
+    /// Adds a chunk that begins `before` bytes into the stream. Within a picture's data the mark 0xff is followed by a
+    /// zero or a restart, so the end mark is unambiguous.
     pub fn add(&mut self, before: usize, piece: &[u8]) {
         for (k, byte) in piece.iter().enumerate() {
             if self.after_mark && *byte == 0xd9 {
@@ -27,7 +27,7 @@ impl Cutter {
     }
 }
 
-/// The picture in these bytes, where they are one.
+/// Decoded picture; `None` if the bytes are not a JPEG.
 pub fn decode(jpeg: &[u8]) -> Option<RgbImage> {
     let mut reader = ImageReader::with_format(Cursor::new(jpeg), ImageFormat::Jpeg);
     let mut limits = Limits::default();

@@ -1,4 +1,4 @@
-//! Talking to `ffmpeg` and `ffprobe`.
+//! Interface to `ffmpeg` and `ffprobe`.
 
 use super::VideoError;
 use serde::Deserialize;
@@ -8,12 +8,13 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Bytes that are read at a time.
+/// Size of a read, bytes.
 const CHUNK: usize = 64 << 10;
-/// Bytes of complaints that are kept: the first ones tell the cause.
+/// Number of stored bytes of error output: the first ones tell the cause.
 const COMPLAINTS: u64 = 4 << 10;
 
-/// Only files, and only formats that hold pictures themselves: a playlist may name anything, and is asked for again and again.
+/// Options that allow only files, and only formats that contain pictures themselves. A playlist may name anything, and
+/// is read repeatedly.
 const SAFE: [&str; 4] = [
     "-protocol_whitelist",
     "file",
@@ -21,12 +22,12 @@ const SAFE: [&str; 4] = [
     "mov,matroska,avi,mpeg,mpegts,ogg,gif,asf,flv,mpegvideo,h264,hevc,mjpeg,ivf",
 ];
 
-/// What is known of a video before its pictures are read.
+/// Properties of a video, known before its pictures are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facts {
-    /// Pictures a second, as taken.
+    /// Original frame rate, Hz.
     pub rate_hz: f64,
-    /// s; 0 where the file does not say.
+    /// Duration, s; 0 if the file does not state it.
     pub duration_s: f64,
 }
 
@@ -61,7 +62,7 @@ struct ProbeFormat {
     duration: Option<String>,
 }
 
-/// Asks for rate and duration of the first video in a file.
+/// Reads rate and duration of the first video in a file.
 pub fn look(file: &Path) -> Result<Facts, VideoError> {
     let mut command = Command::new("ffprobe");
     command.args(["-v", "error"]).args(SAFE).args(["-select_streams", "v:0"]);
@@ -82,7 +83,7 @@ pub fn look(file: &Path) -> Result<Facts, VideoError> {
     Ok(Facts { rate_hz: rate_hz.unwrap_or(super::MOST_HZ), duration_s: duration_s.unwrap_or(0.0) })
 }
 
-/// `30000/1001` → 29.97; `None` for what is no rate.
+/// `30000/1001` → 29.97; `None` if the text is not a rate.
 fn ratio(text: &str) -> Option<f64> {
     let (above, below) = text.split_once('/')?;
     let (above, below): (f64, f64) = (above.parse().ok()?, below.parse().ok()?);
@@ -96,10 +97,10 @@ pub(super) fn input(file: &Path) -> OsString {
     input
 }
 
-/// Where pictures go as they come; it says whether more are wanted.
+/// Consumer of the output chunks; returns true if more are wanted.
 type Sink<'a> = &'a mut dyn FnMut(&[u8]) -> bool;
 
-/// The whole video as JPEG pictures at an even rate from time 0, no side longer than `most_pixels`.
+/// Converts the whole video to JPEG pictures at an even rate from time 0, no side longer than `most_pixels`.
 pub fn jpeg_pictures(
     file: &Path,
     rate_hz: f64,
@@ -118,7 +119,7 @@ pub fn jpeg_pictures(
     )
 }
 
-/// The whole video as grey pictures of one size, a byte a pixel.
+/// Converts the whole video to grey pictures of one size, one byte per pixel.
 pub fn grey_pictures(
     file: &Path,
     rate_hz: f64,
@@ -130,7 +131,7 @@ pub fn grey_pictures(
     stream(file, &["-vf", &filter, "-f", "rawvideo"], cancelled, sink)
 }
 
-/// Runs `ffmpeg` and hands on what it writes. A damaged end is no error as long as there were pictures before it.
+/// Runs `ffmpeg` and forwards its output. A damaged end is not an error as long as there were pictures before it.
 fn stream(file: &Path, output: &[&str], cancelled: &AtomicBool, sink: Sink<'_>) -> Result<(), VideoError> {
     let mut command = Command::new("ffmpeg");
     command.args(["-nostdin", "-v", "error"]).args(SAFE).arg("-i").arg(input(file));
@@ -166,7 +167,7 @@ fn stream(file: &Path, output: &[&str], cancelled: &AtomicBool, sink: Sink<'_>) 
     Err(VideoError::NoVideo { problem: first_line(&said, file), file: file.to_path_buf() })
 }
 
-/// A program that ends with its owner.
+/// Child process that ends with its owner.
 struct Running(Child);
 
 impl Drop for Running {
@@ -177,7 +178,7 @@ impl Drop for Running {
     }
 }
 
-/// Reads everything, so that the program never waits, and keeps the beginning.
+/// Reads all output, so that the program never blocks, and keeps the beginning.
 pub(super) fn first_words(mut pipe: impl Read) -> String {
     let mut kept = Vec::new();
     let _ = pipe.by_ref().take(COMPLAINTS).read_to_end(&mut kept);
@@ -185,7 +186,7 @@ pub(super) fn first_words(mut pipe: impl Read) -> String {
     String::from_utf8_lossy(&kept).into_owned()
 }
 
-/// What the program complains about first, without the file's name, which is told anyway.
+/// First error line of the program, without the file's name, which is reported anyway.
 pub(super) fn first_line(said: &str, file: &Path) -> String {
     let name = format!("file:{}", file.display());
     let line = said.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it holds no picture");

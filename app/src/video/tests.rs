@@ -3,7 +3,7 @@ use image::RgbImage;
 use std::io::Write as _;
 use std::process::Command;
 
-/// A video whose pictures are made here: `of(k)` is the picture number `k`.
+/// Writes a video of generated pictures: `of(k)` is the picture of index `k`.
 pub fn film(file: &Path, rate_hz: u32, count: usize, of: impl Fn(usize) -> RgbImage) {
     let mut writer = Writer::begin(file, [160, 90], f64::from(rate_hz)).expect("it starts");
     for k in 0..count {
@@ -18,7 +18,7 @@ pub fn bar(x: f64) -> RgbImage {
     RgbImage::from_fn(160, 90, |column, _| image::Rgb([if (left..left + 20).contains(&column) { 220 } else { 40 }; 3]))
 }
 
-/// True, with a visible word, where videos cannot be read.
+/// True, with a visible message, where videos cannot be read.
 pub fn no_reader() -> bool {
     let missing = !is_there();
     if missing {
@@ -101,7 +101,7 @@ fn what_cannot_be_shown_says_why() {
     std::fs::write(&text, "t_s,q_m\n0,1\n").expect("written");
     let refused = read(&text).expect_err("no video").to_string();
     assert!(refused.starts_with("This is no video"), "{refused}");
-    // A list of other files is none either: what it names is not opened.
+    // A playlist of other files is not a video either: its targets are not opened.
     let whole = folder.path().join("whole.mp4");
     film(&whole, 10, 10, |_| bar(0.5));
     let list = folder.path().join("list.m3u8");

@@ -1,4 +1,4 @@
-//! Videos made from pictures, by the program `ffmpeg`: for what has no camera, as the gallery and tests.
+//! Videos made from pictures, by the program `ffmpeg`: for the gallery and tests, which have no camera.
 
 use super::VideoError;
 use super::program::{first_line, first_words, input, not_started};
@@ -17,7 +17,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Begins a video of pictures of `size` pixels, `rate_hz` a second; the file's ending tells the format.
+    /// Starts a video of pictures of `size` pixels at `rate_hz`; the file extension sets the format.
     ///
     /// # Errors
     /// A sentence: no `ffmpeg`.
@@ -38,7 +38,7 @@ impl Writer {
         Ok(Self { program, pipe, complaints: std::thread::spawn(move || first_words(stderr)), size })
     }
 
-    /// Another picture. One of another size is left out.
+    /// Adds a picture. One of another size is skipped.
     ///
     /// # Errors
     /// The disk or the program refuses.
@@ -49,10 +49,10 @@ impl Writer {
         Ok(())
     }
 
-    /// The end; the file is whole afterwards.
+    /// Ends the video; the file is complete afterwards.
     ///
     /// # Errors
-    /// What the program complained about.
+    /// Error message of the program.
     pub fn finish(mut self, file: &Path) -> Result<(), VideoError> {
         drop(self.pipe);
         let ended = self.program.wait().map_err(VideoError::NotStarted)?;

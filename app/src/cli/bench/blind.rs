@@ -1,4 +1,4 @@
-//! `touchstone bench blind`: generated recordings in which something is hidden, and how often the diagnosis finds it.
+//! `touchstone bench blind`: generated recordings with hidden effects, and the detection rate of the diagnosis.
 
 use super::super::{Output, progress};
 use super::table::{Figure, Wanted};
@@ -46,14 +46,14 @@ impl BlindBench {
         let mut jobs = blind::battery(counts, seed);
         if let Some(cases) = self.cases {
             let (all, wanted) = (jobs.len(), usize::try_from(cases)?.min(jobs.len()));
-            // Evenly: the sets follow each other.
+            // Evenly spaced: the sets are in sequence.
             jobs = (0..wanted).map(|k| jobs[k * all / wanted].clone()).collect();
         }
         let (begun, done) = (Instant::now(), AtomicUsize::new(0));
         let rows = progress::during(&format!("asking {} cases, seed {seed}", jobs.len()), |share| {
             blind::ask(&jobs, &|recordings, options| {
                 let answer = diagnose(recordings, options).map_err(|e| e.to_string());
-                // Answers that ask for an experiment are asked for again.
+                // Answers that request an experiment are diagnosed again.
                 share.tell(((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / jobs.len() as f64).min(1.0));
                 answer
             })
@@ -69,10 +69,10 @@ impl BlindBench {
     }
 }
 
-/// The battery of `bench`'s table.
+/// Seed of the battery in `bench`'s table.
 const SEED_OF_TABLE: u64 = 4242;
 
-/// Figures of which something is wanted: the key, the same in words, and its bound (`docs/diagnosis.md`).
+/// Figures with a target: the key, its label, and its bound (`docs/diagnosis.md`).
 const WANTED: [(&str, &str, Wanted); 12] = [
     ("right_first_from_ratio_0.5", "hidden cause named first, ratio of 0.5 or more", Wanted::AtLeast(0.97)),
     ("right_first", "hidden cause named first, all ratios", Wanted::AtLeast(0.93)),
@@ -88,7 +88,7 @@ const WANTED: [(&str, &str, Wanted); 12] = [
     ("gain_of_oracle", "gain beside that of who knows, median", Wanted::AtLeast(0.97)),
 ];
 
-/// What a battery's JSON says of each; a share of no cases is no figure.
+/// Figures with a target from a battery's JSON; a share of no cases is not a figure.
 pub(super) fn figures(json: &serde_json::Value) -> Vec<Figure> {
     let read = |(key, words, wanted): &(&str, &str, Wanted)| {
         let said = &json["figures"][*key];
@@ -100,7 +100,8 @@ pub(super) fn figures(json: &serde_json::Value) -> Vec<Figure> {
 }
 
 impl BlindBench {
-    /// The battery of one seed, the same every time, so that figures of two versions can be compared; a first look at so many cases of it.
+    /// Battery of one fixed seed, so that figures of two versions are comparable; with `cases` only a preview of so
+    /// many cases.
     pub(super) fn of_table(cases: Option<u64>) -> Self {
         Self { fast: cases.is_some(), seed: Some(SEED_OF_TABLE), cases, ..Self::default() }
     }

@@ -1,6 +1,7 @@
-//! `touchstone bench delay`: how long tasks take over a slow line, with and without a model that answers at once.
+//! `touchstone bench delay`: durations of tasks with link latency, with and without a predictive model.
 //!
-//! In simulated time: the servo's tick, the line and the operator have one clock, so that a run can be repeated to the bit.
+//! In simulated time: the servo's tick, the link and the operator have one clock, so that a run is reproducible to the
+//! bit.
 
 mod median;
 
@@ -19,11 +20,11 @@ use std::fmt::Write;
 
 /// Servo period, s.
 const DT: f64 = 1e-3;
-/// Whoever is not done by then is not counted as done, s.
+/// Time limit of a task, s.
 const LONGEST_S: f64 = 240.0;
-/// A block that was held above the ground for this many ticks and is in no hand any more was dropped.
+/// Number of ticks for which a block must be held above the ground before a release counts as a drop.
 const HELD_TICKS: usize = 100;
-/// Forces of the operator's device, N.
+/// Force limit of the operator's device, N.
 const MOST_N: f64 = 12.0;
 
 /// Arguments of `bench delay`.
@@ -103,25 +104,25 @@ struct Off {
     learnt: f64,
 }
 
-/// One task.
+/// Definition of a task.
 struct TaskOf {
     name: &'static str,
     world: World,
-    /// Whether it was done, from how it began and ended.
+    /// Test of success, from the initial and the final state.
     done: fn(&World, &State, &State) -> bool,
 }
 
-/// What one performance came to.
+/// Result of one performance.
 struct Shown {
     seconds: f64,
     done: bool,
     drops: usize,
     peak_n: f64,
-    /// How far the masses of the carried bodies were off in the guess and in the end, relative to the truth.
+    /// Relative errors of the carried bodies' masses, in the initial guess and at the end.
     off: Vec<[f64; 2]>,
 }
 
-/// All performances of a task over a line, by seed, without and with a model.
+/// All performances of a task over a link, by seed, without and with a model.
 struct Cell {
     task: &'static str,
     round_trip_s: f64,
@@ -235,7 +236,7 @@ impl From<&Cell> for Compared {
 }
 
 impl Cell {
-    /// Time with a model over time without one, seed by seed, where both were done.
+    /// Ratio of the durations with and without a model, seed by seed, where both succeeded.
     fn ratio(&self) -> Option<Median> {
         let pairs = self.shown[0].iter().zip(&self.shown[1]).filter(|(without, with)| without.done && with.done);
         Median::of(pairs.map(|(without, with)| with.seconds / without.seconds).collect())
@@ -250,14 +251,14 @@ fn peak_n(shown: &[Shown]) -> Option<Median> {
     Median::of(shown.iter().map(|s| s.peak_n).collect())
 }
 
-/// How far masses were off in the guess and in the end.
+/// Relative errors of the masses, in the initial guess and at the end.
 fn offs(cells: &[Cell]) -> Option<[f64; 2]> {
     let all: Vec<[f64; 2]> = cells.iter().flat_map(|cell| &cell.shown[1]).flat_map(|s| s.off.iter().copied()).collect();
     let middle = |which: usize| Median::of(all.iter().map(|off| off[which]).collect()).map(|m| m.middle);
     Some([middle(0)?, middle(1)?])
 }
 
-/// Both blocks on each other on the other side, at rest.
+/// True if both blocks are stacked on the other side, at rest.
 fn is_stacked(world: &World, _: &State, end: &State) -> bool {
     let (one, two) = (&world.blocks[0], &world.blocks[1]);
     let (lower, upper) = (&end.bodies[0], &end.bodies[1]);
@@ -267,12 +268,13 @@ fn is_stacked(world: &World, _: &State, end: &State) -> bool {
         && (way.y - 0.5 * (one.height_m + two.height_m)).abs() < 1e-3
 }
 
-/// Two turns in all: two, one and a quarter, back by one and a half, on by a quarter.
+/// True after two turns in total: two, one and a quarter, back by one and a half, forward by a quarter.
 fn is_turned(_: &World, begun: &State, end: &State) -> bool {
     ((end.crank.angle_rad - begun.crank.angle_rad) / std::f64::consts::TAU - 2.0).abs() < 0.1
 }
 
-/// One performance over a line. The time ends when the operator has *seen* that it is done: a round trip after the last motion.
+/// Runs one performance over a link. The time ends when the operator has *seen* the success: a round trip after the
+/// last motion.
 fn perform(task: &TaskOf, line: &Delay, skill: Skill, seed: u64) -> anyhow::Result<Shown> {
     let world = &task.world;
     let begun = State::resting(world);

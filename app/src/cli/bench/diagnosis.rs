@@ -1,4 +1,4 @@
-//! `touchstone bench diagnosis`: how long an answer takes for a minute at 1 kHz, with and without something hidden in it.
+//! `touchstone bench diagnosis`: duration of a diagnosis for a minute at 1 kHz, with and without a hidden effect.
 
 use super::frames::performance;
 use super::table::{Figure, Said, Wanted};
@@ -12,7 +12,7 @@ use haptics::world::presets;
 
 const RATE_HZ: f64 = 1000.0;
 const SECONDS: f64 = 60.0;
-/// What such an answer may take on one core, ms.
+/// Time limit of a diagnosis on one core, ms.
 const MOST_MS: f64 = 500.0;
 
 /// Arguments of `bench diagnosis`.
@@ -26,10 +26,11 @@ pub struct DiagnosisBench {
     pub(super) seed: u64,
 }
 
-/// What is moved, and what is hidden in it.
+/// Object, and its hidden effects.
 type Case = (Bench, &'static [Effect]);
 
-/// Nulls and effects of all three places: in the force, in the path, and in what the answer is asked for twice (late forces).
+/// Null cases and effects of all three places: in the force, in the path, and where the diagnosis runs twice (late
+/// forces).
 const CASES: [Case; 12] = [
     (Bench::OneFinger, &[]),
     (Bench::Linear, &[Effect::Hysteresis]),
@@ -74,7 +75,7 @@ impl DiagnosisBench {
         Ok(Output { text: said.in_words(), json: serde_json::to_value(&said)? })
     }
 
-    /// A row for each case; a diagnosis runs on the thread that asks.
+    /// One row per case; a diagnosis runs on the calling thread.
     pub(super) fn figures(self, told: impl Fn(f64)) -> anyhow::Result<Vec<Figure>> {
         let rounds = if self.quick { 1 } else { 3 };
         let cases = if self.quick { &CASES[..2] } else { &CASES[..] };
@@ -86,7 +87,7 @@ impl DiagnosisBench {
             told((k + 1) as f64 / (cases.len() + 1) as f64);
         }
         if !self.quick {
-            // The battery has no blocks: the scripted operator stacks them over and over.
+            // The battery has no blocks: the scripted operator stacks them repeatedly.
             let stacked = [long(&performance("stack", &presets::stacking()), (RATE_HZ * SECONDS) as usize)];
             figures.push(figure("blocks, nothing hidden", &stacked, &Options::default(), rounds)?);
         }

@@ -1,4 +1,4 @@
-//! `touchstone bench frames`: what a picture of each panel costs the processor, with a long log.
+//! `touchstone bench frames`: processor time of a frame of each panel, with a long log.
 
 use super::super::{Output, parse_size};
 use crate::ui::frames::{Costs, Loaded, SUBJECTS, Subject};
@@ -16,7 +16,7 @@ use std::fmt::Write;
 
 /// Servo period, s.
 const DT: f64 = 1e-3;
-/// Processor time that a picture may take, s: half of it is left of 60 pictures a second.
+/// Maximum processor time of a frame, s: half of the frame period at 60 Hz.
 const BUDGET_S: f64 = 8e-3;
 
 /// Arguments of `bench frames`.
@@ -140,7 +140,7 @@ impl FramesBench {
     }
 }
 
-/// The scripted operator does what there is to do.
+/// Recording of the scripted operator at the world's task.
 pub(super) fn performance(name: &str, world: &World) -> Recording {
     let state = State::resting(world);
     let operator = ScriptedOperator::new(world, &state, Skill::default(), 1);

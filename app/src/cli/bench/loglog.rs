@@ -1,4 +1,4 @@
-//! Curves on logarithmic axes, as a picture in SVG: what grows in proportion rises at 45°.
+//! Curves on logarithmic axes, as a picture in SVG: proportional growth rises at 45°.
 
 use super::table::plain;
 use crate::report::style::hex;
@@ -6,14 +6,14 @@ use crate::ui::theme::{Palette, curve};
 use render::ColorRole;
 use std::fmt::Write as _;
 
-/// Seconds over a size.
+/// Run time over a size.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
-    /// What is done.
+    /// Name of the operation.
     pub name: &'static str,
-    /// What it is done to.
+    /// Object of the operation.
     pub of: &'static str,
-    /// Sizes and seconds.
+    /// Size, and run time, s.
     pub points: Vec<(usize, f64)>,
 }
 
@@ -25,12 +25,12 @@ const BOTTOM: f64 = 44.0;
 const LEGEND: f64 = 118.0;
 
 impl Curve {
-    /// Without points yet.
+    /// Curve without points yet.
     pub fn new(name: &'static str, of: &'static str) -> Self {
         Self { name, of, points: Vec::new() }
     }
 
-    /// Seconds grow with this power of the size, over the upper half of the points: overheads rule the lower one.
+    /// Exponent of the growth of time with size, over the upper half of the points: overheads dominate the lower half.
     pub fn exponent(&self) -> f64 {
         let upper = &self.points[self.points.len() / 2..];
         let (Some(first), Some(last)) =
@@ -50,7 +50,7 @@ pub(super) fn svg(curves: &[Curve]) -> String {
             kinds.push(curve.of);
         }
     }
-    // On a light sheet of its own, in plain colours: programs that know no variables of CSS draw those black.
+    // On a light background of its own, in plain colours: programs without CSS variables would draw those black.
     let paper = Palette::of(false);
     let (width, height) = (kinds.len() as f64 * (LEFT + SIDE + LEGEND), TOP + SIDE + BOTTOM);
     let mut text = format!(
@@ -71,7 +71,7 @@ pub(super) fn svg(curves: &[Curve]) -> String {
     text + "</svg>\n"
 }
 
-/// Decades that hold all values.
+/// Range of decades that contains all values.
 fn decades(values: impl Iterator<Item = f64> + Clone) -> (i32, i32) {
     let least = values.clone().fold(f64::INFINITY, f64::min).log10().floor() as i32;
     let most = values.fold(0.0, f64::max).log10().ceil() as i32;
@@ -120,15 +120,15 @@ fn chart(text: &mut String, kind: &str, curves: &[&Curve]) {
     legend(text, curves, ends);
 }
 
-/// So many curves differ by colour; those after them are dashed.
+/// Number of curves distinguished by colour; further ones are dashed.
 const COLORS: usize = 6;
 
-/// Of a curve: the darker kind, for lines and dots on a light sheet.
+/// Colour of a curve: the darker kind, for lines and dots on a light background.
 fn color(k: usize) -> String {
     hex(curve(false, ColorRole::Block(k % COLORS), true))
 }
 
-/// Names beside the ends of their curves, apart from each other.
+/// Draws names beside the ends of their curves, without overlap.
 fn legend(text: &mut String, curves: &[&Curve], mut ends: Vec<(f64, usize)>) {
     const LINE: f64 = 15.0;
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -149,7 +149,7 @@ fn legend(text: &mut String, curves: &[&Curve], mut ends: Vec<(f64, usize)>) {
     }
 }
 
-/// A power of ten of a second, in the unit that people say it in.
+/// A power of ten of a second, in its usual unit.
 fn in_units(power: i32) -> String {
     let (unit, least) = match power {
         0.. => ("s", 0),

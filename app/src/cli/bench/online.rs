@@ -1,4 +1,4 @@
-//! `touchstone bench online`: what a sample of the estimator beside the servo costs, against a tick of the servo.
+//! `touchstone bench online`: run time of the online estimator per sample, compared with a servo tick.
 
 use super::super::Output;
 use anyhow::Context;
@@ -76,7 +76,7 @@ impl OnlineBench {
         Ok(Output { text, json: serde_json::to_value(Said { online: costs })? })
     }
 
-    /// The task by the scripted operator: first the servo's ticks, then the same ticks through the estimator.
+    /// Measures a task of the scripted operator: first the servo's ticks, then the same ticks through the estimator.
     fn cost(&self, name: &'static str, task: Task, world: World) -> anyhow::Result<Cost> {
         let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 1);
         let count = (operator.duration_s() / DT) as usize;

@@ -1,4 +1,4 @@
-//! How long it takes until a large log shows its first curves.
+//! Time until the first curves of a large log are shown.
 
 use super::frames::performance;
 use super::table::{Figure, Wanted};
@@ -12,12 +12,12 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Rows that tell how many bytes one takes: many enough for whole blocks of a compressed file.
+/// Number of rows from which the size of a row is measured, bytes: enough for whole blocks of a compressed file.
 const PROBE: usize = 200_000;
-/// Columns of pixels of the plot that waits for curves.
+/// Number of pixel columns of the plot that waits for curves.
 const PIXELS: usize = 1_000;
 
-/// In each format, a log of about 1 GB, which is made in the folder for temporary files.
+/// Measures a log of about 1 GB in each format; it is generated in the folder for temporary files.
 pub(super) fn first_curves(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     let bytes = if wish.quick { 20e6 } else { 1e9 };
     let once = performance("stack", &presets::stacking());
@@ -36,7 +36,7 @@ pub(super) fn first_curves(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Reads until there is something to draw, and no further.
+/// Reads until there is something to draw, and no further. Returns the duration, s.
 fn first_curves_s(path: &Path) -> anyhow::Result<f64> {
     let (preview, first, enough) = (Preview::default(), OnceLock::new(), AtomicBool::new(false));
     let begun = Instant::now();
@@ -48,7 +48,7 @@ fn first_curves_s(path: &Path) -> anyhow::Result<f64> {
     };
     let watch = Watch { progress: &look, cancelled: &enough, preview: Some(&preview) };
     let read = load_watched(path, None, &watch).map(|all: Vec<Recording>| all.len());
-    // It ends early on purpose; a file that cannot be read has no curves.
+    // It ends early on purpose; an unreadable file has no curves.
     match (first.get(), read) {
         (Some(first_s), _) => Ok(*first_s),
         (None, Err(error)) => Err(error.into()),

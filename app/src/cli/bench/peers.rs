@@ -1,11 +1,12 @@
-//! Other programs on the same work in the same run: the scripts in `benches/`, which build our side from the sources that this program was made of.
+//! Other programs at the same work in the same run. The scripts in `benches/` build this program's side from the same
+//! sources.
 
 use super::table::{Figure, Peer, Wanted};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A script, what it measures, and how its rows become figures.
+/// Script, with the subject of its measurement and the conversion of its rows to figures.
 struct Script {
     file: &'static str,
     figures: fn(&Value) -> Vec<Figure>,
@@ -18,18 +19,18 @@ const SCRIPTS: [Script; 4] = [
     Script { file: "refit.py", figures: of_refits },
 ];
 
-/// Where the scripts are, if the sources are still there.
+/// Folder of the scripts, if the sources still exist.
 fn folder() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../benches");
     folder.is_dir().then_some(folder)
 }
 
-/// The Python to use: what `TOUCHSTONE_PYTHON` names, or `python3`.
+/// Python interpreter: the value of `TOUCHSTONE_PYTHON`, or `python3`.
 fn python() -> PathBuf {
     std::env::var_os("TOUCHSTONE_PYTHON").map_or_else(|| "python3".into(), PathBuf::from)
 }
 
-/// Runs every script; what cannot be had is a sentence among `skipped`.
+/// Runs every script; an unavailable one becomes a sentence among `skipped`.
 pub(super) fn all(quick: bool, skipped: &mut Vec<String>) -> Vec<Figure> {
     let Some(folder) = folder() else {
         skipped.push("other programs: the scripts in benches/ are not there; build from the sources".to_owned());
@@ -45,7 +46,7 @@ pub(super) fn all(quick: bool, skipped: &mut Vec<String>) -> Vec<Figure> {
     figures
 }
 
-/// What a script has written; the last line that it said where it did not.
+/// JSON output of a script; its last line of text as the error if there is none.
 fn run(script: &Path, quick: bool) -> Result<Value, String> {
     let out = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
     let mut command = Command::new(python());
@@ -68,10 +69,10 @@ fn figure(name: String, unit: &str, ours: f64, peer: (&str, f64), times: f64, le
     Figure { wanted: least.map(Wanted::TimesAsFast), peer, ..Figure::new(name, ours, unit) }
 }
 
-/// Scenes of which something is wanted: how many times as fast, and at most how long, µs.
+/// Scenes with a target: minimum speed-up, and maximum duration, µs.
 const TICKS: [(&str, Option<f64>, f64); 3] =
     [("pinch", Some(12.0), 0.7), ("crank", Some(10.0), 0.3), ("towers", None, 50.0)];
-/// A block that is held may sink by this much in ten minutes, mm.
+/// Maximum sinking of a held block in ten minutes, mm.
 const CREEP_MM: f64 = 0.1;
 
 fn of_scenes(said: &Value) -> Vec<Figure> {
@@ -89,7 +90,7 @@ fn of_scenes(said: &Value) -> Vec<Figure> {
         };
         let wanted = TICKS.iter().find(|(name, ..)| *name == scene);
         let name = format!("tick: {label}");
-        // Our tick is the same beside each of MuJoCo's models of a scene: its own bound stands once.
+        // This program's tick is the same beside each of MuJoCo's models of a scene: its own bound appears once.
         let alone = wanted.map(|(_, _, most)| {
             Figure::new(format!("tick: {}", scene_in_words(scene)), ours_ns * 1e-3, "µs").wanted(Wanted::AtMost(*most))
         });
@@ -113,7 +114,7 @@ fn scene_in_words(scene: &str) -> &str {
 fn of_logs(said: &Value) -> Vec<Figure> {
     let made = rows(said).filter_map(|row| {
         let (what, peer) = (row["what"].as_str()?, row["peer"].as_str()?);
-        // The compiled readers; those in Python are beside the point.
+        // The target is against compiled readers; those in Python are not relevant.
         let least = match peer {
             "polars" => Some(2.0),
             "rerun" => Some(1.0),
@@ -125,7 +126,7 @@ fn of_logs(said: &Value) -> Vec<Figure> {
     made.collect()
 }
 
-/// Samples a second that decoding should take in, millions, and how many times as fast as hmmlearn.
+/// Target of the decoding: millions of samples per second, and minimum speed-up over hmmlearn.
 const DECODING: (f64, f64) = (20.0, 20.0);
 
 fn of_decoding(said: &Value) -> Vec<Figure> {
@@ -151,10 +152,10 @@ fn of_decoding(said: &Value) -> Vec<Figure> {
     made.flatten().collect()
 }
 
-/// What a refit may take, s: (least samples, most). A log of 10 s at 1 kHz has the stricter bound.
+/// Maximum duration of a refit as (minimum number of samples, s). A log of 10 s at 1 kHz has the stricter bound.
 const REFIT_S: [(f64, f64); 2] = [(50_000.0, 20e-3), (0.0, 16e-3)];
 
-/// A refit against its own bound, and beside each method of scipy's: the ratio is asked of the large log only.
+/// Refit against its own bound, and compared with each method of scipy; the ratio has a target for the large log only.
 fn of_refits(said: &Value) -> Vec<Figure> {
     let mut made = Vec::new();
     for row in rows(said) {

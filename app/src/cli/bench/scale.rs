@@ -1,4 +1,5 @@
-//! `touchstone bench scale`: how the work grows with what is given: samples of a log, blocks of a world, logs of a fleet.
+//! `touchstone bench scale`: growth of the run time with the input: samples of a log, blocks of a world, logs of a
+//! fleet.
 
 use super::frames::performance;
 use super::loglog::{self, Curve};
@@ -24,10 +25,10 @@ use std::path::PathBuf;
 
 /// Storeys of a tower of blocks.
 const STOREYS: usize = 5;
-/// Ticks before blocks are at rest, and ticks that are timed.
+/// Number of ticks until blocks are at rest, and of timed ticks.
 const SETTLING: usize = 2_000;
 const TICKS: usize = 1_000;
-/// What took longer than this is not asked for ten times as much, s.
+/// Duration above which the next size, ten times as large, is skipped, s.
 const LONGEST_S: f64 = 3.0;
 
 /// Arguments of `bench scale`.
@@ -70,7 +71,7 @@ impl From<Curve> for Grows {
     }
 }
 
-/// What is timed as samples grow.
+/// Operation that is timed for growing numbers of samples.
 type Work = fn(&Recording) -> anyhow::Result<f64>;
 
 const WORKS: [(&str, Work); 10] = [
@@ -89,7 +90,8 @@ const WORKS: [(&str, Work); 10] = [
 /// Channels and states of the hidden Markov model.
 const MODEL: (usize, usize) = (12, 5);
 
-/// The most probable states of a model whose means are samples of the recording, evenly taken: it need not mean anything to cost the same.
+/// Decodes the most probable states of a model whose means are evenly spaced samples of the recording: the model need
+/// not be meaningful to cost the same.
 fn decoding(recording: &Recording) -> anyhow::Result<f64> {
     let ((channels, states), n) = (MODEL, recording.len());
     let columns: Vec<&[f64]> = recording.channels.iter().map(|c| c.values.as_slice()).cycle().take(channels).collect();
@@ -146,7 +148,7 @@ fn by_samples(sizes: &[usize], told: impl Fn(f64)) -> Vec<Curve> {
             if curve.points.last().is_some_and(|(_, seconds)| *seconds > LONGEST_S) {
                 continue;
             }
-            // A second of a recording shows nothing that could be fitted: that is no figure.
+            // A second of a recording may be too short for a fit: then there is no figure.
             if let Ok(seconds) = work(&recording) {
                 curve.points.push((*size, seconds));
             }
@@ -156,7 +158,7 @@ fn by_samples(sizes: &[usize], told: impl Fn(f64)) -> Vec<Curve> {
     curves
 }
 
-/// A tick of a world with blocks at rest in towers, the fingers away.
+/// Tick of a world with towers of blocks at rest, the fingers away.
 fn by_blocks() -> Curve {
     let mut curve = Curve::new("tick", "blocks");
     for count in [1, 3, 10, 30, 100] {
@@ -166,7 +168,7 @@ fn by_blocks() -> Curve {
         let mut state = State::new(&world, away);
         let mut ticks = |n: usize| (0..n).for_each(|_| step(&world, &mut state, &input, 1e-3));
         ticks(SETTLING);
-        // Nothing in it can fail.
+        // No error is possible here.
         let took = best_s(3, || {
             ticks(TICKS);
             Ok(())
@@ -190,7 +192,7 @@ fn towers(count: usize) -> World {
     world
 }
 
-/// Diagnoses of several logs at the same time, on all processors.
+/// Diagnoses of several logs at once, on all processors.
 fn by_logs(most: usize) -> anyhow::Result<Curve> {
     let log = performance("crank", &presets::crank());
     let mut curve = Curve::new("diagnose", "logs");

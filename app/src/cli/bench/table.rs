@@ -1,4 +1,4 @@
-//! One table of figures: what was measured, what is wanted of it, and what another program needs for the same.
+//! One table of figures: the measurement, its target, and the value of another program for the same work.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -58,18 +58,18 @@ pub(crate) struct Peer {
 }
 
 impl Figure {
-    /// A figure of which nothing is wanted.
+    /// Figure without a target.
     pub fn new(name: impl Into<String>, value: f64, unit: &str) -> Self {
         Self { name: name.into(), value, unit: unit.to_owned(), wanted: None, peer: None }
     }
 
-    /// With a bound.
+    /// Adds a target.
     pub fn wanted(mut self, wanted: Wanted) -> Self {
         self.wanted = Some(wanted);
         self
     }
 
-    /// Whether it keeps its bound; nothing without one, or where there is nobody to compare with.
+    /// True if the figure meets its target; `None` without one, or without a program to compare with.
     pub fn is_kept(&self) -> Option<bool> {
         match self.wanted? {
             Wanted::AtMost(most) => Some(self.value <= most),
@@ -93,7 +93,7 @@ impl Figure {
     }
 }
 
-/// Three digits that count.
+/// Number with three significant digits.
 pub(super) fn plain(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -104,13 +104,13 @@ pub(super) fn plain(value: f64) -> String {
 }
 
 impl Said {
-    /// Of this program on this machine, nothing skipped.
+    /// Table of this program on this machine, nothing skipped.
     pub fn of(quick: bool, figures: Vec<Figure>) -> Self {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         Self { quick, optimised: !cfg!(debug_assertions), cores, figures, skipped: Vec::new() }
     }
 
-    /// For people.
+    /// Text for the user.
     pub fn in_words(&self) -> String {
         let mut text = String::new();
         if !self.optimised {

@@ -1,7 +1,7 @@
-//! Whether a machine holds a rate: the limits, and which of them is broken by how much.
+//! Timing limits of a servo rate, and the violations on this machine.
 //!
-//! At 4 kHz 99 of 100 ticks may start 50 µs late and 999 of 1000 may start 250 µs late, a fifth of a period and a whole one. Other
-//! rates have the same shares of their period. Besides, a tick must leave half of its period free.
+//! At 4 kHz 99 of 100 ticks may start 50 µs late and 999 of 1000 may start 250 µs late, a fifth of a period and a whole
+//! one. Other rates have the same shares of their period. In addition, a tick must leave half of its period free.
 
 use crate::ui::format::short_time;
 use haptics::servo::rate::{COMPUTE_SHARE, MISSED_SHARE};
@@ -9,12 +9,12 @@ use haptics::servo::timing::Timing;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Share of a period that 99 of 100 ticks may be late by: 50 µs at 4 kHz.
+/// Lateness limit for 99 of 100 ticks, as a share of the period: 50 µs at 4 kHz.
 pub const LATE_P99: f64 = 0.2;
-/// Share of a period that 999 of 1000 ticks may be late by: 250 µs at 4 kHz.
+/// Lateness limit for 999 of 1000 ticks, as a share of the period: 250 µs at 4 kHz.
 pub const LATE_P999: f64 = 1.0;
 
-/// A limit and what was measured.
+/// Limit with its measured value.
 pub struct Limit {
     name: &'static str,
     what: &'static str,
@@ -42,7 +42,7 @@ impl From<&Limit> for Held {
     }
 }
 
-/// Every limit of a rate.
+/// All limits of a rate.
 pub fn limits(t: &Timing) -> [Limit; 4] {
     let time = |name, what, measured, share: f64| {
         let most = share * t.period_s;
@@ -58,7 +58,7 @@ pub fn limits(t: &Timing) -> [Limit; 4] {
 }
 
 impl Limit {
-    /// True when it is kept.
+    /// True if the limit is met.
     pub fn is_kept(&self) -> bool {
         self.measured <= self.most
     }
@@ -82,7 +82,7 @@ impl Limit {
     }
 }
 
-/// One sentence: held, with the limits of the lateness, or not, with every limit that is broken.
+/// One sentence: held, with the limits of the lateness, or not, with every violated limit.
 pub fn sentence(limits: &[Limit]) -> String {
     let broken: Vec<String> = limits.iter().filter(|l| !l.is_kept()).map(Limit::broken_words).collect();
     if broken.is_empty() {

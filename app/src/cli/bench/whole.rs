@@ -1,4 +1,4 @@
-//! `touchstone bench` alone: every figure that is named anywhere, in one table.
+//! `touchstone bench` alone: all figures in one table.
 
 use super::blind::{self, BlindBench};
 use super::diagnosis::DiagnosisBench;
@@ -31,7 +31,7 @@ pub struct WholeBench {
 /// A part of the table.
 type Part = fn(WholeBench) -> anyhow::Result<Vec<Figure>>;
 
-/// The best of some rounds, s: what interrupts a round only makes it longer.
+/// Shortest duration among some rounds, s: interruptions only make a round longer.
 pub(super) fn best_s<T>(rounds: usize, mut work: impl FnMut() -> anyhow::Result<T>) -> anyhow::Result<f64> {
     let mut best = f64::INFINITY;
     for _ in 0..rounds.max(1) {
@@ -42,7 +42,7 @@ pub(super) fn best_s<T>(rounds: usize, mut work: impl FnMut() -> anyhow::Result<
     Ok(best)
 }
 
-/// A recording of at least so many samples: a performance over and over, its clock running on.
+/// Recording of at least so many samples: a performance repeated, with a continuous clock.
 pub(super) fn long(once: &Recording, samples: usize) -> Recording {
     let rounds = samples.div_ceil(once.len().max(1));
     let time = once.time_s.as_deref().unwrap_or(&[]);
@@ -72,7 +72,7 @@ impl WholeBench {
             ("what diagnoses find", blind),
         ];
         for (what, part) in parts {
-            // One that cannot be measured here costs its own rows only.
+            // A part that cannot be measured here omits only its own rows.
             match progress::during(&format!("measuring {what}"), |_| part(self)) {
                 Ok(figures) => said.figures.extend(figures),
                 Err(error) => said.skipped.push(format!("{what}: {error}")),
@@ -167,7 +167,7 @@ fn diagnoses(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
 fn blind(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     let json = BlindBench::of_table(wish.quick.then_some(20)).run()?.json;
     let figures = blind::figures(&json);
-    // A few cases say nothing about shares of a hundredth.
+    // With few cases, shares of a hundredth are not significant.
     Ok(figures.into_iter().map(|figure| if wish.quick { Figure { wanted: None, ..figure } } else { figure }).collect())
 }
 
@@ -190,7 +190,7 @@ mod tests {
             "diagnosis of 60 s at 1 kHz: crank, nothing hidden",
             "nothing hidden and something named",
         ] {
-            // What a machine cannot do has a sentence with its reason.
+            // Parts that a machine cannot run have a sentence with the reason.
             let skipped = part == "first picture of the window" && output.text.contains("skipped: the window's start");
             assert!(skipped || output.text.contains(part), "{part}: {}", output.text);
         }

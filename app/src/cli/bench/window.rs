@@ -1,4 +1,5 @@
-//! How long the window takes from its start to its first picture: this program, started again, on the screen that there is or on one in memory.
+//! Time from the window's start to its first frame: this program, started again, on the existing screen or on a virtual
+//! one.
 
 use super::table::{Figure, Wanted};
 use super::whole::WholeBench;
@@ -8,11 +9,11 @@ use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The first picture should stand after so long, s.
+/// Maximum time to the first frame, s.
 const MOST_S: f64 = 0.5;
-/// Starts of which the middle one counts, after one that fills the caches.
+/// Number of starts whose median counts, after one that fills the caches.
 const STARTS: usize = 7;
-/// A start that takes longer has failed.
+/// Time after which a start counts as failed.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 pub(super) fn first_pictures(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
@@ -31,12 +32,12 @@ pub(super) fn first_pictures(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     ])
 }
 
-/// Starts the window as somebody who has never opened it, and waits until it says that its first picture stands.
+/// Starts the window as for a new user, and waits until it reports its first frame. Returns the time, s.
 fn first_picture_s(screen: &Screen) -> anyhow::Result<f64> {
     let home = tempfile::tempdir()?;
     let mut command = Command::new(std::env::current_exe()?);
     command.args(["app", "--until-first-picture"]);
-    // Where it keeps things, and not HOME: the key to the screen may lie there.
+    // Only the data folders, and not HOME: the key to the screen may be there.
     for kept in ["XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
         command.env(kept, home.path());
     }
@@ -50,7 +51,7 @@ fn first_picture_s(screen: &Screen) -> anyhow::Result<f64> {
     Ok(took_s)
 }
 
-/// A program that ends with this.
+/// Child process that ends with its owner.
 struct Ended(Child);
 
 impl Drop for Ended {
@@ -61,23 +62,23 @@ impl Drop for Ended {
     }
 }
 
-/// The first line that a program says within [`PATIENCE`]; it is ended afterwards.
+/// First output line of a program within [`PATIENCE`]; the program is ended afterwards.
 fn first_line(mut program: Ended) -> Option<String> {
     let said = program.0.stdout.take()?;
     let (sender, receiver) = std::sync::mpsc::channel();
     std::thread::spawn(move || {
         let mut line = String::new();
-        // Whoever waited may have given up.
+        // The receiver may have given up.
         let _ = BufReader::new(said).read_line(&mut line).map(|_| sender.send(line));
     });
     receiver.recv_timeout(PATIENCE).ok()
 }
 
-/// Where the window opens.
+/// Screen of the window.
 enum Screen {
-    /// That of the person who asks.
+    /// The user's screen.
     Theirs,
-    /// One in memory.
+    /// Virtual screen in memory.
     Own { _server: Ended, display: String },
 }
 

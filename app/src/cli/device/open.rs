@@ -1,4 +1,4 @@
-//! Which devices there are, and how one is made from what stands on the command line.
+//! The available devices, and their construction from the command line.
 
 use crate::operator;
 use crate::ui::trainer::Remote;
@@ -13,11 +13,11 @@ use std::path::Path;
 
 /// A kind of device, for the list.
 pub struct Kind {
-    /// What to write after `--device`.
+    /// Value of `--device`.
     pub id: &'static str,
-    /// One sentence.
+    /// Description, one sentence.
     pub what: &'static str,
-    /// What it can do; `None` when that is only known once it is there.
+    /// Specification; `None` if it is known only once the device is connected.
     pub spec: Option<DeviceSpec>,
 }
 
@@ -63,25 +63,25 @@ pub fn kinds(world: &World) -> Vec<Kind> {
     kinds
 }
 
-/// A device that was made, and what else belongs to it.
+/// Opened device with its accessories.
 pub struct Opened {
     /// The device.
     pub device: Box<dyn Device>,
-    /// Where its tips begin, m in the world.
+    /// Initial tip positions, m in the world.
     pub start_in_world: [Vec2; 2],
-    /// What a person can do to move it, or why nothing moves.
+    /// Advice to a person on moving it, or the reason why nothing moves.
     pub hint: &'static str,
     /// Packet counters of a remote device.
     pub packets: Option<UdpMonitor>,
     /// Answers of the left and the right board.
     pub answers: Option<[Tally; 2]>,
-    /// Whatever must live as long as the device.
+    /// Resources that must live as long as the device.
     pub keep: Option<Box<dyn std::any::Any>>,
 }
 
 const NO_WINDOW: &str = "It is moved in the window; here only its servo can be tested.";
 
-/// Makes the device that a name on the command line stands for.
+/// Opens the device named on the command line.
 pub fn open(name: &str, world: &World) -> anyhow::Result<Opened> {
     let state = State::resting(world);
     let tips = state.input.tip_in_world;
@@ -187,7 +187,7 @@ fn gamepad(_: Option<&str>, _: &World, _: [Vec2; 2]) -> anyhow::Result<Opened> {
     anyhow::bail!("this build has no gamepads; build it with `--features gamepad` (on Linux that needs libudev-dev)")
 }
 
-/// Puts a device behind a slow network when that was asked for.
+/// Puts a device behind a simulated slow network if that was requested.
 pub fn behind_a_network(
     opened: Opened,
     config: ChannelConfig,

@@ -1,4 +1,4 @@
-//! What a test found, in plain words and as JSON.
+//! Result of a test, in plain words and as JSON.
 
 mod board;
 mod limits;
@@ -19,9 +19,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A finger that moved less than this did not move, m.
+/// Minimum travel of a moved finger, m.
 const STILL_M: f64 = 0.5e-3;
-/// The watchdog has spoken after this, s.
+/// Time after which the watchdog has responded, s.
 const WAIT_S: f64 = 0.1;
 
 /// What `device test --json` prints.
@@ -119,29 +119,29 @@ impl From<&UdpMonitor> for Packets {
     }
 }
 
-/// What was measured.
+/// Measurement of a test.
 pub struct Measured<'a> {
-    /// What it says of itself.
+    /// Specification of the device.
     pub spec: &'a DeviceSpec,
-    /// Delay that it states of itself, s.
+    /// Latency stated by the device, s.
     pub delay_s: f64,
-    /// The servo's punctuality.
+    /// Timing of the servo.
     pub timing: &'a Timing,
-    /// What the system granted.
+    /// Privileges granted by the system.
     pub privileges: Privileges,
     /// Every tick.
     pub ticks: &'a [TickRecord],
-    /// How to move it.
+    /// Advice on moving it.
     pub hint: &'a str,
-    /// Packets, of a remote device.
+    /// Packet counters of a remote device.
     pub packets: Option<&'a UdpMonitor>,
     /// Answers of the left and the right board.
     pub answers: Option<&'a [Tally; 2]>,
-    /// The soft push that was asked for, N.
+    /// Requested test force, N.
     pub push_n: f64,
-    /// Stiffness of the line with waves that it is behind, N/m.
+    /// Stiffness of the link with wave variables in front of it, N/m.
     pub line_n_m: Option<f64>,
-    /// The coupling's stiffness, N/m, when the world is felt through one.
+    /// Stiffness of the virtual coupling, N/m, if there is one.
     pub coupling_n_m: Option<f64>,
 }
 
@@ -159,7 +159,7 @@ struct Check {
 }
 
 impl Check {
-    /// Fine, or worth a look.
+    /// Passed check, or a remark.
     fn new(name: &'static str, ok: bool, text: String) -> Self {
         Self { name, ok, failed: false, text }
     }
@@ -169,14 +169,14 @@ impl Check {
     }
 }
 
-/// A device that does not work says more than a machine that was busy meanwhile.
+/// A device that does not work is more informative than a machine that was busy meanwhile.
 fn verdict(checks: &[Check]) -> &str {
     let failed = checks.iter().find(|check| check.failed);
     failed.or_else(|| checks.iter().find(|check| !check.ok)).map_or("Nothing wrong was found.", |check| &check.text)
 }
 
 impl Measured<'_> {
-    /// Words and JSON.
+    /// Report as text and JSON.
     pub fn report(&self) -> serde_json::Result<Output> {
         let checks = self.checks();
         let verdict = verdict(&checks);
@@ -200,7 +200,7 @@ impl Measured<'_> {
         Ok(Output { text, json: serde_json::to_value(self.said(&checks, verdict))? })
     }
 
-    /// Whether a check failed outright.
+    /// True if a check failed outright.
     pub fn has_failed(&self) -> bool {
         self.checks().iter().any(|check| check.failed)
     }
@@ -251,10 +251,10 @@ impl Measured<'_> {
         self.ticks.iter().filter(|tick| tick.flags.stale).count()
     }
 
-    /// First tick with positions after the wait for the device, and one past the last; `None` when there never were any.
+    /// First tick with positions after the wait for the device, and one past the last; `None` if there never were any.
     fn present(&self) -> Option<(usize, usize)> {
         let stale = |tick: &TickRecord| tick.flags.stale;
-        // The watchdog takes its time to speak: silence from the start is said a little later.
+        // The watchdog responds with a delay: initial silence is reported a little later.
         let said = (WAIT_S / self.timing.period_s) as usize;
         let first = match self.ticks.iter().position(stale) {
             Some(at) if at <= said => at + self.ticks[at..].iter().position(|tick| !stale(tick))?,
@@ -284,11 +284,11 @@ impl Measured<'_> {
         if left > 0 {
             let _ = write!(text, " They ended {} before the test did.", duration(seconds(left)));
         }
-        // A program may end when it likes; a device on a cable may not.
+        // A remote program may end at any time; a wired device may not.
         Check::new(name, gaps == 0 && (left == 0 || self.packets.is_some()), text)
     }
 
-    /// Width and height of where each finger went, m.
+    /// Width and height of each finger's range of motion, m.
     fn ranges(&self) -> [Vec2; 2] {
         [0, 1].map(|finger| {
             let far = Vec2::repeat(f64::INFINITY);
@@ -313,7 +313,7 @@ impl Measured<'_> {
         let still = ranges.iter().any(|range| range.norm() < STILL_M);
         let hint = if still { self.hint } else { "" };
         let text = format!("The left finger {}, the right one {}. {hint}", words(0), words(1));
-        // Nothing moves by itself: standing still is for the person to judge.
+        // Nothing moves by itself: the person must judge a standstill.
         Check::new("motion", true, text.trim_end().to_owned())
     }
 
@@ -334,7 +334,7 @@ impl Measured<'_> {
     }
 }
 
-/// A duration that is never nothing: `0.4 ms`, `50 ms`, `0.7 s`.
+/// Text of a nonzero duration: `0.4 ms`, `50 ms`, `0.7 s`.
 fn duration(seconds: f64) -> String {
     let ms = 1e3 * seconds;
     match seconds {
@@ -356,7 +356,7 @@ pub(super) mod tests {
         parts.iter().flat_map(|(count, stale)| vec![tick(*stale); *count]).collect()
     }
 
-    /// What is to be said of a device that was watched for some ticks of 1 ms, with nothing else known.
+    /// Measurement of a device that was monitored for some ticks of 1 ms, with nothing else known.
     pub(super) fn measured<'a>(spec: &'a DeviceSpec, timing: &'a Timing, ticks: &'a [TickRecord]) -> Measured<'a> {
         Measured {
             spec,

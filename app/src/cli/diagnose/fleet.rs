@@ -1,7 +1,7 @@
-//! Many logs of many objects: each is diagnosed by itself, its result is one line of JSON as soon as it is there.
+//! Many logs of many objects: each is diagnosed separately, and its result is written at once as one line of JSON.
 //!
-//! A file that cannot be read, or in which the program fails, has a line with a sentence; the others go on. Lines that stand in a
-//! file already are not made again as long as the log, its sidecar and what was asked are the same.
+//! An unreadable file, or one on which the program fails, has a line with a sentence; the others continue. Existing
+//! lines in a file are kept as long as the log, its sidecar and the options are unchanged.
 
 use crate::report::source::Source;
 use anyhow::Context;
@@ -45,23 +45,23 @@ pub struct Line {
     pub error: Option<String>,
 }
 
-/// How a run went.
+/// Summary of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Logs with a result.
     pub done: usize,
-    /// Logs with a sentence instead.
+    /// Logs with an error sentence instead.
     pub failed: usize,
-    /// Logs whose lines stood there already.
+    /// Logs with an existing line.
     pub kept: usize,
-    /// Those of them whose lines say why there is no result.
+    /// Logs among them whose line is an error.
     pub failed_before: usize,
 }
 
-/// The lines that stand already, and whether each says why there is no result.
+/// Existing lines, with true if the line is an error.
 pub type Standing = HashMap<Key, bool>;
 
-/// A line as it is read again.
+/// Existing line, parsed.
 #[derive(Deserialize)]
 struct Read {
     #[serde(flatten)]
@@ -70,7 +70,7 @@ struct Read {
 }
 
 impl Key {
-    /// Of a log as it lies there now.
+    /// Key of a log in its current state.
     pub fn of(log: &Path, meta: Option<&Path>, asked: &str) -> Self {
         let source = Source::of(log, meta);
         let digits = |digest: &Result<(u64, String), String>| digest.as_ref().ok().map(|(_, digits)| digits.clone());
@@ -83,7 +83,7 @@ impl Key {
     }
 }
 
-/// The lines that stand in a file; those that were cut off when a run was killed count as missing.
+/// Existing lines of a file; those truncated by a kill count as missing.
 pub fn standing(path: &Path) -> anyhow::Result<Standing> {
     let file = match File::open(path) {
         Ok(file) => file,
@@ -95,14 +95,14 @@ pub fn standing(path: &Path) -> anyhow::Result<Standing> {
     let mut keys = Standing::new();
     for line in BufReader::new(file).split(b'\n') {
         let line = line.with_context(|| format!("the results so far cannot be read: {}", path.display()))?;
-        // What could not be read then may be readable now.
+        // A file that was unreadable then may be readable now.
         let read = serde_json::from_slice::<Read>(&line).ok().filter(|read| read.key.sha256.is_some());
         keys.extend(read.map(|read| (read.key, read.error.is_some())));
     }
     Ok(keys)
 }
 
-/// Opens a file of lines to go on with; a line that was cut off is ended first.
+/// Opens a file of lines for appending; a truncated line is terminated first.
 pub fn append_to(path: &Path) -> anyhow::Result<File> {
     let say = || format!("the results cannot be written; check the folder and its permissions: {}", path.display());
     let mut file = File::options().create(true).read(true).append(true).open(path).with_context(say)?;
@@ -116,24 +116,24 @@ pub fn append_to(path: &Path) -> anyhow::Result<File> {
     Ok(file)
 }
 
-/// What a fleet is run with.
+/// Input of a fleet run.
 pub struct Run<'a> {
     /// The logs.
     pub logs: &'a [PathBuf],
-    /// How many at the same time, at least one.
+    /// Number of parallel jobs, at least one.
     pub jobs: usize,
-    /// Lines that stand already.
+    /// Existing lines.
     pub standing: &'a Standing,
-    /// Names a log as it lies there.
+    /// Key of a log in its current state.
     pub key: &'a (dyn Fn(&Path) -> Key + Sync),
     /// Diagnoses one log.
     pub work: &'a (dyn Fn(&Path) -> anyhow::Result<Value> + Sync),
-    /// Told how many logs are dealt with.
+    /// Receives the number of completed logs.
     pub told: &'a (dyn Fn(usize) + Sync),
 }
 
 impl Run<'_> {
-    /// Deals with every log, writes its line, and holds no more of them than there are jobs.
+    /// Processes every log, writes its line, and holds no more of them in memory than there are jobs.
     pub fn through(&self, out: &mut (impl Write + Send)) -> anyhow::Result<Tally> {
         let shared = Mutex::new((out, Tally::default(), None));
         let next = AtomicUsize::new(0);
@@ -173,9 +173,9 @@ impl Run<'_> {
         }
     }
 
-    /// A log's line.
+    /// Line of a log.
     fn line(&self, log: &Path, key: Key) -> Line {
-        // What the work was building is dropped with a panic: nobody sees it half made.
+        // A panic drops everything that the work was building, so no partial result is visible.
         let made = catch_unwind(AssertUnwindSafe(|| (self.work)(log)));
         let (result, error) = match made {
             Ok(Ok(result)) => (Some(result), None),
@@ -186,14 +186,14 @@ impl Run<'_> {
     }
 }
 
-/// A panic as a sentence.
+/// Sentence about a panic.
 fn fault(panic: &(dyn std::any::Any + Send)) -> String {
     let said = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let said = said.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default().replace('\n', " ");
     format!("a fault of the program itself ended the work on this log ({said}); please report it with the log")
 }
 
-/// One line with one call, so that lines of several processes do not mix.
+/// Writes one line with one call, so that lines of several processes do not mix.
 fn write(out: &mut impl Write, line: &Line) -> std::io::Result<()> {
     let mut text = serde_json::to_vec(line)?;
     text.push(b'\n');
@@ -221,7 +221,7 @@ mod tests {
             self.0.path().join(name)
         }
 
-        /// Runs over the files and gives the lines back, in the order of the files.
+        /// Runs over the files. Returns the lines in the order of the files.
         fn run(&self, names: &[&str], jobs: usize, standing: &Standing) -> (Tally, Vec<Value>) {
             let logs: Vec<PathBuf> = names.iter().map(|name| self.path(name)).collect();
             let mut out = Vec::new();

@@ -1,4 +1,5 @@
-//! Where a recording is not to be trusted: gaps, that no curve may cross, and stretches of channels that stand still or at a limit.
+//! Unreliable parts of a recording: gaps, which no curve may cross, and spans in which a channel is constant or
+//! saturated.
 
 use super::{Frame, key, short};
 use crate::ui::format;
@@ -10,19 +11,19 @@ use haptics::recording::{Recording, Span};
 use maud::{Markup, html};
 use std::ops::Range;
 
-/// Warnings whose samples are marked, with the class of the mark and what it is called.
+/// Warnings whose samples are marked, with the class of the mark and its name.
 const MARKED: [(&str, &str, &str); 3] = [
     ("stuck-channel", "stuck", "does not change"),
     ("saturation", "limit", "at its limit"),
     ("outlier", "limit", "outlier"),
 ];
-/// Height of a mark, and its least width.
+/// Height of a mark, and its minimum width.
 const HEIGHT: f64 = 5.0;
 const LEAST: f64 = 1.5;
-/// A short stretch between gaps is thinned to so many columns at least.
+/// Minimum number of columns to which a short segment between gaps is thinned.
 const LEAST_COLUMNS: usize = 8;
 
-/// The runs of samples between gaps.
+/// Segments of samples between gaps.
 pub fn stretches(prepared: &Prepared) -> Vec<Range<usize>> {
     let times = if prepared.clockless() { &[][..] } else { &prepared.times };
     let mut first = 0;
@@ -35,12 +36,12 @@ pub fn stretches(prepared: &Prepared) -> Vec<Range<usize>> {
     runs
 }
 
-/// The gaps, from the last sample before to the first one after, s.
+/// Gaps, from the last sample before to the first one after, s.
 pub fn holes(prepared: &Prepared) -> Vec<(f64, f64)> {
     stretches(prepared).windows(2).map(|w| (prepared.times[w[0].end - 1], prepared.times[w[1].start])).collect()
 }
 
-/// What of a stretch of time lies outside the gaps.
+/// Parts of a time span outside the gaps.
 pub fn outside(holes: &[(f64, f64)], (from, to): (f64, f64)) -> Vec<(f64, f64)> {
     let mut parts = Vec::new();
     let mut at = from;
@@ -56,7 +57,7 @@ pub fn outside(holes: &[(f64, f64)], (from, to): (f64, f64)) -> Vec<(f64, f64)> 
     parts
 }
 
-/// A curve thinned to extremes, with a point that is no number wherever it must not go on.
+/// Curve thinned to extremes, with a NaN point at every gap so that it is interrupted.
 pub fn thinned(prepared: &Prepared, samples: Samples<'_>, times: &[f64], columns: usize) -> Vec<PlotPoint> {
     let (from, to) = prepared.span();
     let mut points = Vec::new();
@@ -77,7 +78,7 @@ pub fn gaps_in(frame: &Frame, holes: &[(f64, f64)]) -> Markup {
     html! { @for hole in holes { (gap(frame.right(hole.0), frame.right(hole.1), height, hole)) } }
 }
 
-/// A band from one edge to the other, with its words.
+/// Band from one edge to the other, with its text.
 pub fn gap(from: f64, to: f64, height: f64, hole: &(f64, f64)) -> Markup {
     html! {
         rect class="gap" x=(short(from)) y="0" width=(short((to - from).max(LEAST))) height=(short(height)) {
@@ -86,7 +87,7 @@ pub fn gap(from: f64, to: f64, height: f64, hole: &(f64, f64)) -> Markup {
     }
 }
 
-/// Marks at the foot of a chart, where one of its channels stands still or at a limit.
+/// Marks at the bottom of a chart, where one of its channels is constant or saturated.
 pub fn marks(frame: &Frame, prepared: &Prepared, names: &[&str]) -> Markup {
     let recording = &prepared.recording;
     let time = |sample: usize| prepared.times.get(sample).copied().unwrap_or(prepared.span().1);
@@ -102,7 +103,7 @@ pub fn marks(frame: &Frame, prepared: &Prepared, names: &[&str]) -> Markup {
     }
 }
 
-/// What the marks and bands in a chart mean, each once; nothing where there are none.
+/// Legend of the marks and bands in a chart, each once; empty without any.
 pub fn keys(prepared: &Prepared, names: &[&str]) -> Markup {
     let shown = marked(&prepared.recording, names);
     html! {
@@ -118,7 +119,7 @@ pub fn names(traces: &[Trace]) -> Vec<&str> {
     traces.iter().map(|t| t.name.as_str()).collect()
 }
 
-/// Marked spans of these channels; one of a whole recording says nothing about where.
+/// Marked spans of these channels; a span of the whole recording is omitted, since it does not locate anything.
 fn marked<'a>(recording: &'a Recording, names: &'a [&str]) -> Vec<(Span, &'static str, &'static str, &'a str)> {
     let mut found = Vec::new();
     for warning in &recording.warnings {

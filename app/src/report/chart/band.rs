@@ -1,4 +1,4 @@
-//! Which state held when, and to which subtask it belongs.
+//! States over time, and the subtask of each.
 
 use super::{LEFT, RIGHT, WIDE, bad, key, short};
 use crate::report::style::state_variable;
@@ -11,12 +11,12 @@ use maud::{Markup, html};
 /// Heights of the band and of the subtasks under it.
 const BAND: f64 = 24.0;
 const SUBTASKS: f64 = 18.0;
-/// Width of a letter of a label, about.
+/// Approximate width of a letter of a label.
 const LETTER: f64 = 6.4;
-/// A piece narrower than this is not drawn by itself.
+/// Minimum width of a separately drawn part.
 const LEAST: f64 = 0.3;
 
-/// The band over the same time as the curves below it; nothing is told of a gap, so nothing is drawn there but the gap.
+/// Band over the same time as the curves below it; a gap contains no states, so only the gap is drawn there.
 pub fn band(segmentation: &Segmentation, span_s: (f64, f64), holes: &[(f64, f64)]) -> Markup {
     let width = WIDE - LEFT - RIGHT;
     let x = |t: f64| LEFT + (t - span_s.0) / (span_s.1 - span_s.0) * width;
@@ -64,7 +64,7 @@ fn piece(segmentation: &Segmentation, interval: &Interval, (from, to): (f64, f64
     }
 }
 
-/// Runs of intervals of one subtask, in pieces where a gap is in between.
+/// Runs of intervals of one subtask, split at gaps.
 fn subtasks(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Vec<(String, f64, f64)> {
     let mut runs: Vec<(String, f64, f64)> = Vec::new();
     for interval in &segmentation.states {
@@ -80,7 +80,7 @@ fn subtasks(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Vec<(String, f
     runs.into_iter().flat_map(pieces).collect()
 }
 
-/// What the states' colours mean, with the share of the recorded time of each.
+/// Legend of the states' colours, with the share of the recorded time of each.
 pub fn legend(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Markup {
     let recorded = |i: &Interval| bad::outside(holes, (i.t0, i.t1)).iter().map(|(from, to)| to - from).sum::<f64>();
     let whole: f64 = segmentation.states.iter().map(recorded).sum();

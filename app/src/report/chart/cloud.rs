@@ -1,4 +1,4 @@
-//! What a model leaves of the measured force, before and after: over time, and against each suspect variable.
+//! Force residuals of the base and the extended model: over time, and against each candidate variable.
 
 use super::{Frame, WIDE, key};
 use crate::ui::plots::{BAND_SIGMAS, Cloud, Residuals, Suspect};
@@ -6,10 +6,11 @@ use egui_plot::PlotPoint;
 use maud::{Markup, html};
 use std::fmt::Write as _;
 
-/// Points of a cloud, at most.
+/// Maximum number of points of a cloud.
 const MOST_DOTS: usize = 1200;
 
-/// All curves of a diagnosis of one recording. `found`: something was found, so that there is an extended model.
+/// All curves of a diagnosis of one recording. `found` is true if a cause was diagnosed, so that there is an extended
+/// model.
 pub fn residuals(curves: &Residuals, found: bool) -> Markup {
     html! {
         figure {

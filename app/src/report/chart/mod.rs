@@ -1,4 +1,5 @@
-//! Pictures as SVG inside the page. Their colours are variables of the page's style, so that light, dark and print differ by the style alone.
+//! Pictures as SVG inside the page. Their colours are variables of the page's style, so light, dark and print differ
+//! only in the style.
 
 mod bad;
 mod band;
@@ -17,9 +18,9 @@ use crate::ui::plots::{decimals, marks};
 use maud::{Markup, html};
 use std::fmt::Write as _;
 
-/// Width of a chart as wide as the page, in its own units.
+/// Width of a chart over the full page width, in its own units.
 pub const WIDE: f64 = 960.0;
-/// Room for the numbers at the left, and at the other edges.
+/// Margin for the numbers on the left, and at the other edges.
 const LEFT: f64 = 50.0;
 const RIGHT: f64 = 8.0;
 const TOP: f64 = 6.0;
@@ -30,11 +31,11 @@ const BOTTOM: f64 = 20.0;
 pub struct Frame {
     /// Whole size.
     pub size: (f64, f64),
-    /// Shown range to the right.
+    /// Horizontal range.
     pub x: (f64, f64),
-    /// Shown range upwards.
+    /// Vertical range.
     pub y: (f64, f64),
-    /// Behind the numbers at the bottom; nothing is written there when absent.
+    /// Unit behind the numbers at the bottom; no numbers if `None`.
     pub x_unit: Option<&'static str>,
 }
 
@@ -45,17 +46,17 @@ impl Frame {
         (self.size.0 - LEFT - RIGHT, self.size.1 - TOP - bottom)
     }
 
-    /// Place of a value to the right, in the area inside.
+    /// Horizontal position of a value, in the inner area.
     pub fn right(&self, x: f64) -> f64 {
         (x - self.x.0) / (self.x.1 - self.x.0) * self.inner().0
     }
 
-    /// Place of a value from the top, in the area inside.
+    /// Vertical position of a value from the top, in the inner area.
     pub fn down(&self, y: f64) -> f64 {
         (self.y.1 - y) / (self.y.1 - self.y.0) * self.inner().1
     }
 
-    /// A line through points, broken where one is no number.
+    /// Path of a line through points, interrupted at non-finite ones.
     pub fn line(&self, points: impl Iterator<Item = (f64, f64)>) -> String {
         let (mut text, mut drawing) = (String::new(), false);
         for (x, y) in points {
@@ -64,7 +65,7 @@ impl Frame {
                 drawing = false;
                 continue;
             }
-            // What is far outside is cut off; numbers as large as that would only make the page long.
+            // Far-off points are clamped; such large numbers would only make the page long.
             let (right, down) = (right.clamp(-1e4, 1e4), down.clamp(-1e4, 1e4));
             let _ = write!(text, "{}{right:.1} {down:.1}", if drawing { 'L' } else { 'M' });
             drawing = true;
@@ -72,7 +73,7 @@ impl Frame {
         text
     }
 
-    /// The chart: grid and numbers, and `inside` cut off at the edges. `says` is read out where the picture is not seen.
+    /// Chart: grid and numbers, with `inside` clipped at the edges. `says` is the text for screen readers.
     pub fn draw(&self, says: &str, inside: &Markup) -> Markup {
         let (width, height) = self.inner();
         let across = marks(self.x, (self.size.0 / 90.0).max(3.0));
@@ -102,13 +103,13 @@ impl Frame {
     }
 }
 
-/// A number of pixels.
+/// Coordinate as a short number, px.
 pub(crate) fn short(value: f64) -> String {
     let text = format!("{value:.1}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// A range that holds all numbers among `values`, with `air` at both ends, never empty.
+/// Range of all finite `values`, with a margin of `air` at both ends; never empty.
 pub fn range_of(values: impl Iterator<Item = f64>, air: f64) -> (f64, f64) {
     let (low, high) = values
         .filter(|v| v.is_finite())

@@ -1,4 +1,4 @@
-//! The path through space, and the constraints that were found over it. Both axes have one scale.
+//! The path in space, with the detected constraints. Both axes have the same scale.
 
 use super::{Frame, bad, key, range_of};
 use crate::ui::prepare::Prepared;
@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 
 /// Sides of the picture.
 const SIZE: (f64, f64) = (470.0, 330.0);
-/// Pieces of a drawn circle.
+/// Number of segments of a drawn circle.
 const PIECES: u32 = 96;
 
-/// The picture; `None` where nothing moves through space.
+/// Picture of the path; `None` if nothing moves in space.
 pub fn path(prepared: &Prepared, constraints: &[&Constraint]) -> Option<Markup> {
     let points: Vec<Vec2> =
         prepared.path_samples.iter().filter_map(|&i| prepared.point_at(i)).map(|p| 1e3 * p).collect();
@@ -48,7 +48,7 @@ pub fn path(prepared: &Prepared, constraints: &[&Constraint]) -> Option<Markup> 
     })
 }
 
-/// Places of the path, mm, with one that is no number in every gap.
+/// Points of the path, mm, with a NaN point in every gap.
 fn course(prepared: &Prepared) -> impl Iterator<Item = (f64, f64)> {
     let runs = bad::stretches(prepared);
     let run = move |i: usize| runs.partition_point(|r| r.end <= i);
@@ -61,7 +61,7 @@ fn course(prepared: &Prepared) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// A constraint to be drawn, mm.
+/// Drawing of a constraint, mm.
 struct Shape {
     name: &'static str,
     line: Vec<Vec2>,
@@ -80,7 +80,7 @@ impl Shape {
     }
 }
 
-/// A circle about its axis, as it is seen from the front.
+/// Circle about its axis, in front view.
 fn circle(constraint: &Constraint) -> Option<Shape> {
     let (center, radius) = (constraint.center_m.as_deref()?, constraint.radius_m?);
     let at = |v: &[f64], k: usize| v.get(k).copied().unwrap_or(0.0);
@@ -96,7 +96,7 @@ fn circle(constraint: &Constraint) -> Option<Shape> {
     Some(Shape { name: "circle that was found", line: (0..=PIECES).map(place).collect(), center: Some(center) })
 }
 
-/// Two directions at right angles to an axis and to each other.
+/// Two directions perpendicular to an axis and to each other.
 fn across(axis: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let cross =
         |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -110,7 +110,7 @@ fn across(axis: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     (u, cross(axis, u))
 }
 
-/// A line through the middle of the path, as long as the path.
+/// Line through the middle of the path, as long as the path.
 fn straight(constraint: &Constraint, points: &[Vec2]) -> Option<Shape> {
     let direction = constraint.direction.as_deref()?;
     let direction = Vec2::new(*direction.first()?, *direction.get(1)?);
@@ -125,7 +125,7 @@ fn straight(constraint: &Constraint, points: &[Vec2]) -> Option<Shape> {
     Some(Shape { name: "line that was found", line, center: None })
 }
 
-/// The curve of a guide, evaluated as a world evaluates it.
+/// Curve of a guide, evaluated as in a world.
 fn guide(constraint: &Constraint) -> Option<Shape> {
     let found = constraint.guide.as_ref()?;
     let points_m: Vec<Vec2> = found.points_m.iter().filter(|p| p.len() > 1).map(|p| Vec2::new(p[0], p[1])).collect();
@@ -135,7 +135,7 @@ fn guide(constraint: &Constraint) -> Option<Shape> {
     (pieces > 0).then_some(Shape { name: "guide that was found", line, center: None })
 }
 
-/// A surface through the touched point, as long as the path.
+/// Surface through the contact point, as long as the path.
 fn surface(constraint: &Constraint, points: &[Vec2]) -> Option<Shape> {
     let touched = constraint.surface.as_ref()?;
     let two = |v: &[f64]| Some(Vec2::new(*v.first()?, *v.get(1)?));
@@ -146,9 +146,9 @@ fn surface(constraint: &Constraint, points: &[Vec2]) -> Option<Shape> {
     Some(Shape { name: "surface that was found", line, center: None })
 }
 
-/// Ranges that hold path and shapes, of one scale both ways.
+/// Ranges of path and shapes, with the same scale on both axes.
 fn frame(points: &[Vec2], shapes: &[Shape]) -> Frame {
-    // A circle that is much larger than its arc would leave nothing of the path.
+    // A circle much larger than its arc would leave nothing of the path visible.
     let seen = |pick: fn(&Vec2) -> f64| {
         let path = range_of(points.iter().map(pick), 0.0);
         let all = range_of(points.iter().chain(shapes.iter().flat_map(|s| &s.line)).map(pick), 0.0);

@@ -1,4 +1,4 @@
-//! Measured curves, and measured against simulated ones.
+//! Measured curves, and measured curves over simulated ones.
 
 use super::{Frame, WIDE, bad, key, range_of};
 use crate::report::collect::Drawn;
@@ -11,11 +11,11 @@ use estimator::segment::{Segmentation, SystemState};
 use haptics::recording::Channel;
 use maud::{Markup, html};
 
-/// Columns that a long curve is thinned to: each keeps its smallest and its largest value.
+/// Number of columns to which a long curve is thinned: each keeps its minimum and maximum.
 const COLUMNS: usize = 900;
 /// Height of a chart.
 const HEIGHT: f64 = 150.0;
-/// Curves of one recording, at most: a table may have thousands of columns.
+/// Maximum number of curves of one recording: a table may have thousands of columns.
 const MOST_CURVES: usize = 24;
 
 /// All measured curves of a recording, a chart for each quantity.
@@ -106,7 +106,7 @@ fn curve(frame: &Frame, points: &[PlotPoint], class: &str, color: &str) -> Marku
     html! { path class=(class) style=(format!("stroke:var(--{color})")) d=(data) {} }
 }
 
-/// A simulated channel with the measured one over it, and what is left between them below, in one unit. `width` in that of the page.
+/// Simulated channel with the measured one over it, and the residual below, in one unit; `width` in units of the page.
 pub fn against_virtual(
     prepared: &Prepared,
     predicted: &Channel,
@@ -148,7 +148,7 @@ pub fn against_virtual(
             }
             (above.draw(&format!("{} measured and simulated", predicted.name), &curves))
             @if let Some(left) = &left {
-                // The same scale as above: what looks small is small.
+                // The same scale as above: a small residual looks small.
                 @let half = 0.5 * (y.1 - y.0);
                 @let below = Frame { size: size(88.0), x: span_s, y: (-half, half), x_unit: Some(time_unit(prepared)) };
                 @let inside = html! {

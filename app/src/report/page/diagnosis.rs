@@ -1,4 +1,4 @@
-//! What the simulation gets wrong: causes with their evidence and gain, what else they could be, what to record next.
+//! Deficits of the simulation: causes with their evidence and gain, alternatives, the next experiment.
 
 use super::failed;
 use crate::diagnosis_words::{
@@ -14,7 +14,7 @@ use estimator::words::amount;
 use haptics::law::{self, Kind};
 use maud::{Markup, html};
 
-/// Digits of a power.
+/// Digits of an exponent.
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// The section.
@@ -64,7 +64,7 @@ fn answer(content: &Content, diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// The same question, with everything that was fitted in the model.
+/// Diagnosis with everything fitted in the model.
 fn calibrated(diagnosis: &Diagnosis) -> Markup {
     html! {
         div class="cause" {
@@ -79,7 +79,7 @@ fn calibrated(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// A parameter with its error and unit.
+/// Parameter with its standard error and unit.
 fn value(p: &CauseParameter) -> String {
     if let Some(said) = said_in_words(p) {
         return said;
@@ -87,7 +87,7 @@ fn value(p: &CauseParameter) -> String {
     format!("{} = {} {}", symbol(&p.name), with_power(p.value, p.std_error), shown_unit(&p.unit)).trim_end().to_owned()
 }
 
-/// `value ± error`; very large and very small ones with their power of ten.
+/// `value ± error`; very large and very small ones with a power of ten.
 fn with_power(value: f64, error: f64) -> String {
     let size = value.abs().max(error);
     let power = if size.is_finite() && size > 0.0 { size.log10().floor() as i32 } else { 0 };
@@ -104,7 +104,7 @@ fn with_power(value: f64, error: f64) -> String {
     format!("({})·10{}", joined(value / scale, error / scale), digits)
 }
 
-/// `weight+load-friction` in words.
+/// Label of a base model such as `weight+load-friction`.
 fn words(model: &str) -> String {
     let parts: Vec<String> = model.split('+').map(|id| title(id).replace('-', " ")).collect();
     if parts.iter().all(|p| p.trim().is_empty()) { "no model".to_owned() } else { listed(&parts) }
@@ -118,7 +118,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// What is left before and after, and the noise, as bars of one scale.
+/// Residual of the base and of the extended model, and the noise, as bars of one scale.
 fn levels(diagnosis: &Diagnosis) -> Markup {
     let unit = compared_unit(diagnosis);
     let (before, after, noise) =
@@ -133,7 +133,7 @@ fn levels(diagnosis: &Diagnosis) -> Markup {
         }
     };
     html! {
-        // Diagnoses of tasks without a force along one coordinate count in other units; their causes say so.
+        // Diagnoses of tasks without a force along one coordinate use other units; their causes say so.
         @if before > 0.0 && !diagnosis.course.instants.is_empty() {
             div class="levels" {
                 (level("Model", before, "simulated"))
@@ -145,7 +145,7 @@ fn levels(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// What is left in every channel and state.
+/// Residual in every channel and state.
 fn by_state(diagnosis: &Diagnosis) -> Markup {
     let all = &diagnosis.residuals;
     html! {
@@ -174,7 +174,7 @@ fn by_state(diagnosis: &Diagnosis) -> Markup {
 }
 
 fn card(rank: usize, cause: &Cause, diagnosis: &Diagnosis) -> Markup {
-    // A description of what is left is no cause: it has no probability and is in no world.
+    // An unnamed residual term is not a cause: it has no probability and is in no world.
     let named = law::cause(&cause.id).is_some();
     let others: Vec<_> = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id).collect();
     html! {

@@ -11,12 +11,12 @@ use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::recording::Task;
 use maud::{Markup, html};
 
-/// So many doubts of a fit are summed up; all of them stand below.
+/// Maximum number of a fit's warnings in the summary; all of them are listed below.
 const MOST_DOUBTS: usize = 3;
-/// What a diagnosis starts from when nothing else is stated.
+/// Name of the base model of a diagnosis by default.
 const PLAIN: &str = "The plain model of the task";
 
-/// Everything about a log, under its name.
+/// All results of a log, under its name.
 pub fn section(number: usize, sheet: &Sheet) -> Markup {
     html! {
         section class="log" id=(format!("log-{number}")) {
@@ -60,7 +60,7 @@ fn kind(content: &Content) -> String {
     }
 }
 
-/// What a reader in a hurry needs.
+/// Summary for a reader in a hurry.
 fn summary(content: &Content) -> Markup {
     let (found, all) = content.identified();
     html! {
@@ -97,7 +97,7 @@ fn summary(content: &Content) -> Markup {
     }
 }
 
-/// What the calibrated world leaves, in one sentence.
+/// Residual of the calibrated world, in one sentence.
 pub fn of_world(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
         Verdict::None => "The world that was calibrated leaves nothing beyond the noise.".to_owned(),
@@ -108,12 +108,12 @@ pub fn of_world(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// What the fit itself says against its answer.
+/// Warnings of the fit itself.
 fn doubts(content: &Content) -> &[String] {
     content.analysis.as_ref().map_or(&[], |analysis| &analysis.fit.warnings)
 }
 
-/// What holds the thing that was moved, in one sentence; nothing where that was not asked, or not told.
+/// Constraint of the moved object, in one sentence; `None` where it was not tested, or is inconclusive.
 fn held_by(content: &Content) -> Option<String> {
     let told = |c: &&Constraint| !matches!(c.kind, ConstraintKind::Free | ConstraintKind::Undecided);
     let all = &content.analysis.as_ref().ok()?.fit.constraints;
@@ -132,10 +132,10 @@ fn held_by(content: &Content) -> Option<String> {
     })
 }
 
-/// A model that misses more than this of the force, in %, does not meet it.
+/// Maximum relative residual of an adequate model, %.
 const MEETS: f64 = 10.0;
 
-/// How well force that the fit did not see is met, and whether that is well.
+/// Agreement with held-out force as text, and true if it is adequate.
 fn agreement(content: &Content) -> Option<(String, bool)> {
     let quality = content.analysis.as_ref().ok()?.fit.quality.as_ref()?;
     let (share, off) = (100.0 * quality.heldout_share, 100.0 * quality.heldout_relative);

@@ -1,4 +1,4 @@
-//! The page itself: an overview, a section for each log, what made it.
+//! The page itself: an overview, a section for each log, provenance.
 
 mod diagnosis;
 mod log;
@@ -14,7 +14,7 @@ use crate::ui::format;
 use crate::ui::session::sentence;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Nothing may be fetched and nothing may run, whatever a file name says.
+/// Content security policy: no fetching and no scripts, whatever a file name contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 /// The whole page.
@@ -44,14 +44,14 @@ pub fn page(title: &str, sheets: &[Sheet], provenance: &Provenance) -> String {
     printable(&whole.into_string())
 }
 
-/// Control characters have no place in HTML; names and sidecars may have them.
+/// Text without control characters, which are invalid in HTML; names and sidecars may contain them.
 fn printable(text: &str) -> String {
     let hidden = |c: char| c.is_control() && c != '\n' && c != '\t';
     let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{fdd0}'..='\u{fdef}');
     text.chars().map(|c| if hidden(c) || turns(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// One line a log.
+/// Table with one line per log.
 fn overview(sheets: &[Sheet]) -> Markup {
     html! {
         section class="card" id="overview" {
@@ -127,7 +127,7 @@ fn repeat(sheets: &[Sheet], provenance: &Provenance) -> Markup {
     }
 }
 
-/// JSON without the room between its words; anything else as it is.
+/// JSON without whitespace between tokens; other text unchanged.
 fn brief(text: &str) -> String {
     let value: Option<serde_json::Value> = serde_json::from_str(text).ok();
     value.map_or_else(|| text.trim().to_owned(), |v| v.to_string().replace(",\"", ", \""))
@@ -148,12 +148,12 @@ fn file(file: &Hashed) -> Markup {
     }
 }
 
-/// A stage that did not succeed.
+/// Message about a failed stage.
 fn failed(what: &str, why: &str) -> Markup {
     html! { p class="failed" { (what) ": " (why.trim_end_matches('.')) "." } }
 }
 
-/// A fact with its name.
+/// Fact with its name.
 fn fact(name: &str, value: &str) -> Markup {
     html! { div { dt { (name) } dd { (value) } } }
 }

@@ -1,4 +1,4 @@
-//! What was recorded, what looks wrong with it, and what happened when.
+//! Content of the recordings, data-quality problems, and states over time.
 
 use super::fact;
 use crate::report::chart;
@@ -10,12 +10,12 @@ use estimator::segment::{Interval, Segmentation};
 use haptics::recording::Recording;
 use maud::{Markup, html};
 
-/// Warnings and channels that are printed: more are told by their number.
+/// Maximum number of printed warnings and channels; the rest is counted.
 const MOST_ROWS: usize = 40;
-/// The same of recordings and intervals, which say little each.
+/// Maximum number of printed recordings and intervals, which are less informative.
 const FEW_ROWS: usize = 16;
 
-/// How long all recordings take.
+/// Total duration of all recordings, as text.
 pub fn length(content: &Content) -> String {
     let total: Option<f64> = content.recordings.iter().map(Recording::duration_s).sum();
     total.map_or_else(|| "no clock".to_owned(), |s| format!("{} s", format::significant(s, 3)))
@@ -59,7 +59,7 @@ fn rate(recordings: &[Recording]) -> String {
     let (low, high) = rates.iter().fold((f64::MAX, 0.0_f64), |(low, high), r| (low.min(*r), high.max(*r)));
     let text = |hz: f64| {
         let digits = format::significant(hz, 4);
-        // Zeros behind the point say nothing.
+        // Trailing zeros after the decimal point carry no information.
         if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.').to_owned() } else { digits }
     };
     if high - low < 1e-3 * high { format!("{} Hz", text(high)) } else { format!("{} … {} Hz", text(low), text(high)) }

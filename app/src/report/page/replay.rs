@@ -1,4 +1,4 @@
-//! Real against virtual: the measured motion through the calibrated world.
+//! Measured vs. simulated: the measured motion through the calibrated world.
 
 use super::failed;
 use crate::diagnosis_words::listed;
@@ -32,14 +32,14 @@ pub fn against_virtual(content: &Content) -> Markup {
     }
 }
 
-/// Why none of the recordings could be simulated: said once.
+/// Common reason why none of the recordings could be simulated.
 fn nowhere(content: &Content) -> Option<&str> {
     let mut reasons = content.drawn.iter().map(|d| d.simulation.as_ref().err());
     let first = reasons.next()??;
     reasons.all(|r| r.is_some()).then_some(first.as_str())
 }
 
-/// What a replay leaves of a channel, and how much of that noise makes, in the channel's unit, RMS.
+/// Residual of a channel's simulation and the part due to noise, in the channel's unit, RMS.
 struct Left<'a> {
     name: &'a str,
     rms: f64,
@@ -53,15 +53,15 @@ impl Left<'_> {
         self.measured.filter(|m| *m > 0.0).map(|measured| self.rms / measured)
     }
 
-    /// Whether noise alone makes what is left.
+    /// True if noise alone explains the residual.
     fn is_noise(&self) -> bool {
         self.noise.is_some_and(|(sensor, own)| self.rms < NOISE_ALONE * sensor.hypot(own))
     }
 }
 
-/// What is left is noise up to this many times what the noise makes: it is known from its white part alone.
+/// Maximum ratio of residual to expected noise for noise alone: only the white part of the noise is known.
 const NOISE_ALONE: f64 = 1.3;
-/// A share of a channel that a reader would not take for nothing.
+/// Share of a channel's residual that a reader would notice.
 const NOTICED: f64 = 0.05;
 
 fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
@@ -69,7 +69,7 @@ fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
         let measured = drawn.prepared.recording.channel(name);
         let simulated = simulation.predicted.iter().find(|c| c.name == *name);
         let noise = measured.zip(simulated).map(|(m, s)| {
-            // Where nothing is touched the simulated force is zero, without any noise.
+            // Without contact the simulated force is zero, without any noise.
             let felt: Vec<f64> = s.values.iter().copied().filter(|v| *v != 0.0).collect();
             (white_noise(m), white_noise(&felt))
         });
@@ -78,7 +78,8 @@ fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
     simulation.residual_rms.iter().map(of).collect()
 }
 
-/// Why a world that "leaves nothing beyond the noise" leaves a share of single channels here; nothing where it does not.
+/// Explanation why a world without a significant residual leaves a share of single channels here; `None` if it does
+/// not.
 pub fn beside_the_diagnosis(content: &Content, diagnosis: &Diagnosis) -> Option<String> {
     if diagnosis.verdict != Verdict::None {
         return None;
@@ -95,7 +96,7 @@ pub fn beside_the_diagnosis(content: &Content, diagnosis: &Diagnosis) -> Option<
     Some(format!("Its replay leaves {} % of {}: {why}.", format::significant(100.0 * share, 2), worst.name))
 }
 
-/// The channels' shares and noise.
+/// Table of the channels' residual shares and noise.
 fn table(all: &[Left<'_>], simulation: &Simulation) -> Markup {
     html! {
         table {
@@ -136,7 +137,7 @@ fn replay(drawn: &Drawn, simulation: &Simulation) -> Markup {
                 ": what was held goes on where the fingers are found again." }
         }
         div class="keys small" { (chart::key("measured", "measured; below: measured less simulated")) (chart::key("simulated", "simulated")) }
-        // One channel has the whole width.
+        // A single channel has the whole width.
         @let alone = simulation.predicted.len() == 1;
         div class=[(!alone).then_some("pair")] {
             @for channel in &simulation.predicted {

@@ -1,4 +1,4 @@
-//! Parameters with their errors, and constraints.
+//! Parameters with their standard errors, and constraints.
 
 use super::{fact, failed};
 use crate::constraint_words;
@@ -9,7 +9,7 @@ use crate::ui::session::sentence;
 use estimator::estimate::{Constraint, ConstraintKind, Parameter};
 use maud::{Markup, html};
 
-/// Constraints that are told one by one.
+/// Maximum number of constraints with a card of their own.
 const MOST_CARDS: usize = 2 * MOST_DRAWN;
 
 /// The table of parameters.
@@ -108,7 +108,7 @@ fn held<'a>(content: &Content, drawn: &Drawn, all: &'a [Constraint]) -> Vec<&'a 
     all.iter().filter(|c| content.recordings.len() == 1 || here(c)).collect()
 }
 
-/// How often each kind was found, where there are too many to print.
+/// Number of constraints of each kind, where there are too many to print.
 fn kinds(all: &[Constraint]) -> Markup {
     let mut counts: Vec<(&'static str, usize)> = Vec::new();
     for constraint in all {
@@ -135,7 +135,7 @@ pub fn title(kind: ConstraintKind) -> &'static str {
     }
 }
 
-/// Coordinates in mm, with the error that holds for each.
+/// Coordinates in mm, with their common standard error.
 fn place(center_m: &[f64], error_m: Option<f64>) -> String {
     let error = error_m.map(|e| 1e3 * e);
     let numbers: Vec<String> = center_m.iter().map(|c| format::with_error(1e3 * c, error).0).collect();

@@ -1,4 +1,4 @@
-//! What could not be known, and what would show it.
+//! Parameters and effects that are not identifiable, and the motion that would reveal them.
 
 use crate::diagnosis_words::{listed, title};
 use crate::report::collect::{Content, is_lost};
@@ -56,15 +56,15 @@ pub fn unknown(content: &Content) -> Markup {
     }
 }
 
-/// The motion that would show a parameter.
+/// Motion that would make a parameter identifiable.
 fn missing(content: &Content, parameter: &Parameter) -> Option<String> {
     let enough = content.enough.iter().find(|e| e.object == parameter.object && e.name == parameter.name)?;
     let words = &enough.missing.as_ref()?.words;
-    // Where the reason names the motion already, it is not told twice.
+    // If the reason already names the motion, it is not repeated.
     (!parameter.how.contains(words.as_str())).then(|| words.trim_end_matches('.').to_owned())
 }
 
-/// Effects that one and the same thing hides.
+/// Effects grouped by the reason that hides them.
 fn by_reason(all: &[NotExcited]) -> Vec<(&str, Vec<&str>)> {
     let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
     for hidden in all {

@@ -1,10 +1,10 @@
-//! What the actions look like in menus and in the palette.
+//! Appearance of the actions in menus and in the palette.
 
 use super::Action;
 use crate::ui::icons::Icon;
 
 impl Action {
-    /// Its icon; those that are one of a list of names have that of the list.
+    /// Icon of the action; an entry of a list has the icon of the list.
     pub fn icon(&self) -> Option<Icon> {
         Some(match self {
             Self::OpenLog | Self::OpenRecent(_) | Self::OpenProject => Icon::Open,

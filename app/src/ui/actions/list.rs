@@ -1,4 +1,4 @@
-//! The list: names, keys, groups, and what is in the way.
+//! The list of actions: names, keys, groups, and reasons against them.
 
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
@@ -9,12 +9,12 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
 use strum::{EnumIter, IntoEnumIterator as _};
 
-/// One thing that can be done. Those without particulars stand first, in the order of the menus.
+/// One action. Variants without arguments come first, in the order of the menus.
 #[derive(Clone, Debug, PartialEq, EnumIter)]
 pub enum Action {
     /// Chooses a log.
     OpenLog,
-    /// Adds another recording to those that are open.
+    /// Adds a recording to the open ones.
     AddLog,
     /// Chooses a video of the hand.
     AddVideo,
@@ -22,9 +22,9 @@ pub enum Action {
     OpenWorld,
     /// Chooses a project.
     OpenProject,
-    /// Writes the project where it was opened.
+    /// Saves the project to its file.
     SaveProject,
-    /// Writes it elsewhere.
+    /// Saves the project to another file.
     SaveProjectAs,
     /// Writes the shown recording.
     SaveLog,
@@ -36,127 +36,127 @@ pub enum Action {
     Report,
     /// Reads the same files again.
     Reload,
-    /// Says what columns mean.
+    /// Opens the mapping dialog for the columns.
     MapColumns,
     /// Ends the program.
     Quit,
-    /// Takes the last change back.
+    /// Undoes the last change.
     Undo,
-    /// Brings it back.
+    /// Redoes it.
     Redo,
-    /// Goes back to the states that were found.
+    /// Restores the detected states.
     ForgetStates,
-    /// Forgets what is stated of parameters.
+    /// Clears the values that the user has set for parameters.
     ForgetStated,
-    /// Fits with what is chosen.
+    /// Fits with the current settings.
     Fit,
-    /// Fits only what the plots show.
+    /// Fits the visible time range only.
     FitShown,
-    /// Fits all of the recording.
+    /// Fits the whole recording.
     FitWhole,
-    /// The rules of the task.
+    /// Opens the rules of the task.
     Rules,
-    /// Names what the model gets wrong.
+    /// Diagnoses what the base model misses.
     Diagnose,
-    /// Takes it into the model.
+    /// Adds the diagnosed causes to the model.
     Extend,
-    /// Takes the worlds before and after into the trainer.
+    /// Loads the base and the extended world into the trainer.
     Feel,
-    /// Takes the calibrated world into the trainer.
+    /// Loads the calibrated world into the trainer.
     TrainCalibrated,
-    /// Makes a lesson of it.
+    /// Makes a lesson of the calibrated world.
     PractiseOnThis,
-    /// Says over the trainer's picture what is known, and warns; or not.
+    /// Switches the assistant over the trainer's picture on or off.
     Assistant,
-    /// Puts everything in Train back where it started.
+    /// Resets everything in Train to its start.
     StartOver,
-    /// Lets the expert show the open lesson.
+    /// Starts the expert's demonstration of the open lesson.
     Watch,
-    /// Tries it.
+    /// Starts practice of the open lesson.
     Practise,
-    /// Takes its test.
+    /// Starts the test of the open lesson.
     TakeTest,
-    /// Begins or ends a recording.
+    /// Starts or ends a recording.
     Record,
-    /// Plays or stops.
+    /// Plays or pauses.
     Play,
-    /// To the beginning.
+    /// Moves the cursor to the start.
     ToStart,
-    /// To the end.
+    /// Moves the cursor to the end.
     ToEnd,
     /// Shows the whole recording.
     ShowAll,
     /// Opens a workspace.
     Open(Workspace),
-    /// Titles on every panel, to move them.
+    /// Shows a title on every panel, to move it.
     Arrange,
-    /// The standard arrangement.
+    /// Restores the standard layout.
     ResetLayout,
-    /// Gives the arrangement a name.
+    /// Saves the layout under a name.
     SaveLayout,
-    /// Another name for the open one.
+    /// Renames the open layout.
     RenameLayout,
-    /// Forgets the open one's name.
+    /// Deletes the open layout's name.
     DeleteLayout,
     /// Shows or hides a panel.
     Panel(Pane),
-    /// The other theme.
+    /// Switches the theme.
     Theme,
-    /// Larger.
+    /// Enlarges the window's content.
     Larger,
-    /// Smaller.
+    /// Shrinks the window's content.
     Smaller,
-    /// As the system has it.
+    /// Restores the system's zoom.
     UsualSize,
-    /// All of the screen.
+    /// Switches full screen.
     FullScreen,
-    /// Every action by its name.
+    /// Opens the palette of all actions.
     Palette,
-    /// What is where.
+    /// Opens the tour.
     Tour,
-    /// Opens a file that was open before.
+    /// Opens a recent file.
     #[strum(disabled)]
     OpenRecent(PathBuf),
     /// Shows another recording.
     #[strum(disabled)]
     Select(usize),
-    /// Puts the time cursor there.
+    /// Moves the time cursor.
     #[strum(disabled)]
     GoTo {
-        /// In words.
+        /// Name of the target.
         what: String,
-        /// From, s.
+        /// Start, s.
         from_s: f64,
-        /// To, s.
+        /// End, s.
         to_s: f64,
     },
     /// Answers the lesson's question.
     #[strum(disabled)]
     Answer(usize, String),
-    /// Opens a lesson, by its name.
+    /// Opens a lesson by its name.
     #[strum(disabled)]
     Lesson(String),
-    /// An arrangement by its name.
+    /// Opens a layout by its name.
     #[strum(disabled)]
     Layout(String),
 }
 
-/// Where an action stands in menus.
+/// Menu of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Files.
     File,
-    /// Changes, and how to take them back.
+    /// Changes and undo.
     Edit,
     /// Fit, diagnose, extend.
     Calibrate,
     /// Time.
     Time,
-    /// Looks.
+    /// Appearance.
     View,
     /// Help.
     Help,
-    /// Places in the recording: the palette only.
+    /// Positions in the recording: the palette only.
     Places,
 }
 
@@ -164,7 +164,7 @@ impl Group {
     /// The menus.
     pub const MENUS: [Self; 6] = [Self::File, Self::Edit, Self::Calibrate, Self::Time, Self::View, Self::Help];
 
-    /// For people.
+    /// Title for the user.
     pub fn title(self) -> &'static str {
         match self {
             Self::File => "File",
@@ -179,7 +179,7 @@ impl Group {
 }
 
 impl Action {
-    /// Everything that the window as it is offers.
+    /// All actions that the window currently offers.
     pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
         let session = &app.session;
         let layouts = app.dock.names(session.workspace).map(|name| Self::Layout(name.to_owned()));
@@ -213,7 +213,7 @@ impl Action {
         all.into_iter()
     }
 
-    /// What it is called.
+    /// Title for the user.
     pub fn title(&self) -> String {
         match self {
             Self::OpenRecent(path) => {
@@ -292,7 +292,7 @@ impl Action {
         }
     }
 
-    /// What the palette looks for: the title, and other words for it.
+    /// Search text of the palette: the title and its synonyms.
     pub fn search_text(&self) -> String {
         let also = match self {
             Self::Fit => " refit estimate",
@@ -311,7 +311,7 @@ impl Action {
         self.title() + also
     }
 
-    /// Its keys.
+    /// Keyboard shortcut.
     pub fn keys(&self) -> Option<KeyboardShortcut> {
         let ctrl = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
         let more = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key));
@@ -346,12 +346,12 @@ impl Action {
         }
     }
 
-    /// Keys that mean nothing to a text field.
+    /// True if a text field does not use the shortcut.
     pub fn works_while_typing(&self) -> bool {
         matches!(self, Self::Reload | Self::FullScreen | Self::Tour)
     }
 
-    /// Its menu.
+    /// Menu of the action.
     pub fn group(&self) -> Group {
         match self {
             Self::OpenLog
@@ -395,7 +395,7 @@ impl Action {
         }
     }
 
-    /// What is in the way, in a sentence; `None` where nothing is.
+    /// Reason against the action, as a sentence; `None` if it is available.
     pub fn why_not(&self, app: &App) -> Option<&'static str> {
         let session = &app.session;
         let loaded = !session.recordings.is_empty();
@@ -442,7 +442,7 @@ impl Action {
         }
     }
 
-    /// True or false for what is on or off.
+    /// State of a toggle; `None` for other actions.
     pub fn is_on(&self, app: &mut App) -> Option<bool> {
         match self {
             Self::Panel(pane) => Some(app.dock.has(app.session.workspace, *pane)),
@@ -455,7 +455,7 @@ impl Action {
     }
 }
 
-/// Subtasks, states and warnings of the shown recording.
+/// Positions of subtasks, states and warnings of the shown recording.
 fn places(session: &Session) -> Vec<Action> {
     let Some(segmentation) = session.segmentation() else { return Vec::new() };
     let mut places: Vec<Action> = Vec::new();

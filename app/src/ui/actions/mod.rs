@@ -1,4 +1,4 @@
-//! Everything that can be done in the window, once: menus, keys, the command palette and tooltips take it from here.
+//! Every action of the window, once: menus, keys, the command palette and tooltips take it from here.
 
 mod faces;
 mod list;
@@ -9,33 +9,33 @@ pub use list::{Action, Group};
 use super::app::App;
 use egui::{KeyboardShortcut, Ui};
 
-/// Does whatever the pressed keys ask for; call once a frame, while no dialog is open.
+/// Runs the actions of the pressed keys; called once per frame, while no dialog is open.
 pub fn keys(ui: &Ui, app: &mut App) {
     let ctx = ui.ctx().clone();
     let typing = ctx.egui_wants_keyboard_input();
-    // Shift or Alt more makes another shortcut: those with the most modifiers come first.
+    // Additional Shift or Alt makes another shortcut: those with the most modifiers come first.
     let mut all: Vec<(Action, KeyboardShortcut)> =
         Action::all(app).filter_map(|a| a.keys().map(|keys| (a, keys))).collect();
     all.sort_by_key(|(_, k)| std::cmp::Reverse(usize::from(k.modifiers.shift) + usize::from(k.modifiers.alt)));
     for (action, keys) in all {
-        // While somebody writes, letters are letters.
+        // While a text field has the focus, letters are text.
         let plain = keys.modifiers.is_none() && !action.works_while_typing();
         if plain && typing {
             continue;
         }
-        // A key that asks for nothing here is left to the panels: in Train the space bar pinches.
+        // A key without an available action is left to the panels: in Train the space bar pinches.
         if action.why_not(app).is_none() && ctx.input_mut(|i| i.consume_shortcut(&keys)) {
             action.run(&ctx, app);
         }
     }
 }
 
-/// Keys as they are printed, e.g. `Ctrl+Z`.
+/// Display text of a shortcut, e.g. `Ctrl+Z`.
 pub fn key_text(ui: &Ui, action: &Action) -> String {
     action.keys().map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default()
 }
 
-/// Actions that the window as it is offers, best match of `query` first; all of them for an empty one.
+/// Actions that the window currently offers, best match of `query` first; all of them for an empty one.
 pub fn matching(app: &App, query: &str) -> Vec<Action> {
     if query.trim().is_empty() {
         return Action::all(app).collect();
@@ -48,17 +48,18 @@ pub fn matching(app: &App, query: &str) -> Vec<Action> {
     scored.into_iter().map(|(_, _, action)| action).collect()
 }
 
-/// How well `text` answers `query`: its letters in order, better at the starts of words and side by side. `None`: not at all.
+/// Match of `text` with `query`: its letters in order, better at the starts of words and side by side. `None` without a
+/// match.
 fn score(text: &str, query: &str) -> Option<i64> {
     let text: Vec<char> = text.to_lowercase().chars().collect();
     let query: Vec<char> = query.to_lowercase().chars().filter(|c| !c.is_whitespace()).collect();
-    // The best place of every letter, given the best places of those before it.
+    // Best score up to every letter, given the best scores before it.
     let mut best: Vec<Option<i64>> = vec![Some(0); text.len() + 1];
     for (k, wanted) in query.iter().enumerate() {
         let mut next = vec![None; text.len() + 1];
         let mut before: Option<i64> = None;
         for (i, letter) in text.iter().enumerate() {
-            // Any place so far, or the one just before.
+            // Any position so far, or the one just before.
             before = before.max(best[i]);
             if letter == wanted {
                 let starts = i == 0 || !text[i - 1].is_alphanumeric();
@@ -78,7 +79,7 @@ fn score(text: &str, query: &str) -> Option<i64> {
         best = next;
     }
     let reached = best.iter().flatten().max().copied()?;
-    // Of equal matches the shorter text.
+    // Among equal matches the shorter text wins.
     Some(reached * 100 - i64::try_from(text.len()).ok()?)
 }
 

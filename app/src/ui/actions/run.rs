@@ -1,4 +1,4 @@
-//! What actions do.
+//! Execution of the actions.
 
 use super::Action;
 use crate::ui::app::App;
@@ -10,13 +10,13 @@ use crate::ui::rules::Rules;
 use crate::ui::session::{Session, Tone, Workspace};
 use egui::{Context, ViewportCommand};
 
-/// Steps of the size of everything.
+/// Step of the zoom.
 const SIZE_STEP: f32 = 0.1;
-/// Smallest and largest size.
+/// Minimum and maximum zoom.
 const SIZES: (f32, f32) = (0.6, 3.0);
 
 impl Action {
-    /// Does it.
+    /// Runs the action.
     pub fn run(&self, ctx: &Context, app: &mut App) {
         match self {
             Self::Panel(pane) => app.dock.toggle(app.session.workspace, *pane),
@@ -113,7 +113,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Select(index) => session.select(*index),
         Action::GoTo { from_s, to_s, .. } => session.look_at(*from_s, *to_s),
         Action::Open(workspace) => session.workspace = *workspace,
-        // Those of the window.
+        // Actions of the window.
         _ => {}
     }
 }

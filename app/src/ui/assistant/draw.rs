@@ -1,4 +1,5 @@
-//! The assistant's marks over the picture: a plate beside what is held, lines of warnings, and marks where they are about.
+//! The assistant's marks over the picture: a plate beside the held object, warning lines, and marks at the places
+//! concerned.
 
 use super::words::{self, Urgency};
 use super::{Assistant, Circle, Said, said};
@@ -16,23 +17,23 @@ use render::ColorRole;
 
 /// Half axes of an ellipse that holds 95 % of a normal distribution in the plane, in standard errors: √χ²₂(0.95).
 const ELLIPSE_95: f64 = 2.4477;
-/// Width of the plate, points, and how far it stands from the middle of what is held.
+/// Width of the plate, points, and its distance from the centre of the held object.
 const PLATE: f32 = 198.0;
 const ASIDE: f32 = 128.0;
-/// A narrower picture has no room for it, points.
+/// Minimum width of a picture with room for the plate, points.
 const ROOM: f32 = 480.0;
-/// Where the lines of warnings begin below the picture's upper edge, points: under the hint.
+/// Distance of the warning lines from the picture's upper edge, points: below the hint.
 const BELOW_HINT: f32 = 48.0;
-/// Length of a line along which something pulls whose end is not known, m.
+/// Length of the line of a pull whose anchor is unknown, m.
 const RAY_M: f64 = 0.06;
-/// Half of the arc of the workspace's edge that is drawn, rad.
+/// Half of the drawn arc of the workspace's edge, rad.
 const ARC_RAD: f64 = 0.35;
 
-/// What the spare grip is, for those who ask.
+/// Explanation of the slip margin, on request.
 const ABOUT_SLIP: &str = "Share of the friction that is free. The friction is not known before it slips: it is above what has held so \
                           far, and otherwise as that of foam or rubber pads (0.4 to 1.6). In brackets: nineteen of twenty frictions";
 
-/// Draws what there is to say over the trainer's picture.
+/// Draws the assistant's output over the trainer's picture.
 pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
     let Some(said) = said(session) else { return };
     let parts = session.assistant;
@@ -62,7 +63,7 @@ pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
     }
 }
 
-/// Warnings and what was found, one pill a line, under the hint.
+/// Draws warnings and findings, one pill per line, below the hint.
 fn lines(ui: &mut Ui, rect: Rect, said: &Said, warnings: &[&Warning], parts: Assistant) {
     let mut all: Vec<(String, Urgency)> = warnings.iter().map(|w| words::warning(w)).collect();
     if parts.constraint {
@@ -96,7 +97,7 @@ fn ink(ui: &Ui, urgency: Urgency) -> Color32 {
     }
 }
 
-/// What is known of the object in the hand, beside it.
+/// Draws the estimates of the held object beside it.
 fn plate(ui: &mut Ui, view: &SceneResponse, held: &Held, at_m: Vec2, parts: Assistant) {
     let lines = words::held(held, parts);
     let guess = held.contents.as_ref().filter(|_| parts.contents);
@@ -111,7 +112,7 @@ fn plate(ui: &mut Ui, view: &SceneResponse, held: &Held, at_m: Vec2, parts: Assi
         + if slip.is_some() { 30.0 } else { 0.0 };
     let at = on_screen(ui, view, at_m);
     let room = view.rect.shrink(space::M).with_max_y(view.rect.bottom() - 44.0);
-    // On the side that has more room, so that it does not jump about.
+    // On the side with more room, with hysteresis against jumps.
     let right = at.x < room.center().x + 0.25 * room.width();
     let x = if right { at.x + ASIDE } else { at.x - ASIDE - PLATE };
     let corner = Pos2::new(
@@ -163,7 +164,7 @@ fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
     view.rect.min + vec2(pixel.x, pixel.y) / ui.pixels_per_point()
 }
 
-/// Marks at places of the world.
+/// Marks at positions of the world.
 struct Canvas<'a> {
     ui: &'a Ui,
     view: &'a SceneResponse,
@@ -178,7 +179,7 @@ impl Canvas<'_> {
         self.ui.painter().with_clip_rect(self.view.rect)
     }
 
-    /// A line that is legible over bright metal and dark ground alike.
+    /// Draws a line that is legible on both bright metal and dark ground.
     fn line(&self, points: Vec<Pos2>, width: f32, color: Color32) {
         let painter = self.painter();
         let halo = palette(self.ui).card.gamma_multiply(0.7);
@@ -190,14 +191,14 @@ impl Canvas<'_> {
         self.painter().extend(Shape::dashed_line(points, Stroke::new(2.0, color), 6.0, 5.0));
     }
 
-    /// A ring around a finger that presses too hard.
+    /// Draws a ring around a finger that presses too hard.
     fn force(&self, tip_m: Vec2, over: bool) {
         let p = palette(self.ui);
         let color = if over { p.danger } else { p.caution };
         self.painter().circle_stroke(self.at(tip_m), 17.0, Stroke::new(if over { 4.0 } else { 2.5 }, color));
     }
 
-    /// From what moves to what it will hit.
+    /// Draws the path from a moving object to the predicted impact.
     fn collision(&self, met: &Collision) {
         let color = palette(self.ui).caution;
         let (from, to) = (self.at(met.from_m), self.at(met.to_m));
@@ -207,7 +208,7 @@ impl Canvas<'_> {
         painter.circle_stroke(to, 9.0, Stroke::new(2.0, color));
     }
 
-    /// The piece of the workspace's edge that is near.
+    /// Draws the nearby arc of the workspace's edge.
     fn edge(&self, session: &Session, at_m: Vec2) {
         const PIECES: u32 = 24;
         let Some((_, world)) = session.trainer.scene() else { return };
@@ -220,7 +221,7 @@ impl Canvas<'_> {
         self.line(arc.collect(), 3.0, palette(self.ui).caution);
     }
 
-    /// What holds an object: the line along which it pulls, and where it is tied with 95 % certainty.
+    /// Draws the constraint of an object: the line of the pull, and the 95 % region of its anchor.
     fn pull(&self, pull: &Pull) {
         let color = role(self.ui.visuals().dark_mode, ColorRole::Constraint);
         let Some(along) = pull.force_n.try_normalize(1e-9) else { return };
@@ -231,7 +232,7 @@ impl Canvas<'_> {
             self.painter().circle_filled(self.at(anchor.at_m), 3.0, color);
             return;
         }
-        // As wide as the direction is uncertain.
+        // Opening by the uncertainty of the direction.
         let turn = 2.0 * (pull.std_error_n / pull.force_n.norm()).min(0.7);
         for side in [-turn, turn] {
             let (sin, cos) = side.sin_cos();
@@ -241,7 +242,7 @@ impl Canvas<'_> {
         self.line(vec![self.at(pull.at_m), self.at(pull.at_m + RAY_M * along)], 2.0, color);
     }
 
-    /// The circle that a handle was found to go round, and its centre.
+    /// Draws the detected circle of a handle, and its centre.
     fn circle(&self, circle: &Circle) {
         let color = role(self.ui.visuals().dark_mode, ColorRole::Constraint);
         let radius = circle.radius.value;

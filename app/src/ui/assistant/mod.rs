@@ -1,5 +1,5 @@
-//! The assistant over the trainer's picture: what is in the hand, what is about to go wrong, what was found to hold. Which of it is shown
-//! is the user's choice; in a test nobody helps.
+//! The assistant over the trainer's picture: held object, imminent problems, detected constraints. The user chooses the
+//! parts; in a test the assistant is off.
 
 mod draw;
 mod words;
@@ -15,27 +15,27 @@ use haptics::Vec2;
 use haptics::world::{Block, Shape, State, World};
 use serde::{Deserialize, Serialize};
 
-/// Parts of the assistant that are switched on.
+/// Switches of the assistant's parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-// One switch for each part is what the user sees.
+// The user sees one switch per part.
 #[allow(clippy::struct_excessive_bools)]
 pub struct Assistant {
-    /// All of it.
+    /// True if the assistant is on.
     pub on: bool,
-    /// Weight, width and stiffness of what is held.
+    /// Weight, width and stiffness of the held object.
     pub held: bool,
-    /// How near it is to slipping.
+    /// Slip margin.
     pub slip: bool,
-    /// What may be in it.
+    /// Likely contents.
     pub contents: bool,
-    /// Warning of too much force.
+    /// Warning of excessive force.
     pub force: bool,
-    /// Warning of a blow that comes.
+    /// Warning of an imminent impact.
     pub collision: bool,
-    /// Warning of the edge of the workspace.
+    /// Warning at the edge of the workspace.
     pub edge: bool,
-    /// Draws what holds an object.
+    /// Constraint of an object, drawn.
     pub constraint: bool,
 }
 
@@ -54,7 +54,7 @@ impl Default for Assistant {
     }
 }
 
-/// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius, m.
+/// Detected circle of a handle: centre, m, with the standard errors of its coordinates, and radius, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Circle {
     center_m: Vec2,
@@ -62,22 +62,22 @@ struct Circle {
     radius: Known,
 }
 
-/// What there is to say at one moment.
+/// Content of the assistant at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Said {
     held: Option<Held>,
-    /// Middle of what is held, m in the world.
+    /// Centre of the held object, m in the world.
     held_at_m: Vec2,
     warnings: Warnings,
     pulls: Vec<Pull>,
     circle: Option<Circle>,
 }
 
-/// Why nothing is said now, in a sentence; `None` while it is.
+/// Reason for the assistant's silence, as a sentence; `None` while it is active.
 pub fn silent(session: &Session) -> Option<&'static str> {
     match session.lessons.open.as_ref()?.phase {
         Phase::Testing | Phase::Asking => Some("In a test you are on your own."),
-        // The world stands still behind what came of it.
+        // The world is paused behind the result.
         Phase::Grading | Phase::Debrief(_) => Some("The attempt is over. It goes on with the next one."),
         Phase::Brief | Phase::Watching | Phase::Practising => None,
     }
@@ -104,7 +104,7 @@ fn said(session: &Session) -> Option<Said> {
     })
 }
 
-/// The most that a finger should press, N: by the lesson, or what the servo sends at most.
+/// Maximum force of a finger, N: the limit of the lesson, or of the servo.
 fn limit_n(session: &Session) -> f64 {
     let by_lesson = session.lessons.open.as_ref().map(|open| open.lesson.limit_n);
     by_lesson.unwrap_or_else(|| max_force_n(&session.trainer))
@@ -114,7 +114,7 @@ fn max_force_n(trainer: &Trainer) -> f64 {
     trainer.config().limits.max_force_n
 }
 
-/// What one sees of a body without touching it, and what such a vessel weighs when it is empty.
+/// Visible properties of a body before any touch, and the empty weight of such a vessel.
 fn look(world: &World, body: Option<usize>) -> Look {
     let Some(block) = body.and_then(|k| world.blocks.get(k)) else { return Look::default() };
     Look {
@@ -126,10 +126,10 @@ fn look(world: &World, body: Option<usize>) -> Look {
     }
 }
 
-/// What a needle is called: its sheet bears and pulls it, and its weight is not told.
+/// Name of a needle: the membrane supports and pulls it, so its weight is not shown.
 pub const NEEDLE: &str = "needle";
 
-/// What anybody sees that a thing is, where it is neither block nor barrel.
+/// Visible kind of an object that is neither block nor barrel.
 fn called(block: &Block) -> Option<&'static str> {
     match block.shape {
         Shape::Needle => Some(NEEDLE),
@@ -138,7 +138,7 @@ fn called(block: &Block) -> Option<&'static str> {
     }
 }
 
-/// The same for the only thing of a world; the estimator beside the servo knows no names.
+/// The same for the only object of a world; the estimator beside the servo knows no names.
 pub fn only_thing(world: &World) -> Option<&'static str> {
     match world.blocks.as_slice() {
         [only] => called(only),

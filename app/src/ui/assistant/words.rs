@@ -1,22 +1,22 @@
-//! What the assistant says, in words: every number with its error.
+//! Texts of the assistant: every number with its standard error.
 
 use super::{Assistant, Circle};
 use crate::ui::format::{number, object, with_error};
 use estimator::assistant::{Guess, Held, Known, Slip, Warning};
 use estimator::online::Pull;
 
-/// How much a line matters.
+/// Urgency of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Urgency {
-    /// Good to know.
+    /// Information.
     Note,
-    /// Look out.
+    /// Warning.
     Caution,
-    /// Now.
+    /// Immediate danger.
     Danger,
 }
 
-/// Label and value of each line about what is held.
+/// Label and value of each line about the held object.
 pub(super) fn held(held: &Held, parts: Assistant) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     let mut push = |label: &'static str, known: Option<Known>, factor: f64, unit: &str| {
@@ -36,10 +36,10 @@ pub(super) fn held(held: &Held, parts: Assistant) -> Vec<(&'static str, String)>
     lines
 }
 
-/// Value ± error with its unit.
+/// Value ± standard error with its unit.
 fn value(known: Known, factor: f64, unit: &str) -> String {
     let (value, error) = (known.value * factor, known.std_error * factor);
-    // One digit of the error is enough for a glance.
+    // One digit of the standard error is enough for a glance.
     let decimals = if error > 0.0 { (-error.log10().floor()).clamp(0.0, 6.0) as usize } else { 3 };
     format!("{} ± {} {unit}", number(value, decimals), number(error, decimals))
 }
@@ -59,7 +59,7 @@ fn percent(p: f64) -> String {
     number(100.0 * p.min(0.99), 0)
 }
 
-/// How near it is to slipping: the words, and how much it matters.
+/// Slip margin: text and urgency.
 pub(super) fn slip(slip: &Slip) -> (String, Urgency) {
     let urgency = match slip.by_a_jolt {
         p if p > 0.5 => Urgency::Danger,
@@ -103,7 +103,7 @@ pub(super) fn warning(warning: &Warning) -> (String, Urgency) {
     }
 }
 
-/// What holds an object.
+/// Text about the constraint of an object.
 pub(super) fn pull(pull: &Pull) -> String {
     let (force, error) = with_error(pull.force_n.norm(), Some(pull.std_error_n));
     let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
@@ -117,7 +117,7 @@ pub(super) fn pull(pull: &Pull) -> String {
     }
 }
 
-/// A circle that was found.
+/// Text about a detected circle.
 pub(super) fn circle(circle: &Circle) -> String {
     let center = number(1e3 * circle.center_error_m.norm(), 2);
     format!("It turns on a circle: radius {}, centre ± {center} mm", value(circle.radius, 1e3, "mm"))

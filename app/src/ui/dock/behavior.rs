@@ -1,4 +1,4 @@
-//! How tiles look and what may be done with them.
+//! Appearance of tiles, and operations allowed on them.
 
 use super::layout::GAP;
 use super::{Pane, Panels};
@@ -7,18 +7,18 @@ use crate::ui::theme::{self, Palette};
 use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 
-/// Height of titles.
+/// Height of titles, points.
 const TITLES: f32 = 28.0;
-/// No panel is dragged smaller.
+/// Minimum size of a panel, points.
 const LEAST: f32 = 120.0;
 
 /// Draws the panels of a session.
 pub struct Tiling<'a> {
     pub panels: &'a mut Panels,
     pub session: &'a mut Session,
-    /// Every panel has its title.
+    /// True if every panel shows its title.
     pub arranging: bool,
-    /// Set when the user moves something.
+    /// True once the user has moved something.
     pub edited: bool,
 }
 

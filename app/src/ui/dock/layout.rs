@@ -1,4 +1,4 @@
-//! The standard arrangements, and widths that suit the window.
+//! The standard layouts, and column widths for the window.
 
 use super::Pane;
 use crate::ui::session::{Session, Workspace};
@@ -7,14 +7,14 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
 use strum::IntoEnumIterator as _;
 
-/// Between panels, and around them.
+/// Gap between panels, and around them, points.
 pub const GAP: f32 = 12.0;
-/// Height that plots need to be read, points.
+/// Height of readable plots, points.
 const PLOTS: f32 = 446.0;
 /// Width of the trainer's side, points.
 const TRAINER_SIDE: f32 = 312.0;
 
-/// The arrangement that a workspace begins with.
+/// Standard layout of a workspace.
 pub fn standard(workspace: Workspace) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let root = match workspace {
@@ -31,7 +31,7 @@ pub fn standard(workspace: Workspace) -> Tree<Pane> {
     Tree::new(egui::Id::unique(("dock", workspace)), root, tiles)
 }
 
-/// The panels in it.
+/// Panels of the standard layout.
 pub fn standard_panes(workspace: Workspace) -> BTreeSet<Pane> {
     let tree = standard(workspace);
     Pane::iter().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
@@ -42,14 +42,14 @@ fn side_by_side(tiles: &mut Tiles<Pane>, panes: [Pane; 2]) -> TileId {
     tiles.insert_horizontal_tile(children)
 }
 
-/// Gives the columns of an arrangement that nobody has moved the widths that suit the room.
+/// Sets the columns of an unmodified layout to widths for the available space.
 pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &Session) {
     let wide = room.x - 2.0 * GAP;
     match workspace {
         Workspace::Calibrate => {
             let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
-            // The rules need more room than the picture.
+            // The rules need more space than the picture.
             let upper =
                 if session.rules.is_some() { 0.48 * room.y } else { (0.40 * room.y).min(room.y - PLOTS).max(150.0) };
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
@@ -69,10 +69,10 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
     }
 }
 
-/// Puts the controls of the trainer left or right of its picture.
+/// Puts the trainer's controls left or right of its picture.
 fn side_first(tree: &mut Tree<Pane>, left: bool) {
     let (Some(pane), Some(root)) = (tree.tiles.find_pane(&Pane::TrainerSide), tree.root()) else { return };
-    // A pane stands in the row itself, or in a card of titles there.
+    // A pane is in the row itself, or in a tab container there.
     let holder = tree.tiles.parent_of(pane).filter(|holder| *holder != root);
     if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(root) {
         let is_side = |child: &TileId| *child == pane || Some(*child) == holder;
@@ -80,8 +80,8 @@ fn side_first(tree: &mut Tree<Pane>, left: bool) {
     }
 }
 
-/// Shares of the outermost columns, or of the rows within one: given sizes, and one that takes the rest. Where panels were taken out or
-/// brought in there, shares stay as they are.
+/// Sets the shares of the outermost columns, or of the rows within one: given sizes, and one that takes the rest.
+/// Shares stay as they are where panels were added or removed.
 fn columns(tree: &mut Tree<Pane>, dir: LinearDir, widths: &[Option<f32>], room: f32) {
     let gaps = GAP * (widths.len() as f32 - 1.0);
     let rest = (room - gaps - widths.iter().flatten().sum::<f32>()).max(1.0);

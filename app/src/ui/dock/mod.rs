@@ -1,6 +1,8 @@
-//! Where panels stand: tiles that can be resized, dragged into tabs, closed and brought back; one arrangement a workspace.
+//! Positions of the panels: tiles that can be resized, dragged into tabs, closed and restored; one layout per
+//! workspace.
 //!
-//! As long as nothing was moved, columns keep widths that suit the window ([`layout`]); afterwards the shares are the user's.
+//! As long as nothing was moved, columns keep widths that match the window ([`layout`]); afterwards the shares are the
+//! user's.
 
 mod behavior;
 mod layout;
@@ -21,25 +23,25 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use strum::IntoEnumIterator as _;
 
-/// The arrangement of one workspace.
+/// Layout of one workspace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrangement {
     tree: Tree<Pane>,
-    /// Whether the user has moved anything: shares of the room are then left alone.
+    /// True if the user has moved anything: the shares of the space are then left unchanged.
     pub moved: bool,
 }
 
-/// The arrangements of all workspaces.
+/// Layouts of all workspaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dock {
     all: BTreeMap<Workspace, Arrangement>,
-    /// Those with names.
+    /// Named layouts.
     #[serde(default)]
     named: BTreeMap<Workspace, Named>,
-    /// A name that is being asked for.
+    /// Dialog for the name of a layout, while it is open.
     #[serde(skip)]
     pub naming: Option<Naming>,
-    /// Titles are shown on every panel, to drag and to close them.
+    /// True if every panel shows its title, to drag and to close it.
     #[serde(skip)]
     pub arranging: bool,
 }
@@ -65,29 +67,29 @@ impl Dock {
         self.all.entry(workspace).or_insert_with(new)
     }
 
-    /// Everything where it belongs again, in one workspace.
+    /// Restores the standard layout of one workspace.
     pub fn reset(&mut self, workspace: Workspace) {
         self.all.remove(&workspace);
         self.choose_none(workspace);
     }
 
-    /// True when something was moved, taken out or brought in there.
+    /// True if a panel was moved, removed or added there.
     pub fn is_moved(&self, workspace: Workspace) -> bool {
         self.all.get(&workspace).is_some_and(|a| a.moved || a.panes() != layout::standard_panes(workspace))
     }
 
-    /// True when the panel stands somewhere in the workspace.
+    /// True if the workspace contains the panel.
     pub fn has(&mut self, workspace: Workspace, pane: Pane) -> bool {
         self.of(workspace).find(pane).is_some()
     }
 
-    /// Where the panel was drawn.
+    /// Rectangle of the panel in the last frame.
     pub fn rect(&mut self, workspace: Workspace, pane: Pane) -> Option<egui::Rect> {
         let mine = self.of(workspace);
         mine.tree.tiles.rect(mine.find(pane)?)
     }
 
-    /// Brings a panel in, or takes it out.
+    /// Adds a panel, or removes it.
     pub fn toggle(&mut self, workspace: Workspace, pane: Pane) {
         let mine = self.of(workspace);
         match mine.find(pane) {
@@ -96,7 +98,7 @@ impl Dock {
         }
     }
 
-    /// Brings a panel to the front, and in where it is not there.
+    /// Brings a panel to the front, and adds it if it is missing.
     pub fn bring(&mut self, workspace: Workspace, pane: Pane) {
         let mine = self.of(workspace);
         if mine.find(pane).is_none() {
@@ -107,7 +109,7 @@ impl Dock {
 }
 
 impl Arrangement {
-    /// The panels that stand in it.
+    /// Panels of the layout.
     fn panes(&self) -> BTreeSet<Pane> {
         Pane::iter().filter(|pane| self.find(*pane).is_some()).collect()
     }
@@ -116,7 +118,7 @@ impl Arrangement {
         self.tree.tiles.find_pane(&pane)
     }
 
-    /// The tabs that hold nothing but this tile, or the tile itself.
+    /// The tab container that holds only this tile, or the tile itself.
     fn alone_in(&self, tile: TileId) -> TileId {
         let Some(parent) = self.tree.tiles.parent_of(tile) else { return tile };
         match self.tree.tiles.get_container(parent) {
@@ -125,11 +127,11 @@ impl Arrangement {
         }
     }
 
-    /// Panels that have nothing to show yet leave their room to the others.
+    /// Hides panels without content, so that others can use their space.
     fn show_only_what_has_contents(&mut self, session: &Session) {
         for pane in Pane::iter() {
             if let Some(tile) = self.find(pane) {
-                // Alone, it hides its tabs as well: they would keep the room.
+                // A panel alone hides its tabs as well: they would keep the space.
                 self.tree.set_visible(tile, pane.has_contents(session));
                 self.tree.set_visible(self.alone_in(tile), pane.has_contents(session));
             }

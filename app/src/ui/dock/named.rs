@@ -1,34 +1,34 @@
-//! Arrangements that the user has given names, several a workspace.
+//! Named layouts, several per workspace.
 
 use super::{Arrangement, Dock};
 use crate::ui::session::Workspace;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Longest name, letters: it has to stand in a menu.
+/// Maximum length of a name, characters: it must fit in a menu.
 pub const LONGEST: usize = 40;
 
-/// The named arrangements of one workspace.
+/// Named layouts of one workspace.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Named {
     all: BTreeMap<String, Arrangement>,
-    /// The one that was chosen last.
+    /// Name of the layout chosen last.
     chosen: Option<String>,
 }
 
 impl Dock {
-    /// Names of a workspace's arrangements, in the order of the alphabet.
+    /// Names of a workspace's layouts, in alphabetical order.
     pub fn names(&self, workspace: Workspace) -> impl Iterator<Item = &str> {
         self.named.get(&workspace).into_iter().flat_map(|named| named.all.keys().map(String::as_str))
     }
 
-    /// The named arrangement that is open, moved or not since.
+    /// Name of the open layout, modified or not since.
     pub fn chosen(&self, workspace: Workspace) -> Option<&str> {
         self.named.get(&workspace)?.chosen.as_deref()
     }
 
-    /// What is in the way of a name, in a sentence; `renamed` is the arrangement that is to have it.
+    /// Reason against a name, as a sentence; `renamed` is the layout that would get it.
     pub fn why_not_name(&self, workspace: Workspace, name: &str, renamed: Option<&str>) -> Option<&'static str> {
         let name = name.trim();
         if name.is_empty() {
@@ -42,7 +42,7 @@ impl Dock {
         }
     }
 
-    /// Keeps the arrangement as it is under a name; one that had it is replaced. False where the name will not do.
+    /// Saves the current layout under a name and replaces one of the same name. False if the name is invalid.
     pub fn save_as(&mut self, workspace: Workspace, name: &str) -> bool {
         if self.why_not_name(workspace, name, None).is_some() {
             return false;
@@ -54,7 +54,7 @@ impl Dock {
         true
     }
 
-    /// Puts panels where they are in a named arrangement; false where there is none of this name.
+    /// Restores a named layout; false if there is none of this name.
     pub fn choose(&mut self, workspace: Workspace, name: &str) -> bool {
         let Some(named) = self.named.get_mut(&workspace) else { return false };
         let Some(kept) = named.all.get(name).cloned() else { return false };
@@ -63,7 +63,7 @@ impl Dock {
         true
     }
 
-    /// Another name for a named arrangement; false where it will not do.
+    /// Renames a layout; false if the new name is invalid.
     pub fn rename(&mut self, workspace: Workspace, old: &str, new: &str) -> bool {
         if self.why_not_name(workspace, new, Some(old)).is_some() {
             return false;
@@ -77,14 +77,14 @@ impl Dock {
         true
     }
 
-    /// Forgets a named arrangement; panels stay where they are.
+    /// Deletes a named layout; panels stay where they are.
     pub fn delete(&mut self, workspace: Workspace, name: &str) -> bool {
         let Some(named) = self.named.get_mut(&workspace) else { return false };
         named.chosen.take_if(|chosen| chosen == name);
         named.all.remove(name).is_some()
     }
 
-    /// The standard arrangement is open: none of the named ones is.
+    /// Clears the choice: the standard layout is open.
     pub(super) fn choose_none(&mut self, workspace: Workspace) {
         if let Some(named) = self.named.get_mut(&workspace) {
             named.chosen = None;
@@ -113,7 +113,7 @@ mod tests {
         assert!(!dock.has(AT, Pane::Segments) && dock.chosen(AT).is_none());
         assert!(dock.choose(AT, "with states"));
         assert!(dock.has(AT, Pane::Segments) && dock.is_moved(AT) && dock.chosen(AT) == Some("with states"));
-        // What is moved afterwards does not change what was kept.
+        // Later changes do not affect the saved layout.
         dock.toggle(AT, Pane::Segments);
         assert!(dock.choose(AT, "with states") && dock.has(AT, Pane::Segments));
         assert!(!dock.choose(AT, "nothing of the kind"));

@@ -1,4 +1,4 @@
-//! The dialog in which an arrangement is given its name.
+//! The dialog for the name of a layout.
 
 use crate::ui::app::App;
 use crate::ui::session::Workspace;
@@ -9,24 +9,24 @@ use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
 /// Width of the dialog, points.
 const WIDTH: f32 = 360.0;
 
-/// A name that is being written.
+/// Name that is being typed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Naming {
     workspace: Workspace,
-    /// The arrangement that is renamed; a new one is saved when absent.
+    /// Layout that is renamed; `None` if a new one is saved.
     renamed: Option<String>,
     name: String,
-    /// The field has been given the keys.
+    /// True once the field has received the focus.
     begun: bool,
 }
 
 impl Naming {
-    /// Of the arrangement as it is, to be kept; `name` is proposed.
+    /// Dialog to save the current layout; `name` is proposed.
     pub fn to_save(workspace: Workspace, name: Option<&str>) -> Self {
         Self { workspace, renamed: None, name: name.unwrap_or_default().to_owned(), begun: false }
     }
 
-    /// Of one that has a name.
+    /// Dialog to rename a layout.
     pub fn to_rename(workspace: Workspace, old: &str) -> Self {
         Self { workspace, renamed: Some(old.to_owned()), name: old.to_owned(), begun: false }
     }
@@ -49,7 +49,7 @@ pub fn show(ui: &Ui, app: &mut App) {
         let field = TextEdit::singleline(&mut naming.name).hint_text("Its name").margin(vec2(8.0, 6.0));
         let field = ui.add(field.desired_width(f32::INFINITY));
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the arrangement"));
-        // The key that has opened the dialog does not close it.
+        // The key that opened the dialog must not close it.
         let fresh = !std::mem::replace(&mut naming.begun, true);
         if fresh {
             field.request_focus();

@@ -1,4 +1,4 @@
-//! The panels that can stand in the window.
+//! The panels of the window.
 
 use crate::ui::icons::Icon;
 use crate::ui::panels::Panel as _;
@@ -21,45 +21,45 @@ use crate::ui::session::{Session, Workspace};
 use egui::Ui;
 use serde::{Deserialize, Serialize};
 
-/// A panel by its name.
+/// Panel identifier.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, strum::EnumIter, Serialize, Deserialize,
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum Pane {
-    /// Which recording, and how it is fitted.
+    /// Choice of the recording, and fit options.
     #[default]
     Recording,
-    /// The recording in space, or the rules of its task.
+    /// 3D view of the recording, or the rules of its task.
     Scene,
     /// Plots with one time axis.
     Log,
-    /// What was found.
+    /// Results of the fit.
     Results,
     /// States and subtasks as a list.
     Segments,
-    /// How the result depends on the parameters, and they on each other.
+    /// Sensitivity of the result to the parameters, and their correlations.
     Sensitivity,
     /// The video of the hand.
     Video,
     /// The virtual world.
     Trainer,
-    /// Its settings and figures.
+    /// Settings and readings of the trainer.
     TrainerSide,
-    /// How who practises gets better.
+    /// Progress of the trainee.
     Progress,
-    /// Measured against modelled force.
+    /// Measured and modelled force.
     Diagnose,
-    /// What the model gets wrong.
+    /// Diagnosed causes.
     Diagnosis,
-    /// What moves the fingers.
+    /// Choice of the device.
     Devices,
-    /// How well it does.
+    /// Performance of the device.
     DeviceDetail,
 }
 
 impl Pane {
-    /// For people.
+    /// Title for the user.
     pub fn title(self) -> &'static str {
         match self {
             Self::Recording => "Recording and fit",
@@ -79,7 +79,7 @@ impl Pane {
         }
     }
 
-    /// For people who look.
+    /// Icon of the panel.
     pub fn icon(self) -> Icon {
         match self {
             Self::Recording => Icon::Fit,
@@ -96,7 +96,7 @@ impl Pane {
         }
     }
 
-    /// Those that make sense in a workspace.
+    /// Panels available in a workspace.
     pub fn of(workspace: Workspace) -> &'static [Self] {
         match workspace {
             Workspace::Train => &[Self::Trainer, Self::TrainerSide, Self::Progress],
@@ -116,13 +116,13 @@ impl Pane {
         }
     }
 
-    /// False while the panel has nothing to show and others can use its room.
+    /// False while the panel has no content and others can use its space.
     pub(super) fn has_contents(self, session: &Session) -> bool {
         self != Self::Diagnosis || session.diagnosing.answer.is_some()
     }
 }
 
-/// One of every panel, with what it remembers.
+/// All panels, each with its state.
 #[derive(Default)]
 pub struct Panels {
     log: LogPanel,
@@ -134,11 +134,11 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws a panel into all the room there is.
+    /// Draws a panel into the available space.
     pub fn ui(&mut self, pane: Pane, ui: &mut Ui, session: &mut Session) {
         match pane {
             Pane::Recording => self.recording.ui(ui, session),
-            // The rules take the place of the picture, so that the states below are seen to follow.
+            // The rules replace the picture, so that the states below are seen to follow.
             Pane::Scene if session.rules.is_some() => RulesPanel.ui(ui, session),
             Pane::Scene => self.scene.ui(ui, session),
             Pane::Log => self.log.ui(ui, session),

@@ -1,9 +1,9 @@
-//! Where a panel comes in when it is brought back: where it stood in the standard arrangement, or beside those that it belongs to.
+//! Position of a restored panel: that of the standard layout, or beside related panels.
 
 use super::{Arrangement, Pane};
 use egui_tiles::{Container, ContainerKind, Tile, TileId};
 
-/// The panels that it belongs to, the nearest first: how the two then stand, and whether it comes first.
+/// Related panels, the nearest first, with the container for both, and true if the panel comes first in it.
 fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
     use ContainerKind::{Horizontal, Tabs, Vertical};
     match pane {
@@ -12,7 +12,7 @@ fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
         Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false), (Pane::Diagnosis, Tabs, false)],
         Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false), (Pane::Diagnosis, Tabs, false)],
         Pane::Progress => &[(Pane::Trainer, Tabs, false)],
-        // A third column would leave the curves no room.
+        // A third column would leave too little space for the curves.
         Pane::Results => &[(Pane::Diagnosis, Tabs, false)],
         _ => &[],
     }
@@ -24,7 +24,7 @@ fn comes_first(pane: Pane) -> bool {
 }
 
 impl Arrangement {
-    /// Brings a panel in: beside its neighbour, else at its edge, else alone.
+    /// Adds a panel: beside its neighbour, otherwise at its edge, otherwise alone.
     pub(super) fn add(&mut self, pane: Pane) {
         let tile = self.tree.tiles.insert_pane(pane);
         let beside = neighbours(pane).iter().find_map(|(other, kind, first)| Some((self.find(*other)?, *kind, *first)));
@@ -40,7 +40,7 @@ impl Arrangement {
         self.tree.make_active(|id, _| id == tile);
     }
 
-    /// What is split for a panel beside this one: the tabs that it stands among, the row that it stands in when the new one goes below.
+    /// Tile to split for a panel beside this one: its tab container, or its row if the new panel goes below.
     fn whole(&self, tile: TileId, kind: ContainerKind) -> TileId {
         let tile = self.tabs_of(tile).unwrap_or(tile);
         let row = self.tree.tiles.parent_of(tile).filter(|parent| self.tree.root() != Some(*parent));
@@ -49,7 +49,7 @@ impl Arrangement {
         row.filter(is_row).filter(|_| kind == ContainerKind::Vertical).unwrap_or(tile)
     }
 
-    /// The tabs that a panel stands among.
+    /// Tab container of a panel.
     fn tabs_of(&self, tile: TileId) -> Option<TileId> {
         let parent = self.tree.tiles.parent_of(tile)?;
         (self.tree.tiles.get_container(parent)?.kind() == ContainerKind::Tabs).then_some(parent)
@@ -63,7 +63,7 @@ impl Arrangement {
         }
     }
 
-    /// Puts a container of both where `old` stands; its share of the room goes along.
+    /// Replaces `old` by a container of both, with the same share of the space.
     fn split(&mut self, old: TileId, kind: ContainerKind, both: Vec<TileId>) {
         let parent = self.tree.tiles.parent_of(old);
         let both = self.tree.tiles.insert_container(Container::new(kind, both));
@@ -73,7 +73,7 @@ impl Arrangement {
         }
     }
 
-    /// A column of its own, as wide as the others are on the average.
+    /// Adds a column of its own, of the average width of the others.
     fn at_the_edge(&mut self, root: TileId, tile: TileId, first: bool) {
         match self.tree.tiles.get_mut(root) {
             Some(Tile::Container(Container::Linear(linear))) => {

@@ -1,5 +1,5 @@
-//! Where a hand on the mouse finds what it needs to map a foreign table and to fit again: the way is gone in a window of the same size that
-//! nobody sees, and what was clicked is noted.
+//! Screen positions for mapping a foreign table and refitting with the mouse. The procedure runs in an invisible window
+//! of the same size, and the clicks are recorded.
 
 use super::walk::{Walker, foreign_crank};
 use anyhow::Context as _;
@@ -7,24 +7,24 @@ use egui::{Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable as _;
 use std::path::{Path, PathBuf};
 
-/// Places in points, from the window's upper left corner.
+/// Positions in points, from the window's upper left corner.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// The foreign table; nothing beside it says what its columns mean.
+    /// Foreign table; nothing beside it explains its columns.
     pub table: PathBuf,
-    /// The sidecar that mapping it will write.
+    /// Sidecar that the mapping will write.
     pub sidecar: PathBuf,
-    /// What is clicked from the dialog's first picture on: a list, then an entry of it, again and again …
+    /// Clicks from the dialog's first frame on: pairs of a list and one of its entries.
     pub chosen: Vec<[Pos2; 2]>,
-    /// … and in the end the button that saves and opens.
+    /// Button that saves and opens, clicked last.
     pub save: Rect,
-    /// The tick that lets the fit follow every change, once the table is open.
+    /// Checkbox for automatic refits, once the table is open.
     pub follow: Pos2,
-    /// The button that fits again, after a boundary was set by hand.
+    /// Button that refits, after a boundary was moved by hand.
     pub refit: Rect,
 }
 
-/// Writes a foreign table into a folder and goes through its mapping.
+/// Writes a foreign table into a folder and runs through its mapping.
 pub fn places(folder: &Path, size: [u32; 2]) -> anyhow::Result<Places> {
     let table = foreign_crank(folder)?;
     let mut walker = Walker::new(size, false, false)?;
@@ -40,7 +40,7 @@ pub fn places(folder: &Path, size: [u32; 2]) -> anyhow::Result<Places> {
     let follow = rect(&walker, Role::CheckBox, "Follow every change")?.left_center() + egui::vec2(8.0, 0.0);
     walker.drag_a_boundary()?;
     let refit = rect(&walker, Role::Button, "Refit")?;
-    // Whoever goes the same way afterwards maps it again.
+    // The recorded procedure maps it again.
     std::fs::remove_file(&sidecar).context("the sidecar could not be removed")?;
     Ok(Places { table, sidecar, chosen, save, follow, refit })
 }

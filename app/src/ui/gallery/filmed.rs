@@ -1,4 +1,4 @@
-//! The recorded hand, filmed: a video for pictures of the video's panel.
+//! The recorded hand as a film: a video for screenshots of the video panel.
 
 use crate::ui::scene::{camera_for, options_for, scene_world};
 use crate::ui::session::Session;
@@ -8,13 +8,13 @@ use anyhow::Context as _;
 use render::{Headless, SceneView, ViewOptions};
 use std::path::Path;
 
-/// Pixels of the film.
+/// Size of the film, pixels.
 const SIZE: [u32; 2] = [480, 320];
-/// Pictures a second.
+/// Frame rate, Hz.
 const RATE_HZ: f64 = 8.0;
-/// How long it is, s; the session's cursor is at its middle.
+/// Duration, s; the session's cursor is at its middle.
 const LENGTH_S: f64 = 1.0;
-/// Where the camera stands beside the usual one, rad to the right and up.
+/// Rotation of the camera from the default one, rad to the right and up.
 const ASIDE_RAD: [f32; 2] = [0.7, 0.18];
 
 /// Films the shown recording about the time cursor.
@@ -30,7 +30,7 @@ pub fn filmed(session: &mut Session, file: &Path) -> anyhow::Result<VideoSource>
         session.seek(begins_at_s + f64::from(k) / RATE_HZ);
         let (state, options) = options_for(session, &prepared, &world);
         let theme = theme::scene_theme(false);
-        // A camera sees no arrows.
+        // A camera does not see force arrows.
         let plain = ViewOptions { show_forces: false, show_workspace: false, ..ViewOptions::default() };
         let options = ViewOptions { camera, theme, fingers: options.fingers, ..plain };
         let picture =

@@ -1,4 +1,4 @@
-//! Every panel and every scene in light and dark: the pictures of `docs/gallery`, and what the tests of pictures look at.
+//! Every panel and every scene in light and dark: the pictures of `docs/gallery`, also used by the snapshot tests.
 
 pub mod by_pointer;
 mod filmed;
@@ -33,30 +33,30 @@ const SCENE: [u32; 2] = [720, 480];
 pub struct Plate {
     /// Name of its files, without theme and ending.
     pub name: String,
-    /// What it shows, one line.
+    /// Description of the picture, one line.
     pub line: &'static str,
-    /// Pixels.
+    /// Size, pixels.
     pub size: [u32; 2],
     panel: Panel,
     sample: Sample,
     layers: SceneLayers,
-    /// Where the time cursor stands, s; a telling moment when absent.
+    /// Time of the cursor, s; `None` for an instructive moment.
     at_s: Option<f64>,
 }
 
 impl Plate {
-    /// What it is a picture of.
+    /// Panel of the picture.
     pub fn panel(&self) -> Panel {
         self.panel
     }
 
-    /// The same recording or world in another panel or page.
+    /// Same recording or world in another panel or page.
     #[cfg(test)]
     pub(super) fn shown_in(&self, panel: Panel) -> Self {
         Self { name: format!("{} in {panel:?}", self.name), panel, size: PAGE, ..self.clone() }
     }
 
-    /// A single panel with a margin around it, no whole page.
+    /// True for a single panel with a margin around it.
     pub fn is_framed(&self) -> bool {
         use Panel::{
             Assistant, Delay, LeftOver, Log, Parameters, Progress, Results, Scene, Segments, Sensitivity, Trainer, Xy,
@@ -77,13 +77,13 @@ impl Plate {
         )
     }
 
-    /// A view of a recording in space with other layers than usual.
+    /// True for a 3D view of a recording with non-default layers.
     pub fn is_view(&self) -> bool {
         self.name.starts_with("scene-")
     }
 }
 
-/// All of them: pages and panels first, then the views of the scene, then the worlds of the trainer.
+/// All plates: pages and panels first, then the views of the scene, then the worlds of the trainer.
 pub fn plates() -> Vec<Plate> {
     let panels = Panel::value_variants().iter().map(|panel| of_panel(*panel));
     let of_blocks = Plate {
@@ -233,7 +233,7 @@ fn of_world(name: &'static str) -> Option<Plate> {
         "switch" => "A toggle switch",
         "guide" => "A slider in a bent slot",
         "table" => "An empty table",
-        // The first panel of the trainer shows the blocks.
+        // The first plate of the trainer shows the blocks.
         _ => return None,
     };
     Some(Plate {
@@ -259,7 +259,7 @@ impl Studio {
         screenshot::draw(self.session(plate)?, plate.panel, plate.size, dark)
     }
 
-    /// What a plate is drawn from.
+    /// Session from which a plate is drawn.
     pub(super) fn session(&mut self, plate: &Plate) -> anyhow::Result<Session> {
         let input = self.input(plate).with_context(|| format!("the gallery's picture {}", plate.name))?;
         let mut input = input;
@@ -285,8 +285,8 @@ impl Studio {
     }
 }
 
-/// Draws everything into `folder`, with a page that shows it, or only what is named so; `tell` hears the share that is done. Returns
-/// the number of pictures and their bytes.
+/// Draws all plates into `folder`, with a page that shows them, or only those that `only` names. `tell` receives the
+/// completed share. Returns the number of pictures and their size in bytes.
 pub fn write_to(folder: &Path, only: Option<&str>, mut tell: impl FnMut(f64)) -> anyhow::Result<(usize, usize)> {
     std::fs::create_dir_all(folder).with_context(|| format!("the folder could not be made: {}", folder.display()))?;
     let mut studio = Studio::default();
@@ -315,7 +315,7 @@ pub fn write_to(folder: &Path, only: Option<&str>, mut tell: impl FnMut(f64)) ->
     Ok((pictures, bytes))
 }
 
-/// The steps of the whole way, as a person goes it.
+/// Draws the steps of the complete workflow, as a person performs it.
 fn walked(folder: &Path, only: Option<&str>, dark: bool) -> anyhow::Result<(usize, usize)> {
     let (mut pictures, mut bytes) = (0, 0);
     if only.is_some_and(|name| !"walk".starts_with(name) && !name.starts_with("walk")) {
@@ -337,7 +337,7 @@ fn file_name(plate: &Plate, dark: bool) -> String {
     themed(&plate.name, dark)
 }
 
-/// Numbered, so that files stand in the order of the steps.
+/// Numbered file name, so that files sort in the order of the steps.
 fn step_file(step: &str, dark: bool) -> String {
     let place = walk::STEPS.iter().position(|(name, _)| *name == step).unwrap_or_default();
     themed(&format!("walk-{}-{step}", place + 1), dark)

@@ -1,4 +1,4 @@
-//! Recordings to draw: those that travel with the program, and performances of the scripted operator.
+//! Recordings for the pictures: those bundled with the program, and performances of the scripted operator.
 
 use super::filmed::filmed;
 use crate::cli::built_in;
@@ -21,10 +21,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Longest performance, s of simulated time: a script that does not end is cut off.
+/// Maximum length of a performance, s of simulated time: a script that does not end is cut off.
 const LONGEST_S: f64 = 120.0;
 
-/// What a picture is drawn from.
+/// Source of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sample {
     /// The built-in recording of two blocks.
@@ -33,23 +33,23 @@ pub enum Sample {
     Crank,
     /// The scripted operator with the needle.
     Needle,
-    /// A tool that leads a door.
+    /// A tool that opens a door.
     Door,
-    /// A crank with a mass off its axis, or on a tilted table: its recording cannot tell.
+    /// A crank with an eccentric mass, or on a tilted table: the recording cannot discriminate.
     Askew,
-    /// A block that leaks, or is weighed by a sensor that drifts: its recording cannot tell.
+    /// A block that leaks, or is weighed by a drifting sensor: the recording cannot discriminate.
     Leaking,
-    /// A hinge with a mass off its axis, or on an axis that leans: its recording cannot tell.
+    /// A hinge with an eccentric mass, or on a tilted axis: the recording cannot discriminate.
     Hinge,
-    /// A cart on a rail, of which only the way and the force are known.
+    /// A cart on a rail, of which only position and force are known.
     Rail,
-    /// A table whose columns have no meaning yet.
+    /// A table whose columns are not yet mapped.
     Foreign,
     /// A built-in world, performed live.
     World(&'static str),
 }
 
-/// Recordings that were made already.
+/// Cache of generated recordings.
 #[derive(Default)]
 pub struct Samples {
     known: BTreeMap<Sample, Vec<Recording>>,
@@ -57,7 +57,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The recordings of a sample; those of foreign tables and live worlds are none.
+    /// Recordings of a sample; foreign tables and live worlds have none.
     pub fn recordings(&mut self, sample: Sample) -> anyhow::Result<Vec<Recording>> {
         if let Some(known) = self.known.get(&sample) {
             return Ok(known.clone());
@@ -77,7 +77,7 @@ impl Samples {
         Ok(made)
     }
 
-    /// A file with columns that say little: a cart that is pushed to and fro, in another program's words.
+    /// File with uninformative column names: a cart pushed back and forth, as another program writes it.
     pub fn foreign(&mut self) -> anyhow::Result<PathBuf> {
         let path = self.folder()?.join("bench-7.csv");
         let mut text = String::from("Time [ms],Position (mm),Load cell / N,Temp\n");
@@ -91,7 +91,7 @@ impl Samples {
         Ok(path)
     }
 
-    /// A film of the virtual hand in the middle of a recording, as if a camera stood beside it.
+    /// Film of the virtual hand in the middle of a recording, from a camera beside it.
     pub fn film(&mut self, input: &PanelInput) -> anyhow::Result<VideoSource> {
         let file = self.folder()?.join("hand.mp4");
         filmed(&mut session_for(input, Panel::Scene)?, &file)
@@ -105,7 +105,7 @@ impl Samples {
     }
 }
 
-/// The built-in crank with a mass off its axis.
+/// Built-in crank with an eccentric mass.
 pub fn askew_world() -> World {
     let mut world = presets::crank();
     if let Some(crank) = &mut world.crank {
@@ -114,7 +114,7 @@ pub fn askew_world() -> World {
     world
 }
 
-/// The scripted operator moves that crank about.
+/// Recording of the scripted operator with that crank.
 pub fn askew() -> anyhow::Result<Recording> {
     let asked = Experiment {
         id: "long-mixed".to_owned(),
@@ -130,7 +130,7 @@ pub fn askew() -> anyhow::Result<Recording> {
     done_with(&askew_world(), &asked, "askew")
 }
 
-/// The built-in blocks, of which the first leaks.
+/// Built-in blocks, of which the first leaks.
 pub fn leaking_world() -> World {
     let mut world = presets::stacking();
     if let Some(block) = world.blocks.first_mut() {
@@ -139,7 +139,8 @@ pub fn leaking_world() -> World {
     world
 }
 
-/// The scripted operator lifts that block and does not let go any more: a sensor that drifts would have recorded the same.
+/// Recording in which the scripted operator lifts that block and keeps holding it: a drifting sensor would record the
+/// same.
 pub fn leaking() -> anyhow::Result<Recording> {
     let asked = Experiment {
         id: "carry-still".to_owned(),
@@ -155,7 +156,7 @@ pub fn leaking() -> anyhow::Result<Recording> {
     done_with(&leaking_world(), &asked, "leaking")
 }
 
-/// A hinge that is driven directly, and the object for another motion of it.
+/// Recording of a directly driven hinge, and the object for another motion of it.
 pub fn hinge() -> (Recording, blind::case::Object) {
     let effects = vec![(blind::Effect::Eccentric, 0)];
     let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
@@ -166,7 +167,7 @@ pub fn hinge() -> (Recording, blind::case::Object) {
     (recording, object)
 }
 
-/// A made-up trainee's attempts at one lesson: four sessions, slow and hesitating at first.
+/// Fictitious attempts of a trainee at one lesson: four sessions, slow and hesitant at first.
 pub fn practice() -> Vec<Attempt> {
     let begun: Timestamp = "2026-11-02T17:00:00Z".parse().unwrap_or_default();
     (0..23_u32)
@@ -199,29 +200,29 @@ pub fn practice() -> Vec<Attempt> {
         .collect()
 }
 
-/// The recording of an experiment on a world that stands for the real object.
+/// Recording of an experiment on a world that represents the real object.
 pub fn done_with(world: &World, asked: &Experiment, name: &str) -> anyhow::Result<Recording> {
     let table = experiment::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
     let sensing = (&SensorFault::default(), SensorModel::TYPICAL.force_noise_n);
     let mut recording = experiment::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
-    // Here it is the real one.
+    // Here the world represents the real object.
     recording.meta.other.remove(experiment::SIMULATED);
     name.clone_into(&mut recording.name);
     Ok(recording)
 }
 
-/// A handle 30 cm from its hinge, led through a sixth of a turn by a tool that also pulls, with the noise of a tracker and of a force
-/// sensor.
+/// Recording of a handle 30 cm from its hinge. A tool moves it through a sixth of a turn and also pulls, with the noise
+/// of a tracker and of a force sensor.
 fn door() -> Recording {
     const RADIUS_M: f64 = 0.30;
-    // A generator of Lehmer's (1951): the same picture everywhere.
+    // A Lehmer generator (1951): the same picture on every machine.
     let mut seed = 7_u64;
     let mut noise = move || {
         let mut draw = || {
             seed = seed * 48_271 % 0x7FFF_FFFF;
             seed as f64 / f64::from(0x7FFF_FFFF_u32)
         };
-        // Nearly normal, of variance 1.
+        // Approximately normal, of variance 1.
         (0..12).map(|_| draw()).sum::<f64>() - 6.0
     };
     let n = 600_u32;
@@ -244,7 +245,7 @@ fn door() -> Recording {
     Recording { name: "door".to_owned(), channels: channels.into(), time_s, ..Recording::default() }
 }
 
-/// Ten seconds of something with inertia, viscous and Coulomb friction that is pushed to and fro.
+/// Ten seconds of an object with inertia, viscous and Coulomb friction, pushed back and forth.
 fn one_coordinate(
     name: &str,
     (coordinate, unit, reach): (&str, &str, f64),

@@ -7,15 +7,15 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Colours of the palette.
 const COLORS: usize = 256;
-/// Bits of a channel that tell colours apart while the palette is learned.
+/// Bits per channel that distinguish colours while the palette is learned.
 const BITS: u32 = 6;
 
-/// The file of a picture.
+/// PNG file of a picture.
 pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
     let palette = NeuQuant::new(1, COLORS, &evened_out(picture));
     let mut known = HashMap::new();
     let indices: Vec<u8> = picture
-        // Without a pattern of dots between colours: it would hide the bands of a gradient, and nearly double the file.
+        // Without dithering: it would hide the bands of a gradient, and nearly double the file.
         .pixels()
         .map(|pixel| pixel.0)
         .map(|color| *known.entry(color).or_insert_with(|| palette.index_of(&color) as u8))
@@ -26,15 +26,15 @@ pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette.color_map_rgb());
     encoder.set_compression(png::Compression::High);
-    // Neighbouring indices say nothing about each other: filters would only hide repetitions.
+    // Neighbouring indices are uncorrelated: filters would only hide repetitions.
     encoder.set_filter(png::Filter::NoFilter);
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&indices));
     written.context("the picture could not be encoded")?;
     Ok(file)
 }
 
-/// The picture's colours, each as often as the root of its number of pixels: a large gradient would leave no places of the palette to
-/// what is small and matters.
+/// The picture's colours, each weighted by the square root of its number of pixels. A large gradient would otherwise
+/// take the palette from small, important details.
 fn evened_out(picture: &RgbaImage) -> Vec<u8> {
     let mut bins: BTreeMap<[u8; 3], (u32, [u32; 3])> = BTreeMap::new();
     for pixel in picture.pixels() {

@@ -1,5 +1,6 @@
-//! The whole way as a person goes it, by pointer and keys: drop a foreign table, map its columns, look at its states, move a boundary, try a
-//! value, diagnose, extend, feel the difference, write the report. Every step is checked and can be drawn.
+//! The complete workflow of a person, by pointer and keys. It drops a foreign table, maps its columns, checks the
+//! states, moves a boundary, tries a value, diagnoses, extends, compares by feel, and writes the report. Every step is
+//! checked and can be drawn.
 
 use crate::ui::app::App;
 use crate::ui::format;
@@ -20,12 +21,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Nothing that a person waits for may take longer.
+/// Maximum time of any operation that a person waits for.
 const PATIENCE: Duration = Duration::from_mins(2);
-/// Which of the generator's recordings is walked through.
+/// Seed of the generated recording in the walk.
 const SEED: u64 = 3;
 
-/// Names of the steps, with a line each.
+/// Names of the steps, with a description each.
 pub const STEPS: [(&str, &str); 9] = [
     ("drop", "Drop a log on the window"),
     ("map", "Its columns have foreign names: say what they mean, and see what comes of it"),
@@ -38,7 +39,7 @@ pub const STEPS: [(&str, &str); 9] = [
     ("report", "Everything on one page, to hand on"),
 ];
 
-/// Walks the whole way in a folder; `look` is given every step's picture where `draw` says so.
+/// Performs the complete workflow in a folder; `look` receives every step's picture where `draw` is set.
 pub fn walk(
     folder: &Path,
     size: [u32; 2],
@@ -50,7 +51,7 @@ pub fn walk(
     let mut walker = Walker::new(size, dark, draw)?;
     let mut step = |walker: &mut Walker, name: &str| {
         look(name, walker.picture()?)?;
-        // Who goes on as slowly as a person does not see these any more.
+        // A person's pace would outlast these banners.
         walker.harness.state_mut().session.banners.retain(|banner| banner.tone != Tone::Done);
         anyhow::Ok(())
     };
@@ -75,7 +76,7 @@ pub fn walk(
     step(&mut walker, "report")
 }
 
-/// A turned crank with a ripple that no model knows of, as another program writes it down.
+/// A turned crank with an unmodelled ripple, as another program writes it.
 pub(super) fn foreign_crank(folder: &Path) -> anyhow::Result<PathBuf> {
     let effects = vec![(Effect::Ripple, 0)];
     let spec = Spec { effects, ratio: 2.0, bench: Bench::OneFinger, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
@@ -95,7 +96,7 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
-    // The walk waits for the fit to follow; how long the first one took on a busy machine must not decide whether it does.
+    // The walk waits for the refit; the duration of the first one on a busy machine must not decide whether it runs.
     session.refits.at_once = Duration::MAX;
     let builder = Harness::builder()
         .with_size(egui::vec2(size[0] as f32, size[1] as f32))
@@ -120,11 +121,11 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
     Ok(builder.renderer(WgpuTestRenderer::from_render_state(state)).build_ui_state(show, app))
 }
 
-/// Goes it.
+/// Driver of the walk.
 pub(super) struct Walker {
     pub(super) harness: Harness<'static, App>,
     draw: bool,
-    /// Where it has clicked, points.
+    /// Positions of its clicks, points.
     pub(super) clicked: Vec<Pos2>,
 }
 
@@ -145,7 +146,7 @@ impl Walker {
         self.harness.render().map(Some).map_err(|error| anyhow!(error))
     }
 
-    /// Frames pass until something is so.
+    /// Runs frames until a condition holds.
     fn until(&mut self, what: &str, so: impl Fn(&Session) -> bool) -> anyhow::Result<()> {
         let begun = Instant::now();
         while !so(self.session()) {
@@ -159,7 +160,7 @@ impl Walker {
         Ok(())
     }
 
-    /// Until nothing computes any more, and a change counts as done with.
+    /// Runs frames until no job is active and a change counts as complete.
     fn calm(&mut self) -> anyhow::Result<()> {
         self.harness.run_steps(3);
         self.until("rest", |s| !s.jobs.is_busy() && !s.stale)?;
@@ -214,7 +215,7 @@ impl Walker {
             let name = meaning.split(' ').next().unwrap_or_default();
             let rows = self.session().mapping.as_ref().map(|m| m.draft.sidecar().columns).unwrap_or_default();
             let stem = name.split('_').next().unwrap_or_default();
-            // What the program has guessed needs no click.
+            // A correct guess needs no click.
             if rows.iter().any(|(key, file)| file == column && key.split('_').next() == Some(stem)) {
                 continue;
             }
@@ -251,7 +252,7 @@ impl Walker {
         Ok(())
     }
 
-    /// The boundary was right where it was.
+    /// Undoes the move of the boundary.
     fn take_back(&mut self) -> anyhow::Result<()> {
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         self.calm()?;
@@ -263,7 +264,7 @@ impl Walker {
 
     fn try_a_value(&mut self) -> anyhow::Result<()> {
         self.click(Role::Row, "crank.weight_N")?;
-        // The other slider is that of the time, in the middle.
+        // The other slider is the time, in the middle.
         let sliders = self.harness.query_all_by_role(Role::Slider).map(|s| s.rect());
         let slider = sliders.max_by(|a, b| a.left().total_cmp(&b.left()));
         let at = slider.context("there is no slider for the value")?;
@@ -317,7 +318,7 @@ impl Walker {
             std::thread::sleep(Duration::from_millis(20));
             self.harness.run_steps(1);
         }
-        // The name of a temporary folder is nothing to look at.
+        // The name of a temporary folder should not appear.
         self.write_into("Where the report goes", "report.html")?;
         self.calm()
     }

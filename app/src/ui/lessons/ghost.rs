@@ -1,21 +1,22 @@
-//! An expert's fingers that go along with a trainee's: at the expert's pace, and no farther ahead than a trainee can follow.
+//! Ghost of an expert's fingers that accompanies the trainee: at the expert's pace, and never too far ahead to follow.
 
 use super::trace::{Point, Trace};
 use haptics::Vec2;
 
-/// Who is farther from the ghost than that is waited for, m.
+/// Distance beyond which the ghost waits for the trainee, m.
 const REACH_M: f64 = 0.015;
-/// Who is as near to a place where the ghost will soon be has gone ahead of it, m, and so soon, s.
+/// Distance from a future ghost position within which the trainee counts as ahead of it, m, and the time horizon of
+/// this search, s.
 const AHEAD_M: f64 = 0.006;
 const AHEAD_S: f64 = 1.5;
-/// So long a ghost goes on while it touches and the trainee does not, or the other way round, s: it shows how.
+/// Time for which a ghost continues while its contact differs from the trainee's, as a demonstration, s.
 const SHOWS_S: f64 = 0.25;
-/// Who does it otherwise is not waited for longer than that, s.
+/// Maximum wait for a trainee who acts differently, s.
 const PATIENCE_S: f64 = 3.0;
-/// Between two looks at the way ahead, s.
+/// Time step of the search ahead, s.
 const STEP_S: f64 = 1.0 / 30.0;
 
-/// What a ghost waits for.
+/// Reason for which a ghost waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wait {
     /// The trainee's hand is elsewhere.
@@ -26,12 +27,12 @@ pub enum Wait {
     LetGo,
 }
 
-/// Where the ghost is on the expert's way.
+/// Position of the ghost on the expert's path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ghost {
-    /// In the expert's time, s.
+    /// Time of the expert's trace, s.
     pub time_s: f64,
-    /// What it waits for.
+    /// Reason for which it waits; `None` while it moves.
     pub waits: Option<Wait>,
     seen_s: Option<f64>,
     unlike_s: f64,
@@ -39,7 +40,8 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// The trainee's tips at a time of the world, s; `touches` when one of them does.
+    /// Updates the ghost from the trainee's tips at a time of the world, s; `touches` is true if one of them is in
+    /// contact.
     pub fn see(&mut self, way: &Trace, now_s: f64, tips_in_world: [Vec2; 2], touches: bool) {
         let span_s = (now_s - self.seen_s.unwrap_or(now_s)).max(0.0);
         self.seen_s = Some(now_s);
@@ -64,7 +66,7 @@ impl Ghost {
         self.time_s = (self.time_s + span_s).min(way.duration_s());
     }
 
-    /// A hand that went ahead on the same way is not called back.
+    /// Advances the ghost to a hand that is ahead on the same path.
     fn catch_up(&mut self, way: &Trace, middle_m: Vec2, touches: bool) {
         let last = (AHEAD_S / STEP_S) as u32;
         let is_here = |point: &Point| (point.middle_m() - middle_m).norm() < AHEAD_M && point.touches() == touches;
@@ -83,7 +85,7 @@ mod tests {
 
     const FRAME_S: f64 = 1.0 / 60.0;
 
-    /// Two seconds to the right at 20 mm/s, with something between the fingers in the second one.
+    /// Two seconds to the right at 20 mm/s, with an object between the fingers in the second one.
     fn way() -> Trace {
         let points = (0..=60).map(|k| {
             let time_s = f64::from(k) / 30.0;
@@ -146,7 +148,7 @@ mod tests {
         follow(&mut ghost, 0.05, 0.0, |_| (0.0, false));
         follow(&mut ghost, 0.05, 0.05, |_| (0.022, true));
         assert!(ghost.time_s > 0.8 && ghost.waits.is_none(), "{ghost:?}");
-        // Nothing in its hand yet: it has not come that far.
+        // The hand is still empty: it has not come that far.
         let mut ghost = Ghost::default();
         follow(&mut ghost, 0.1, 0.0, |_| (0.035, false));
         assert_eq!(ghost.waits, Some(Wait::Far));

@@ -1,4 +1,4 @@
-//! Attempts that are over go into the history of who practises.
+//! Storage of completed attempts in the trainee's history.
 
 use super::Debrief;
 use crate::history::{Attempt, Conditions};
@@ -6,7 +6,7 @@ use crate::ui::session::Session;
 use jiff::{SignedDuration, Timestamp};
 
 impl Session {
-    /// Keeps a graded attempt under the name of who practises; nothing where nobody is named.
+    /// Stores a graded attempt under the trainee's name; does nothing without a name.
     pub(super) fn keep_graded(&mut self, debrief: &Debrief) {
         self.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
         let Some(trainee) = self.learning.trainee.clone() else { return };
@@ -19,7 +19,7 @@ impl Session {
     }
 }
 
-/// An attempt that ended now.
+/// Attempt that has ended now.
 fn attempt_of(debrief: &Debrief, trainee: String, conditions: Conditions, ended: Timestamp) -> Attempt {
     let grade = &debrief.grade;
     let duration_s = grade.measures.hand.duration_s;

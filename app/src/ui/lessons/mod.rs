@@ -1,4 +1,4 @@
-//! Lessons in Train: watching an expert, practising, the test, and what came of it. No drawing here.
+//! Lessons in Train: the expert's demonstration, practice, the test, and the result. No drawing here.
 
 mod ghost;
 mod kept;
@@ -19,68 +19,68 @@ use haptics::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How far a trainee is with a lesson.
+/// Stage of a trainee in a lesson.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {
-    /// Reading what it is about.
+    /// The trainee reads the description.
     Brief,
-    /// The expert shows it.
+    /// The expert demonstrates.
     Watching,
-    /// Trying it; nothing is recorded.
+    /// The trainee practises; nothing is recorded.
     Practising,
     /// The attempt that counts; it is recorded.
     Testing,
     /// The goals are reached; a question is open.
     Asking,
-    /// The recording gets its end and is graded.
+    /// The recording is finished and graded.
     Grading,
-    /// What came of it.
+    /// The result is shown.
     Debrief(Box<Debrief>),
 }
 
-/// What came of an attempt.
+/// Result of an attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Debrief {
-    /// What it is worth.
+    /// Score and judged measures.
     pub grade: Grade,
-    /// Its recording.
+    /// Path of the recording.
     pub path: PathBuf,
-    /// What the hand did.
+    /// Trace of the hand.
     pub trace: Trace,
 }
 
 /// A lesson that is open.
 pub struct Open {
-    /// Which.
+    /// Content of the lesson.
     pub lesson: Arc<Lesson>,
-    /// Which of its worlds stands there.
+    /// Index of the current world among the lesson's variants.
     pub variant: usize,
-    /// How far the trainee is.
+    /// Stage of the trainee.
     pub phase: Phase,
-    /// How far the attempt is.
+    /// Progress of the attempt.
     pub progress: Progress,
-    /// How the expert did it.
+    /// Trace of the expert.
     pub expert: Option<Arc<Trace>>,
-    /// Where the ghost is that goes along while practising.
+    /// Ghost that accompanies the trainee during practice.
     pub ghost: Ghost,
     world: World,
     attempts: usize,
 }
 
-/// What the window knows of lessons.
+/// State of the lessons in the window.
 #[derive(Default)]
 pub struct Lessons {
-    /// Those on offer; read when they are first asked for.
+    /// Available lessons; read on first use.
     pub all: Vec<Arc<Lesson>>,
-    /// What is wrong with lessons of the user's.
+    /// Problems in the user's lessons.
     pub problems: Vec<String>,
-    /// Where the user's lessons are; absent: nowhere.
+    /// Folder of the user's lessons; `None` if there is none.
     pub folder: Option<PathBuf>,
-    /// The side of Train shows lessons.
+    /// True if the side of Train shows lessons.
     pub shown: bool,
-    /// The one that is open.
+    /// Open lesson.
     pub open: Option<Box<Open>>,
-    /// A ghost of the expert's fingers goes along while practising.
+    /// True if the ghost of the expert's fingers is switched off during practice.
     pub ghost_off: bool,
     loaded: bool,
 }
@@ -99,7 +99,7 @@ impl Lessons {
 }
 
 impl Lessons {
-    /// What may be answered now; nothing while no question is open.
+    /// Possible answers; empty while no question is open.
     pub fn answers(&self) -> Vec<String> {
         let open = self.open.as_deref().filter(|open| open.phase == Phase::Asking);
         open.and_then(|open| open.lesson.question.as_ref()).map(|q| q.answers.clone()).unwrap_or_default()
@@ -122,11 +122,11 @@ impl Open {
         })
     }
 
-    /// Begins anew, with a world that is drawn again where the lesson has several.
+    /// Starts over, with a newly drawn world if the lesson has several.
     fn begin(&mut self, trainer: &mut Trainer, operator: Operator) -> Result<(), String> {
         let count = self.lesson.variant_count();
         if count > 1 {
-            // Another one each time, in no order that could be learned; where nobody looks at the clock, in order.
+            // Another variant each time, in an unpredictable order; with a manual clock, in sequence.
             let drawn =
                 std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.subsec_nanos());
             self.attempts += 1;
@@ -146,7 +146,7 @@ impl Open {
         Ok(())
     }
 
-    /// Which step the expert shows now.
+    /// Step that the expert currently shows.
     pub fn step(&self, trainer: &Trainer) -> Option<usize> {
         let now_s = trainer.scene()?.0.state.time_s;
         trainer.acts_begin_s.iter().rposition(|begin_s| *begin_s <= now_s)
@@ -165,7 +165,7 @@ impl Open {
 }
 
 impl Session {
-    /// Opens a lesson and puts its world into the trainer; the expert does it unseen, in the background.
+    /// Opens a lesson and loads its world into the trainer; the expert performs it unseen, in the background.
     pub fn open_lesson(&mut self, ctx: &egui::Context, lesson: &Arc<Lesson>) {
         if self.open_lesson_only(lesson) {
             let lesson = Arc::clone(lesson);
@@ -182,14 +182,14 @@ impl Session {
         }
     }
 
-    /// The same at once, for pictures.
+    /// The same synchronously, for screenshots.
     pub fn open_lesson_now(&mut self, lesson: &Arc<Lesson>) {
         if self.open_lesson_only(lesson) {
             self.expert_did_it(trace::of_expert(lesson).map(Box::new));
         }
     }
 
-    /// Makes a lesson of the calibrated world, with experts of its own; in the background.
+    /// Makes a lesson of the calibrated world, with an expert reference of its own, in the background.
     pub fn practise_on_this(&mut self, ctx: &egui::Context) {
         let Some(world) = self.analysis.as_ref().map(|analysis| analysis.world.clone()) else { return };
         self.jobs.start_watched(ctx, JobKind::Expert, "Watching an expert in this world".to_owned(), move |_| {
@@ -201,7 +201,7 @@ impl Session {
         });
     }
 
-    /// The lesson in the calibrated world is ready.
+    /// Receives the finished lesson of the calibrated world.
     pub(super) fn lesson_made(&mut self, ctx: &egui::Context, lesson: Result<Box<Lesson>, String>) {
         match lesson {
             Ok(lesson) => {
@@ -231,14 +231,14 @@ impl Session {
         }
     }
 
-    /// Leaves the lesson; an attempt that is not over is removed.
+    /// Closes the lesson; an unfinished attempt is removed.
     pub fn close_lesson(&mut self) {
         let Some(open) = self.lessons.open.take() else { return };
         if matches!(open.phase, Phase::Testing | Phase::Asking) {
             self.trainer.discard_recording();
         }
         self.trainer.script.acts = None;
-        // An expert who shows something stops, and the trainee has the hand again.
+        // A demonstrating expert stops, and the trainee regains control.
         if self.trainer.operator == Operator::Scripted
             && let Err(problem) = self.trainer.hand_to(Operator::You)
         {
@@ -246,17 +246,17 @@ impl Session {
         }
     }
 
-    /// Lets the expert show the lesson.
+    /// Starts the expert's demonstration.
     pub fn watch_lesson(&mut self) {
         self.begin_phase(Phase::Watching, Operator::Scripted);
     }
 
-    /// Lets the trainee try it.
+    /// Starts practice.
     pub fn practise_lesson(&mut self) {
         self.begin_phase(Phase::Practising, Operator::You);
     }
 
-    /// Begins the attempt that counts.
+    /// Starts the attempt that counts.
     pub fn test_lesson(&mut self) {
         self.begin_phase(Phase::Testing, Operator::You);
         let Some(open) = self.lessons.open.as_ref().filter(|open| open.phase == Phase::Testing) else { return };
@@ -282,19 +282,19 @@ impl Session {
         }
     }
 
-    /// Back to what the lesson is about; an attempt that is not over is removed.
+    /// Returns to the description of the lesson; an unfinished attempt is removed.
     pub fn back_to_brief(&mut self) {
         self.begin_phase(Phase::Brief, Operator::You);
     }
 
-    /// Looks how far the attempt is. False when it is over because another world was chosen.
+    /// Updates the progress of the attempt. False if it ended because another world was chosen.
     fn see_lesson(&mut self) -> bool {
         let (Some(open), Some((snapshot, world))) = (&mut self.lessons.open, self.trainer.scene()) else {
             return false;
         };
         let is_on = matches!(open.phase, Phase::Watching | Phase::Practising | Phase::Testing | Phase::Asking);
         if is_on && **world != open.world {
-            // What was recorded of it until then is no attempt.
+            // The part recorded until then is not an attempt.
             self.lessons.open = None;
             self.trainer.script.acts = None;
             return false;
@@ -310,14 +310,15 @@ impl Session {
         true
     }
 
-    /// Once a frame: watches the attempt and ends it when its goals are reached, a rule was broken or its time is over.
+    /// Runs once per frame: follows the attempt and ends it when its goals are reached, a rule is broken or its time is
+    /// over.
     pub(super) fn follow_lesson(&mut self, ctx: &egui::Context) {
         if !self.see_lesson() {
             return;
         }
         let Some(open) = self.lessons.open.as_mut().filter(|open| open.phase == Phase::Testing) else { return };
         if !self.trainer.is_recording() {
-            // The disk is full, or the servo has stopped: it was said.
+            // The disk is full, or the servo has stopped: this was reported.
             open.phase = Phase::Brief;
             return;
         }
@@ -329,7 +330,7 @@ impl Session {
         }
     }
 
-    /// The trainee gives up, or has answered: the attempt is graded from its file.
+    /// Ends the attempt because the trainee gives up or has answered; it is graded from its file.
     pub fn end_lesson(&mut self, ctx: &egui::Context, answer: Option<usize>) {
         let Some(open) = &mut self.lessons.open else { return };
         if answer.is_some() {
@@ -341,7 +342,7 @@ impl Session {
         self.jobs.start(ctx, JobKind::Grade, move || Outcome::Graded(grade_file(&lesson, stopping).map(Box::new)));
     }
 
-    /// Ends the attempt and grades it at once, for pictures.
+    /// Ends the attempt and grades it synchronously, for screenshots.
     pub fn end_lesson_now(&mut self, answer: Option<usize>) {
         let Some(open) = &mut self.lessons.open else { return };
         if answer.is_some() {
@@ -352,7 +353,7 @@ impl Session {
         self.graded(grade_file(&lesson, stopping).map(Box::new));
     }
 
-    /// The attempt was graded.
+    /// Receives the result of the grading.
     pub(super) fn graded(&mut self, debrief: Result<Box<Debrief>, String>) {
         if let Ok(debrief) = &debrief {
             self.keep_graded(debrief);
@@ -367,7 +368,7 @@ impl Session {
         }
     }
 
-    /// The expert has done the lesson, unseen.
+    /// Receives the trace of the expert's unseen performance.
     pub(super) fn expert_did_it(&mut self, trace: Result<Box<Trace>, String>) {
         let Some(open) = &mut self.lessons.open else { return };
         match trace {
@@ -377,17 +378,17 @@ impl Session {
     }
 }
 
-/// Waits for the end of the recording and grades what is in it.
+/// Waits for the end of the recording and grades it.
 fn grade_file(lesson: &Lesson, stopping: Stopping) -> Result<Debrief, String> {
     let path = stopping.wait()?.path;
     let (grade, trace) = graded_from(&path, Some(lesson))?;
     Ok(Debrief { grade, path, trace })
 }
 
-/// Grades the attempt in a recording: by the lesson given, else by the one that travels in it.
+/// Grades the attempt in a recording: by the given lesson, or by the one embedded in the recording.
 ///
 /// # Errors
-/// One sentence: it is no attempt, or it cannot be read.
+/// One sentence: it is not an attempt, or it cannot be read.
 pub fn graded_from(path: &Path, lesson: Option<&Lesson>) -> Result<(Grade, Trace), String> {
     let told = |error: &dyn std::fmt::Display| sentence(&error.to_string());
     let recording = estimator::log::load(path, None).map_err(|e| told(&e))?.into_iter().next();

@@ -1,4 +1,5 @@
-//! A person's hand on the mouse that does what the expert did, more slowly: for pictures and tests of a manual clock.
+//! Simulated mouse hand that repeats the expert's performance more slowly: for screenshots and tests with a manual
+//! clock.
 
 use super::Phase;
 use super::trace::Point;
@@ -8,24 +9,24 @@ use estimator::training::lesson::Lesson;
 use haptics::Vec2;
 use haptics::world::State;
 
-/// Pictures a second.
+/// Duration of a frame, s.
 const FRAME_S: f64 = 1.0 / 60.0;
-/// A mouse is slower than an expert's hand.
+/// Speed relative to the expert: a mouse is slower than an expert's hand.
 const SLOWER: f64 = 0.6;
-/// A grip that is meant, N.
+/// Minimum force of an intended grip, N.
 const GRIP_N: f64 = 0.15;
-/// A mouse does not pinch more weakly, N.
+/// Minimum pinch force of a mouse, N.
 const WEAKEST_N: f64 = 0.6;
-/// A pull on what holds an object back, N, and how much farther than the expert a mouse pulls then, m.
+/// Minimum intended pull against a constraint, N, and additional travel of the mouse beyond the expert's, m.
 const PULL_N: f64 = 0.2;
 const UNTIL_TAUT_M: f64 = 0.004;
-/// How much deeper than the expert a mouse presses what it holds, m.
+/// Additional depth, beyond the expert's, to which a mouse presses the held object, m.
 const UNTIL_IT_GIVES_M: f64 = 0.003;
-/// A push to the side that is meant, N.
+/// Minimum force of an intended push to the side, N.
 const PUSH_N: f64 = 0.1;
 
 impl Session {
-    /// Does the open lesson with the mouse for some time, or until its attempt is over.
+    /// Performs the open lesson with the mouse for some time, or until its attempt is over.
     pub fn follow_expert(&mut self, seconds: f64) {
         let mut left_s = seconds;
         while left_s > 0.0 {
@@ -55,27 +56,27 @@ impl Session {
     }
 }
 
-/// Where the mouse is, and what it does.
+/// Position and action of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointed {
-    /// The pointer, m in the world.
+    /// Position of the pointer, m in the world.
     pub at_m: Vec2,
-    /// Its button is down.
+    /// True if its button is down.
     pub pinches: bool,
-    /// How firmly, N.
+    /// Pinch force, N.
     pub strength_n: f64,
-    /// It presses down with what it holds, until that gives.
+    /// True if it presses down with the held object until that yields.
     pub presses: bool,
 }
 
 impl Pointed {
-    /// As the expert did it, by a mouse whose open fingers are `opening_m` apart.
+    /// Mouse action for a point of the expert's trace; `opening_m` is the distance of the mouse's open fingers.
     fn of(point: &Point, opening_m: f64) -> Self {
         let pinches = point.grip_n() > GRIP_N;
         let apart_m = point.tips_in_world[1].x - point.tips_in_world[0].x;
         let push_n = point.tip_force_n[0].x + point.tip_force_n[1].x;
         let farther_m = if pinches && push_n.abs() > PULL_N {
-            // Whoever sees a cable pulls until it is taut.
+            // A person pulls a visible cable until it is taut.
             UNTIL_TAUT_M
         } else if !pinches && push_n.abs() > PUSH_N {
             // Fingers that are farther apart push later.
@@ -83,7 +84,7 @@ impl Pointed {
         } else {
             0.0
         };
-        // Whoever presses down with what is held goes on until it gives.
+        // A person continues to press down until the object yields.
         let presses = pinches && point.tip_force_n[0].y + point.tip_force_n[1].y < -PULL_N;
         let deeper_m = if presses { UNTIL_IT_GIVES_M } else { 0.0 };
         let at_m = point.wanted_m() + Vec2::new(farther_m * push_n.signum(), -deeper_m);
@@ -91,7 +92,8 @@ impl Pointed {
     }
 }
 
-/// What a person's mouse does in a lesson, `every_s` seconds from one to the next: the expert's way, as slowly as [`Session::follow_expert`].
+/// Mouse actions of a person in a lesson, `every_s` seconds apart: the expert's path, as slow as in
+/// [`Session::follow_expert`].
 pub fn pointer_through(lesson: &Lesson, every_s: f64) -> Result<Vec<Pointed>, String> {
     let trace = super::trace::of_expert(lesson)?;
     let world = lesson.world(0).map_err(|error| sentence(&error.to_string()))?;
@@ -109,7 +111,7 @@ mod tests {
     #[test]
     fn a_pointer_never_opens_or_closes_for_a_moment() {
         const EVERY_S: f64 = 0.033;
-        /// Shorter than that nobody presses a button on purpose, s.
+        /// Minimum duration of an intended button press, s.
         const SHORTEST_S: f64 = 0.2;
         let (lessons, problems) = crate::lessons::all(None);
         assert!(problems.is_empty(), "{problems:?}");

@@ -1,4 +1,4 @@
-//! What a hand did, thinned for pictures: the expert's and the trainee's beside each other.
+//! Trace of a hand, thinned for pictures: the expert's and the trainee's side by side.
 
 use super::sentence;
 use estimator::training::lesson::Lesson;
@@ -7,33 +7,33 @@ use haptics::Vec2;
 use haptics::device::{HandImpedance, Skill};
 use haptics::recording::Recording;
 
-/// Points a second.
+/// Points per second.
 const RATE_HZ: f64 = 30.0;
-/// A finger that presses more than this touches, N.
+/// Force above which a finger is in contact, N.
 pub(super) const TOUCH_N: f64 = 0.05;
-/// The expert of the ghost always does it the same way.
+/// Seed of the ghost's expert, so that it always performs the same way.
 const SEED: u64 = 7;
 
-/// One moment.
+/// State of the hand at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Since the beginning, s.
+    /// Time since the start, s.
     pub time_s: f64,
-    /// Where the tips are, m in the world.
+    /// Positions of the tips, m in the world.
     pub tips_in_world: [Vec2; 2],
     /// Force of each tip on the world, N.
     pub tip_force_n: [Vec2; 2],
 }
 
-/// What a hand did.
+/// Trace of a hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
-    /// At even times.
+    /// Points at even times.
     pub points: Vec<Point>,
 }
 
 impl Trace {
-    /// Where the hand is at a time since the hand's first motion, s; after the end where it ended.
+    /// State of the hand at a time since its first motion, s; the last one after the end.
     pub fn at(&self, time_s: f64) -> Option<&Point> {
         let index = (time_s.max(0.0) * RATE_HZ) as usize;
         self.points.get(index).or(self.points.last())
@@ -44,7 +44,7 @@ impl Trace {
         self.points.last().map_or(0.0, |p| p.time_s)
     }
 
-    /// Middle between the tips, m.
+    /// Midpoints between the tips, m in the world.
     pub fn middles(&self) -> impl Iterator<Item = Vec2> {
         self.points.iter().map(Point::middle_m)
     }
@@ -57,30 +57,30 @@ impl Trace {
 }
 
 impl Point {
-    /// Middle between the tips, m in the world.
+    /// Midpoint between the tips, m in the world.
     pub fn middle_m(&self) -> Vec2 {
         0.5 * (self.tips_in_world[0] + self.tips_in_world[1])
     }
 
-    /// True while something is touched.
+    /// True while one finger is in contact.
     pub fn touches(&self) -> bool {
         self.tip_force_n.iter().any(|f| f.norm() > TOUCH_N)
     }
 
-    /// How hard both fingers press against each other, N.
+    /// Grip force between both fingers, N.
     pub fn grip_n(&self) -> f64 {
         let [left, right] = [self.tip_force_n[0].x, -self.tip_force_n[1].x];
         if left.min(right) > 0.0 { 0.5 * (left + right) } else { 0.0 }
     }
 
-    /// Where the middle between the fingers is wanted, m in the world: the arms' springs give by the force on them.
+    /// Desired midpoint between the fingers, m in the world: the arms' springs deflect under the force on them.
     pub fn wanted_m(&self) -> Vec2 {
         let give = (self.tip_force_n[0] + self.tip_force_n[1]) / (2.0 * HandImpedance::default().stiffness_n_m);
         self.middle_m() + give
     }
 }
 
-/// The scripted expert does a lesson, unseen.
+/// Trace of the scripted expert in a lesson, performed unseen.
 pub(super) fn of_expert(lesson: &Lesson) -> Result<Trace, String> {
     let done = perform(lesson, 0, Skill::expert(), SEED).map_err(|error| sentence(&error.to_string()))?;
     let mut trace = Trace::default();
@@ -91,7 +91,7 @@ pub(super) fn of_expert(lesson: &Lesson) -> Result<Trace, String> {
     Ok(trace)
 }
 
-/// What the hand in a recording did; nothing without two fingers and a clock.
+/// Trace of the hand in a recording; empty without two fingers and a clock.
 pub fn trace_of(recording: &Recording) -> Trace {
     let mut trace = Trace::default();
     let Some(time_s) = &recording.time_s else { return trace };

@@ -1,4 +1,4 @@
-//! The dialog's frame: heading, columns on the left, preview on the right, what to do below.
+//! The dialog's frame: heading, columns on the left, preview on the right, actions below.
 
 use super::{Mapping, name_of, options, plot, save, table};
 use crate::ui::icons::Icon;
@@ -8,13 +8,13 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{plain_card, primary_button, remark, sheet};
 use egui::{Align, CentralPanel, Frame, Key, Layout, Margin, Panel as Side, RichText, Ui};
 
-/// What the user has done with the dialog.
+/// User's decision in the dialog.
 enum Done {
     Save,
     Cancel,
 }
 
-/// Draws the dialog into all the room there is.
+/// Draws the dialog into the available space.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     let Some(mut mapping) = session.mapping.take() else { return };
     let ctx = ui.ctx().clone();
@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     match done {
         Some(Done::Cancel) => {
             session.jobs.cancel(JobKind::Preview);
-            // The file is still not open, and the reason is still the same.
+            // The file is still not open, for the same reason.
             if let Some(why) = mapping.why.filter(|_| session.path.as_ref() != Some(&mapping.path)) {
                 session.fail(why);
             }

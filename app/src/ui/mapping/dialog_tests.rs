@@ -11,8 +11,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A cart of 2 kg with friction, pushed to and fro, as a test rig would write it: odd names, millimetres, a force of the
-/// opposite sign whose column says volts.
+/// A cart of 2 kg with friction, pushed back and forth, as a test rig would write it: odd names and millimetres. The
+/// force has the opposite sign, and its header says volts.
 fn rig_table(folder: &Path) -> PathBuf {
     let mut text = "# Prüfstand 3\nTakt;Schlitten;Ausgang_V;Öl [°C]\n".to_owned();
     for i in 0..6_000 {
@@ -55,7 +55,7 @@ fn drop_file(harness: &mut Harness<'_, App>, path: &Path) {
     harness.state_mut().session.open_dropped(&ctx, &[path.to_path_buf()]);
 }
 
-/// Opens a drop-down and takes an entry of it.
+/// Opens a drop-down and selects one of its entries.
 fn choose(harness: &mut Harness<'_, App>, list: &str, entry: &str) {
     harness.get_by_role_and_label(egui::Role::ComboBox, list).click();
     harness.run_steps(3);
@@ -95,7 +95,7 @@ fn a_rigs_table_becomes_a_fit_by_clicking_only() {
     choose(&mut harness, "Meaning of Ausgang_V", "f_N · applied force");
     harness.get_by_label("Sign of Ausgang_V").click();
     harness.run_steps(2);
-    // The factor is typed.
+    // The factor is typed in.
     harness.state_mut().session.mapping.as_mut().expect("open").draft.rows[2].scale = 4.0;
     harness.run_steps(2);
     choose(&mut harness, "Task", "mechanism");

@@ -1,4 +1,5 @@
-//! The mapping that is being edited, and its way from a sidecar and back. What the dialog does not show stays as it was.
+//! The mapping that is being edited, and its conversion from and to a sidecar. Fields that the dialog does not show
+//! stay unchanged.
 
 use super::facts::{ColumnFacts, FileFacts};
 use super::file_units::{FileUnit, spelled};
@@ -8,45 +9,45 @@ use estimator::log::units;
 use haptics::recording::{Meta, Task};
 use serde_json::Value;
 
-/// What a column is to be.
+/// Role of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Role {
     /// Kept under its own name, as an extra channel.
     Extra,
-    /// A name of the program in SI units, `trial`, `label`, or a name of the user's.
+    /// A column name of the program in SI units, `trial`, `label`, or a name of the user's.
     Named(String),
 }
 
 /// One column of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What the file says.
+    /// Facts about the column in the file.
     pub facts: ColumnFacts,
-    /// What it is to be.
+    /// Role of the column.
     pub role: Role,
-    /// Its unit in the file.
+    /// Unit of the file's values.
     pub unit: Option<&'static FileUnit>,
-    /// True when the unit stands in the header, false when it was told from the numbers.
+    /// True if the header states the unit, false if it was inferred from the values.
     pub unit_stated: bool,
-    /// Counts the other way round.
+    /// True if the sign is inverted.
     pub negative: bool,
-    /// Factor beside the unit.
+    /// Factor applied beside the unit.
     pub scale: f64,
-    /// The key in the sidecar that this row stands for.
+    /// Key of this row in the sidecar.
     key: Option<String>,
 }
 
 /// The whole mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
-    /// The columns.
+    /// Rows, one per column.
     pub rows: Vec<Row>,
-    /// Everything else that the sidecar says; the dialog changes parts of it in place.
+    /// Remaining content of the sidecar; the dialog edits parts of it in place.
     pub meta: Meta,
 }
 
 impl Row {
-    /// The name that it is to have in the program.
+    /// Name of the column in the program; `None` for an extra channel.
     pub fn name(&self) -> Option<&str> {
         match &self.role {
             Role::Named(name) => Some(name),
@@ -54,7 +55,7 @@ impl Row {
         }
     }
 
-    /// Gives it another role, with the unit that goes with it.
+    /// Sets the role, with its matching unit.
     pub fn set_role(&mut self, role: Role) {
         let before = self.name().and_then(dimension);
         self.role = role;
@@ -64,18 +65,18 @@ impl Row {
         }
     }
 
-    /// The unit that stands in the header as the reader reads it.
+    /// Unit that the reader recognizes in the header.
     fn own_unit(&self) -> Option<units::Unit> {
         units::split(&self.facts.header).map(|(_, unit)| unit)
     }
 
-    /// True when the header states a unit of something else than the name measures: its factor must be given.
+    /// True if the header's unit has another dimension than the name: a factor is then required.
     pub fn needs_a_factor(&self) -> bool {
         let Some(wanted) = self.name().and_then(dimension) else { return false };
         self.own_unit().is_some_and(|own| own.dimension != wanted)
     }
 
-    /// The name that the reader gives a column which no sidecar mentions.
+    /// Name that the reader assigns to a column without a sidecar entry.
     fn read_as(&self) -> Option<String> {
         let header = &self.facts.header;
         if header == "trial" || header == "label" {
@@ -86,7 +87,7 @@ impl Row {
         known.then(|| format!("{quantity}_{}", unit.si))
     }
 
-    /// True when the reader would refuse the header as it stands, or take it as something of the program's.
+    /// True if the reader would reject the header as it is, or read it as a quantity of the program.
     fn has_a_meaning(&self) -> bool {
         let header = &self.facts.header;
         let known = |part: &str| units::quantity_dimensions(part).is_some();
@@ -107,7 +108,7 @@ impl Row {
             (None, Some(symbol)) if !tail_is_unit => {
                 return (format!("{quantity}_{symbol}"), (self.scale != 1.0).then_some(self.scale));
             }
-            // The header's own unit is another quantity's, or unknown to the reader: only a factor helps.
+            // The header's unit belongs to another quantity or is unknown to the reader: only a factor helps.
             _ => return (name.to_owned(), Some(self.scale * unit.factor)),
         };
         (name.to_owned(), ((scale - 1.0).abs() > 1e-12).then_some(scale))
@@ -115,7 +116,7 @@ impl Row {
 }
 
 impl Draft {
-    /// A draft of what `meta` says about a file; columns that it says nothing about are guessed when it maps none.
+    /// Draft from a file and its `meta`; if `meta` maps no column, the columns are guessed.
     pub fn new(file: &FileFacts, meta: Meta) -> Self {
         let row = |facts: &ColumnFacts| Row {
             facts: facts.clone(),
@@ -137,7 +138,7 @@ impl Draft {
     }
 
     fn take_columns(&mut self) {
-        // Where several names share a column, the program's own is the one that is shown.
+        // Of several names for one column, the program's own is shown.
         let stranger = |name: &String| {
             units::split(name).is_none_or(|(quantity, _)| units::quantity_dimensions(quantity).is_none())
                 && !matches!(name.as_str(), "trial" | "label")
@@ -174,7 +175,7 @@ impl Draft {
         }
     }
 
-    /// Puts guesses into every row, over whatever was there.
+    /// Replaces every row by a guess.
     pub fn guess(&mut self) {
         let facts: Vec<ColumnFacts> = self.rows.iter().map(|r| r.facts.clone()).collect();
         for (row, guess) in self.rows.iter_mut().zip(guess(&facts)) {
@@ -185,7 +186,7 @@ impl Draft {
             }
         }
         let words = |r: &Row| !r.facts.numeric && r.role == Role::Extra;
-        // A table of several things: the first of them, until another is chosen.
+        // A table of several recordings: the first is selected until the user chooses another.
         if self.meta.select.is_empty()
             && let Some(row) = self.rows.iter().find(|r| words(r) && several(&r.facts))
             && let Some(first) = row.facts.distinct.as_ref().and_then(|d| d.first())
@@ -194,18 +195,18 @@ impl Draft {
         }
     }
 
-    /// The columns that `columns` names and the file does not have.
+    /// Entries of `columns` whose column is missing in the file.
     pub fn strays(&self) -> Vec<(String, String)> {
         let there = |source: &str| self.rows.iter().any(|r| r.facts.header == source);
         self.meta.columns.iter().filter(|(_, s)| !there(s)).map(|(n, s)| (n.clone(), s.clone())).collect()
     }
 
-    /// Names that two columns claim.
+    /// True if two columns claim this name.
     pub fn claimed_twice(&self, name: &str) -> bool {
         self.rows.iter().filter(|r| r.name() == Some(name)).count() > 1
     }
 
-    /// The first meaning that two columns have, in one sentence.
+    /// First meaning that two columns claim, as one sentence.
     pub fn clash(&self) -> Option<String> {
         let name = self.rows.iter().filter_map(Row::name).find(|name| self.claimed_twice(name))?;
         let headers: Vec<String> =
@@ -213,18 +214,18 @@ impl Draft {
         Some(format!("{} both mean {name}: choose one of them.", headers.join(" and ")))
     }
 
-    /// True when there is a column of time.
+    /// True if there is a column of time.
     pub fn has_time(&self) -> bool {
         self.rows.iter().any(|r| r.name() == Some("t_s"))
     }
 
-    /// Values that a column of the file, or `trial`, can have in `select`.
+    /// Possible values of a column of the file, or of `trial`, in `select`.
     pub fn values_of(&self, column: &str) -> &[String] {
         let source = self.rows.iter().find(|r| r.facts.header == column || r.name() == Some(column));
         source.and_then(|r| r.facts.distinct.as_deref()).unwrap_or_default()
     }
 
-    /// The names that a task offers a row: those of the task, and the one it has.
+    /// Names offered for a row: those of the task, and the row's own.
     pub fn offered(&self, row: usize) -> Vec<&'static names::Name> {
         let mut offered = names::offered(self.meta.task);
         let words = !self.rows[row].facts.numeric;
@@ -234,13 +235,13 @@ impl Draft {
         {
             offered.push(name);
         }
-        // What goes with the rest of the columns comes first.
+        // Names that match the other columns come first.
         let in_use = |form| form == Form::Any || self.rows.iter().any(|r| form_of(r) == Some(form));
         offered.sort_by_key(|n| !in_use(n.form));
         offered
     }
 
-    /// The sidecar as it would be saved.
+    /// Sidecar that would be saved.
     pub fn sidecar(&self) -> Meta {
         let mut meta = self.meta.clone();
         for row in &self.rows {
@@ -253,15 +254,15 @@ impl Draft {
     }
 }
 
-/// The way of recording that a column's meaning belongs to.
+/// Form of recording that a column's name belongs to.
 fn form_of(row: &Row) -> Option<Form> {
     row.name().and_then(names::find).map(|n| n.form)
 }
 
-/// Put before the name of a column that is not to be what its name says.
+/// Prefix of an extra channel whose header would otherwise have a meaning.
 const EXTRA: &str = "extra_";
 
-/// True for a column of a few words, each in a block of rows.
+/// True for a column with a few distinct values, each in a block of rows.
 fn several(facts: &ColumnFacts) -> bool {
     facts.distinct.as_ref().is_some_and(|d| d.len() > 1 && facts.changes < 4 * d.len())
 }
@@ -273,7 +274,7 @@ impl Row {
         };
         let (scale, sign) = (pick(&meta.scale), pick(&meta.sign));
         (self.scale, self.negative) = (scale, sign < 0.0);
-        // A factor that is a unit's: `0.3048` beside metres is feet.
+        // A factor can stand for a unit: `0.3048` beside metres means feet.
         let own = self.own_unit().map_or(1.0, |u| u.factor);
         if let Some(unit) = self.unit.filter(|u| scale != 1.0 && !self.needs_factor_for(u)) {
             let same = |other: &&FileUnit| (other.factor / (scale * own) - 1.0).abs() < 1e-9;
@@ -287,7 +288,7 @@ impl Row {
         self.own_unit().is_some_and(|own| own.dimension != unit.dimension)
     }
 
-    /// Takes out of `meta` what this row says anew.
+    /// Removes from `meta` the entries that this row replaces.
     fn forget(&self, meta: &mut Meta, before: &Meta) {
         let mut keys: Vec<&str> = vec![];
         if let Some(key) = &self.key {
@@ -300,14 +301,14 @@ impl Row {
         let si = |key: &str| units::split(key).map(|(q, unit)| format!("{q}_{}", unit.si));
         let canonical: Vec<String> = keys.iter().filter_map(|k| si(k)).collect();
         let mine = |key: &str| keys.contains(&key) || canonical.iter().any(|c| c == key);
-        // A factor of an extra channel is not shown, so it stays.
+        // The factor of an extra channel is not shown, so it stays.
         let header = |key: &str| key == self.facts.header && self.name().is_some();
         let foreign = |key: &str| before.columns.get(key).is_some_and(|source| *source != self.facts.header);
         meta.scale.retain(|key, _| !(mine(key) || header(key)) || foreign(key));
         meta.sign.retain(|key, _| !(mine(key) || header(key)) || foreign(key));
     }
 
-    /// Puts into `meta` what this row says.
+    /// Writes the entries of this row into `meta`.
     fn put(&self, meta: &mut Meta) {
         let header = &self.facts.header;
         if header.is_empty() {
@@ -332,7 +333,7 @@ impl Row {
     }
 }
 
-/// Axes that may point up, with words.
+/// Axes that may point up, with their labels.
 pub const UP: [(&str, &str); 7] = [
     ("y", "y (usual)"),
     ("-y", "−y"),
@@ -343,7 +344,7 @@ pub const UP: [(&str, &str); 7] = [
     ("none", "none: it lies flat"),
 ];
 
-/// What a task is called.
+/// Label of a task.
 pub fn task_words(task: Option<Task>) -> String {
     task.map_or_else(|| "not stated".to_owned(), |t| t.name().replace('-', " "))
 }

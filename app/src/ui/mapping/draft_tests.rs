@@ -1,4 +1,4 @@
-//! From a sidecar to the dialog and back: what is edited arrives, what is not stays.
+//! Conversion from a sidecar to the dialog and back: edits are stored, everything else stays unchanged.
 
 use super::draft::{Draft, Role};
 use super::facts::{FileFacts, look};
@@ -56,7 +56,7 @@ fn nothing_of_a_sidecar_is_lost() {
     let mut draft = table.draft(full);
     assert_eq!(draft.strays(), [("gone_m".to_owned(), "not there".to_owned())]);
     let (before, mut after) = (json(&meta), json(&draft.sidecar()));
-    // A sign of +1 says nothing and may go.
+    // A sign of +1 is the default and may be dropped.
     assert!(after["sign"].get("q_m").is_none());
     after["sign"]["q_m"] = 1.0.into();
     assert_eq!(after, before);

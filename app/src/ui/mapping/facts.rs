@@ -1,6 +1,6 @@
-//! A look at a file before anybody has said what its columns mean: names, first values, ranges.
+//! Inspection of a file before its columns have a meaning: names, first values, ranges.
 //!
-//! Tables of text are looked at as text, so that columns of words can be trials, labels and selections. What is no text goes
+//! Text tables are inspected as text, so that columns of words can be trials, labels and selections. Other files go
 //! through the reader under neutral names.
 
 use estimator::log::{self, LogError, units};
@@ -9,50 +9,50 @@ use std::collections::BTreeSet;
 use std::io::Read as _;
 use std::path::Path;
 
-/// How many bytes of a table of text are looked at.
+/// Number of bytes of a text table that are inspected.
 const LOOK_BYTES: u64 = 32 << 20;
-/// First values that are shown.
+/// Number of first values that are shown.
 const SHOWN_CELLS: usize = 3;
-/// A clock that starts afresh for every trial goes up for at least this many rows in between.
+/// Minimum number of increasing rows between two restarts of a clock that starts again for every trial.
 const ROWS_A_START: usize = 20;
-/// Distinct values that are kept: enough to choose from.
+/// Maximum number of distinct values that are kept.
 const MOST_DISTINCT: usize = 60;
 
-/// What is known of a column from looking at it.
+/// Facts about a column from inspection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnFacts {
     /// Its name in the file.
     pub header: String,
-    /// The first values, as they stand there.
+    /// First values, as written in the file.
     pub first: Vec<String>,
-    /// Every cell is a number.
+    /// True if every cell is a number.
     pub numeric: bool,
     /// Smallest and largest number.
     pub range: Option<(f64, f64)>,
-    /// Numbers go up from row to row, but for a few fresh starts.
+    /// True if the numbers increase from row to row, apart from a few restarts.
     pub increasing: bool,
-    /// Every number is whole.
+    /// True if every number is whole.
     pub whole: bool,
-    /// The middle of the steps from row to row.
+    /// Median step from row to row.
     pub step: Option<f64>,
-    /// How often the value changes from row to row.
+    /// Number of rows whose value differs from the previous row.
     pub changes: usize,
-    /// Distinct values in the order of the file; `None` when there are more than a list can hold.
+    /// Distinct values in the order of the file; `None` if there are more than a list can hold.
     pub distinct: Option<Vec<String>>,
 }
 
-/// A file that has been looked at.
+/// Facts about an inspected file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FileFacts {
     /// Its columns.
     pub columns: Vec<ColumnFacts>,
-    /// Rows that were looked at.
+    /// Number of inspected rows.
     pub rows: usize,
-    /// False when the file goes on behind them.
+    /// False if the file continues after them.
     pub whole_file: bool,
 }
 
-/// Looks at a file.
+/// Inspects a file.
 pub fn look(path: &Path) -> Result<FileFacts, LogError> {
     let headers = log::headers(path)?;
     match text_rows(path, &headers)? {
@@ -63,7 +63,7 @@ pub fn look(path: &Path) -> Result<FileFacts, LogError> {
 
 type Rows = Vec<csv::StringRecord>;
 
-/// The rows of a table of text; `None` when the file is none.
+/// Rows of a text table; `None` if the file is not one.
 fn text_rows(path: &Path, headers: &[String]) -> Result<Option<(Rows, bool)>, LogError> {
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
     let mut bytes = Vec::new();
@@ -82,7 +82,7 @@ fn text_rows(path: &Path, headers: &[String]) -> Result<Option<(Rows, bool)>, Lo
             .trim(csv::Trim::All)
             .flexible(true)
             .from_reader(text);
-        // The reader has read the header; the delimiter that splits it the same way is the file's.
+        // The reader has parsed the header; the delimiter that splits it the same way is the file's.
         let same = reader.headers().is_ok_and(|found| found.iter().eq(headers.iter().map(String::as_str)));
         same.then(|| {
             let decimal_comma = delimiter != b',';
@@ -98,7 +98,7 @@ fn text_rows(path: &Path, headers: &[String]) -> Result<Option<(Rows, bool)>, Lo
     }))
 }
 
-/// Numbers with a decimal point.
+/// Row whose numbers have a decimal point.
 fn plain(row: csv::StringRecord, decimal_comma: bool) -> csv::StringRecord {
     if !decimal_comma || !row.iter().any(|cell| cell.contains(',')) {
         return row;
@@ -161,7 +161,7 @@ fn of_numbers(values: &[f64]) -> ColumnFacts {
     }
 }
 
-/// Facts about a file that is not text: every column under a name that means nothing.
+/// Facts about a file that is not text: every column is read under a meaningless name.
 fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogError> {
     let neutral = |at: usize| format!("column {}", at + 1);
     let mut hidden: Vec<usize> = (0..headers.len()).filter(|&at| has_a_meaning(&headers[at])).collect();
@@ -169,7 +169,7 @@ fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogE
         let meta =
             Meta { columns: hidden.iter().map(|&at| (neutral(at), headers[at].clone())).collect(), ..Meta::default() };
         match log::load_with_meta(path, &meta) {
-            // A column of words under the name of a quantity: it is left to itself.
+            // A column of words under the name of a quantity is read separately.
             Err(LogError::BadCell { column, .. }) if hidden.iter().any(|&at| headers[at] == column) => {
                 hidden.retain(|&at| headers[at] != column);
             }
@@ -202,7 +202,7 @@ fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogE
     })
 }
 
-/// True for a name that the reader would take as a quantity, or refuse because of its unit.
+/// True for a name that the reader would read as a quantity, or reject because of its unit.
 fn has_a_meaning(header: &str) -> bool {
     let known = |part: &str| units::quantity_dimensions(part).is_some();
     known(header)

@@ -1,20 +1,20 @@
-//! Units that files use, also those that the reader converts only with a factor in the sidecar.
+//! Units that files use, including those that the reader converts only by a factor in the sidecar.
 
 use estimator::log::units::{self, Dimension};
 use std::f64::consts::{PI, TAU};
 
-/// A unit in which a column may stand.
+/// Unit of a column in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FileUnit {
-    /// As it is shown.
+    /// Displayed symbol.
     pub shown: &'static str,
-    /// As the reader knows it; `None`: it takes a factor in the sidecar.
+    /// Symbol of the reader; `None` if the sidecar needs a factor.
     pub symbol: Option<&'static str>,
-    /// What it measures.
+    /// Dimension that it measures.
     pub dimension: Dimension,
     /// SI value = number × factor.
     pub factor: f64,
-    /// Spellings, in lower case without blanks, that mean it.
+    /// Accepted spellings, in lower case without blanks.
     spellings: &'static [&'static str],
 }
 
@@ -42,7 +42,7 @@ const KGF_N: f64 = 9.806_65;
 const POUND_KG: f64 = 0.453_592_37;
 const INCH_M: f64 = 0.0254;
 
-/// Every unit on offer; the first of a dimension is the SI unit.
+/// All offered units; the first of a dimension is the SI unit.
 pub const FILE_UNITS: [FileUnit; 39] = [
     own("m", "m", Dimension::Length, 1.0, &["m", "meter", "metre", "meters"]),
     own("cm", "cm", Dimension::Length, 1e-2, &["cm"]),
@@ -103,7 +103,7 @@ impl FileUnit {
     }
 }
 
-/// A unit by the way it is written; case counts where it must (`mN` is no `MN`, `Nm` no `nm`).
+/// Unit by its spelling; case matters where it must (`mN` is not `MN`, `Nm` not `nm`).
 pub fn spelled(text: &str) -> Option<&'static FileUnit> {
     let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     if let Some(unit) = FILE_UNITS.iter().find(|u| u.shown == text || u.symbol == Some(text.as_str())) {
@@ -113,7 +113,7 @@ pub fn spelled(text: &str) -> Option<&'static FileUnit> {
     FILE_UNITS.iter().find(|u| u.spellings.contains(&lower.as_str()))
 }
 
-/// The name of a column without its unit, and the unit: `Fx1 [N]`, `Weg (mm)`, `pos in mm`, `theta_deg`, `speed/rpm`.
+/// Splits a column header into name and unit: `Fx1 [N]`, `Weg (mm)`, `pos in mm`, `theta_deg`, `speed/rpm`.
 pub fn unit_in(header: &str) -> (String, Option<&'static FileUnit>) {
     let header = header.trim();
     if let Some((quantity, unit)) = units::split(header)
@@ -128,7 +128,7 @@ pub fn unit_in(header: &str) -> (String, Option<&'static FileUnit>) {
             return (name.trim().to_owned(), spelled(inside.trim_start_matches("in ")));
         }
     }
-    // `F/kN`, `Kraft in N`; the latest sign first, so that `v/m/s` has a chance as a whole.
+    // `F/kN`, `Kraft in N`; the latest separator first, so that `v/m/s` can match as a whole.
     let marks = [" in ", " / ", "/", ",", "_in_"];
     let marked = marks.iter().find_map(|mark| {
         let mut places = header.match_indices(mark);
@@ -147,7 +147,8 @@ pub fn unit_in(header: &str) -> (String, Option<&'static FileUnit>) {
     (header.to_owned(), None)
 }
 
-/// A unit after a mere blank or underscore: single letters other than the SI ones are rather names (`pos_a`, `force_p`).
+/// Unit after a mere blank or underscore: single letters other than the SI ones are more likely names (`pos_a`,
+/// `force_p`).
 fn word(text: &str) -> Option<&'static FileUnit> {
     if text.len() == 1 && !["m", "s", "N", "V", "A", "°"].contains(&text) {
         return None;

@@ -1,4 +1,5 @@
-//! What the columns of a foreign table probably mean: from their names, units and ranges. Always only a proposal.
+//! Probable meaning of the columns of a foreign table, guessed from names, units and ranges. It is always only a
+//! proposal.
 
 use super::facts::ColumnFacts;
 use super::file_units::{FileUnit, unit_in};
@@ -7,21 +8,21 @@ use super::words::{Axis, Joint, Kind, Reading, read};
 use estimator::log::PAIRS;
 use estimator::log::units::{self, Dimension};
 
-/// What is proposed for one column.
+/// Proposal for one column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Guess {
-    /// The program's name, in SI units; `None`: an extra channel.
+    /// Program's name, in SI units; `None` for an extra channel.
     pub name: Option<String>,
-    /// The unit that the file uses; `None` where there is none to choose.
+    /// Unit of the file; `None` where there is none to choose.
     pub unit: Option<&'static FileUnit>,
-    /// Why the unit: true when the name states it, false when it was told from the range.
+    /// True if the name states the unit, false if it was inferred from the range.
     pub stated: bool,
 }
 
-/// Points of a column that bears the program's own name.
+/// Points of a column that has the program's own name.
 const OWN_NAME: i32 = 1_000;
 
-/// A name that a column could have, and how well.
+/// Possible name of a column, with points for its match.
 #[derive(Clone, Debug)]
 struct Candidate {
     column: usize,
@@ -49,7 +50,7 @@ pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
         .collect()
 }
 
-/// The unit of a column in the dimension of `name`: as the header states it, else by the range.
+/// Unit of a column in the dimension of `name`: as the header states it, otherwise inferred from the range.
 pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static FileUnit>, bool) {
     let stated = unit_in(&facts.header).1;
     let Some(dimension) = name.and_then(super::names::dimension) else { return (stated, stated.is_some()) };
@@ -59,15 +60,15 @@ pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static File
     }
 }
 
-/// A unit that makes the numbers those of a hand and the things it moves.
+/// Unit that makes the values plausible for a hand and the objects it moves.
 fn by_range(facts: &ColumnFacts, dimension: Dimension) -> Option<&'static FileUnit> {
     let reach = facts.range.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
     let symbol = match dimension {
         Dimension::Time => return Some(clock_unit(facts, reach)),
-        // A workspace is a metre across; five thousand of anything else are micrometres.
+        // A workspace is at most a metre; values above 5000 are micrometres.
         Dimension::Length if reach > 5_000.0 => "um",
         Dimension::Length if reach > 5.0 => "mm",
-        // Two turns are more than a joint does.
+        // A joint makes less than two turns.
         Dimension::Angle if reach > 4.0 * std::f64::consts::PI => "deg",
         Dimension::AngularVelocity if reach > 100.0 => "deg_s",
         Dimension::Velocity if reach > 20.0 => "mm_s",
@@ -78,7 +79,7 @@ fn by_range(facts: &ColumnFacts, dimension: Dimension) -> Option<&'static FileUn
     FileUnit::of_symbol(symbol)
 }
 
-/// The unit of a clock: epochs by their size in our century, counters by their steps.
+/// Unit of a clock: epochs by their magnitude in our century, counters by their steps.
 fn clock_unit(facts: &ColumnFacts, reach: f64) -> &'static FileUnit {
     let step = facts.step.unwrap_or(0.0);
     let shown = match () {
@@ -107,7 +108,7 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
         return made(facts.header.clone(), OWN_NAME);
     }
     if reading.kind == Some(Kind::Trial) && (facts.whole || !facts.numeric) && facts.distinct.is_some() {
-        // A number that changes with every row is a counter of samples.
+        // A number that changes with every row is a sample counter.
         return (facts.changes < facts.distinct.as_ref().map_or(0, Vec::len).max(1))
             .then(|| made("trial".to_owned(), 5))
             .flatten();
@@ -130,12 +131,12 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     made(name, reading.points)
 }
 
-/// True when the unit in the header measures something else.
+/// True if the unit in the header measures something else.
 fn stated_otherwise(header: &str, kind: Kind) -> bool {
     unit_in(header).1.is_some_and(|unit| !kind.dimensions().contains(&unit.dimension))
 }
 
-/// The program's name of what a header says.
+/// Program's name for the reading of a header.
 fn name_of(kind: Kind, reading: &Reading) -> Option<String> {
     let finger = match reading.finger {
         Some(1) => "1",
@@ -167,7 +168,7 @@ fn name_of(kind: Kind, reading: &Reading) -> Option<String> {
     Some(name)
 }
 
-/// Coordinate and force of one place go together: `jaw_angle` with `jaw_torque`.
+/// Prefers pairs of coordinate and force of one place: `jaw_angle` with `jaw_torque`.
 fn prefer_pairs(candidates: &mut [Candidate]) {
     let mates = [("q_m", "f_N"), ("q_rad", "tau_Nm")];
     let shared = |a: &Candidate, b: &Candidate| a.words.iter().filter(|w| b.words.contains(w)).count();
@@ -189,7 +190,7 @@ fn prefer_pairs(candidates: &mut [Candidate]) {
     }
 }
 
-/// One column a name: the one with the most points, the first of equals.
+/// One column per name: the one with the most points, the first of equals.
 fn best_of_each(candidates: Vec<Candidate>) -> Vec<Candidate> {
     let mut chosen: Vec<Candidate> = Vec::new();
     for candidate in candidates {
@@ -202,9 +203,9 @@ fn best_of_each(candidates: Vec<Candidate>) -> Vec<Candidate> {
     chosen
 }
 
-/// Leaves one form of recording, complete in itself, the fullest that is there.
+/// Reduces the choice to one complete form of recording, the richest present: tips, joints, tool, or coordinate.
 fn settle_forms(chosen: &mut Vec<Candidate>) {
-    // Halves of vectors are of no use; what a half held up falls with it.
+    // Half a vector is useless; columns that depended on it are dropped, too.
     loop {
         let has = |name: &str| chosen.iter().any(|c| c.name == name);
         let half: Vec<&str> = PAIRS
@@ -225,15 +226,15 @@ fn settle_forms(chosen: &mut Vec<Candidate>) {
         () if has("x_m") || has("qb_rad") => Form::Tool,
         () => Form::Coordinate,
     };
-    // One coordinate: the one whose force is there, else the length.
+    // One coordinate: the one whose force is present, otherwise the length.
     let angle = has("q_rad") && (!has("q_m") || (has("tau_Nm") && !has("f_N")));
     let dropped: &[&str] = if angle { &["q_m", "dq_m_s", "f_N"] } else { &["q_rad", "dq_rad_s", "tau_Nm"] };
     chosen.retain(|c| {
         let of = find(&c.name).map_or(form, |n| n.form);
-        // Joints of two fingers come with forces at their tips.
+        // Joints of two fingers can have forces at the fingertips.
         let force = form == Form::Joints && of == Form::Tips && c.name.starts_with('f');
         let fits = of == Form::Any || of == form || force;
-        // What bears the program's own name already is left as it is.
+        // A column that has the program's own name stays as it is.
         c.points >= OWN_NAME || (fits && !dropped.contains(&c.name.as_str()))
     });
 }

@@ -1,4 +1,4 @@
-//! Guesses over the headers of the real recordings that the project is checked with, and over invented ones.
+//! Guesses for the headers of the project's real reference recordings, and for invented ones.
 
 use super::facts::ColumnFacts;
 use super::guess::guess;
@@ -23,7 +23,7 @@ fn column(text: &str) -> ColumnFacts {
     }
 }
 
-/// `name unit` of every column that gets a name, in the order of the table.
+/// List of `name unit` for every column that gets a name, in the order of the table.
 fn guessed(columns: &[&str]) -> Vec<String> {
     let facts: Vec<ColumnFacts> = columns.iter().map(|c| column(c)).collect();
     guess(&facts)
@@ -93,7 +93,7 @@ fn invented_ones() {
             "Zeit [ms]|0|9000|1;Weg (mm)|0|300;Kraft [N]|-20|20;Öltemperatur [°C]|20|40",
             &["t_s = Zeit [ms] ms", "q_m = Weg (mm) mm", "f_N = Kraft [N] N"][..],
         ),
-        // Two fingers by side, without units: lengths told from the range.
+        // Two fingers by side, without units: lengths inferred from the range.
         (
             "stamp|1700000000000|1700000009000|1;left.pos.x|-40|40;left.pos.y|0|60;right.pos.x|-30|50;right.pos.y|0|60;\
              force_left_x;force_left_y;force_right_x;force_right_y",
@@ -124,12 +124,12 @@ fn invented_ones() {
                 "fy2_N = Fy2 [N] N",
             ],
         ),
-        // A door: angle in degrees by its range, torque; the command is left alone.
+        // A door: angle in degrees by its range, torque; the command column is ignored.
         (
             "time_ms|0|9000|1;theta|0|90;torque cmd;torque actual [N*m]",
             &["t_s = time_ms ms", "q_rad = theta °", "tau_Nm = torque actual [N*m] N·m"],
         ),
-        // Half a vector says nothing.
+        // Half a vector has no meaning.
         ("time;pos.x;speed", &["t_s = time s", "dq_m_s = speed m/s"]),
         // A single finger's joints.
         (
@@ -142,7 +142,7 @@ fn invented_ones() {
                 "fy_N = Fy N",
             ],
         ),
-        // Nothing that could be meant.
+        // No recognizable column.
         ("a;b;voltage;comment", &[]),
         // Units that need a factor.
         (

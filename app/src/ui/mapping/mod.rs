@@ -1,6 +1,6 @@
-//! The mapping dialog: what the columns of a foreign table mean, with a live preview; it writes the sidecar.
+//! The mapping dialog: the meaning of the columns of a foreign table, with a live preview; it writes the sidecar.
 //!
-//! [`facts`] looks at the file, [`words`] and [`guess`] read the names, [`draft`] is what is edited and becomes the sidecar,
+//! [`facts`] inspects the file, [`words`] and [`guess`] read the names, [`draft`] is edited and becomes the sidecar,
 //! [`preview`] loads with it in the background, [`dialog`] draws.
 
 pub mod dialog;
@@ -27,23 +27,23 @@ use std::path::{Path, PathBuf};
 /// An open dialog.
 #[derive(Debug)]
 pub struct Mapping {
-    /// The log.
+    /// Path of the log.
     pub path: PathBuf,
-    /// The sidecar that will be written.
+    /// Path of the sidecar that will be written.
     pub sidecar: PathBuf,
-    /// Why the dialog opened by itself, in one sentence.
+    /// Reason why the dialog opened by itself, in one sentence.
     pub why: Option<String>,
-    /// What the log looks like.
+    /// Facts about the log.
     pub file: FileFacts,
-    /// What is edited.
+    /// Mapping that is being edited.
     pub draft: Draft,
-    /// What comes of it.
+    /// Preview of the mapped log.
     pub preview: Preview,
-    /// Which part of the preview is drawn.
+    /// Part of the preview that is drawn.
     view: plot::View,
 }
 
-/// A file that was looked at, on its way to a dialog.
+/// Inspected file, on its way to a dialog.
 #[derive(Debug)]
 pub struct Looked {
     path: PathBuf,
@@ -61,7 +61,7 @@ impl From<Looked> for Mapping {
     }
 }
 
-/// Looks at a log in the background; the dialog opens when that is done.
+/// Inspects a log in the background; the dialog opens when that is done.
 pub fn look(ctx: &egui::Context, jobs: &mut Jobs, path: &Path, sidecar: Option<PathBuf>, why: Option<String>) {
     let path = path.to_path_buf();
     let what = format!("Looking at {}", name_of(&path));
@@ -70,7 +70,7 @@ pub fn look(ctx: &egui::Context, jobs: &mut Jobs, path: &Path, sidecar: Option<P
     });
 }
 
-/// Looks at a log and its sidecar (`sidecar`, or the one beside it).
+/// Inspects a log and its sidecar (`sidecar`, or the one beside it).
 pub fn look_now(path: PathBuf, sidecar: Option<PathBuf>, why: Option<String>) -> Result<Looked, String> {
     let sidecar = sidecar.unwrap_or_else(|| sidecar_path(&path));
     let meta = read_sidecar(&sidecar)?;
@@ -78,7 +78,7 @@ pub fn look_now(path: PathBuf, sidecar: Option<PathBuf>, why: Option<String>) ->
     Ok(Looked { path, sidecar, why, file, meta })
 }
 
-/// Writes the sidecar in the background; the log is opened with it when that is done.
+/// Writes the sidecar in the background; the log is opened with it afterwards.
 pub fn save(ctx: &egui::Context, jobs: &mut Jobs, mapping: &Mapping) {
     let (meta, path, sidecar) = (mapping.draft.sidecar(), mapping.path.clone(), mapping.sidecar.clone());
     jobs.start(ctx, JobKind::Save, move || match write_sidecar(&meta, &sidecar) {
@@ -87,7 +87,7 @@ pub fn save(ctx: &egui::Context, jobs: &mut Jobs, mapping: &Mapping) {
     });
 }
 
-/// The sidecar that is there; an empty one when there is none.
+/// Existing sidecar; an empty one if there is none.
 fn read_sidecar(path: &Path) -> Result<Meta, String> {
     let text = match haptics::text_file::read(path) {
         Ok(text) => text,
@@ -98,7 +98,7 @@ fn read_sidecar(path: &Path) -> Result<Meta, String> {
         .map_err(|error| format!("The sidecar is malformed ({error}); correct it or remove it: {}", path.display()))
 }
 
-/// True for an error that a mapping can mend.
+/// True for an error that a mapping can fix.
 pub fn mends(error: &LogError) -> bool {
     matches!(
         error,
@@ -110,7 +110,7 @@ pub fn mends(error: &LogError) -> bool {
     )
 }
 
-/// The name of a file, for people.
+/// Display name of a file.
 pub fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }

@@ -1,23 +1,23 @@
-//! The program's column names (`spec/logs.md`) in words, and which of them a task can use.
+//! The program's column names (`spec/logs.md`) with labels, and the tasks that can use them.
 
 use estimator::log::units::{self, Dimension};
 use haptics::recording::Task;
 
-/// One name of the program.
+/// One column name of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// As it stands in a sidecar, in SI units.
+    /// Name in a sidecar, in SI units.
     pub si: &'static str,
-    /// For people.
+    /// Label for the user.
     pub words: &'static str,
-    /// Which way of recording it belongs to.
+    /// Form of recording that it belongs to.
     pub form: Form,
 }
 
-/// A way of recording. Columns of one form belong together.
+/// Form of recording. Columns of one form belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Any.
+    /// Any form.
     Any,
     /// Two fingertips.
     Tips,
@@ -33,7 +33,7 @@ const fn name(si: &'static str, words: &'static str, form: Form) -> Name {
     Name { si, words, form }
 }
 
-/// Every name on offer, in the order of the list.
+/// All offered names, in the order of the list.
 pub const NAMES: [Name; 42] = [
     name("t_s", "time", Form::Any),
     name("x1_m", "left tip, x", Form::Tips),
@@ -79,12 +79,12 @@ pub const NAMES: [Name; 42] = [
     name("label", "label of the state", Form::Any),
 ];
 
-/// The name with this SI form.
+/// Name with this SI form.
 pub fn find(si: &str) -> Option<&'static Name> {
     NAMES.iter().find(|n| n.si == si)
 }
 
-/// Names that a task can use; all of them where the task is not known. Forces of fingers go with joints too.
+/// Names that a task can use; all of them if the task is unknown. Forces of fingers can accompany joints, too.
 pub fn offered(task: Option<Task>) -> Vec<&'static Name> {
     let fits = |form: Form| match task {
         None => true,
@@ -95,7 +95,7 @@ pub fn offered(task: Option<Task>) -> Vec<&'static Name> {
     NAMES.iter().filter(|n| fits(n.form)).collect()
 }
 
-/// What a name measures; `None` for `trial`, `label` and names that are not the program's.
+/// Dimension of a name; `None` for `trial`, `label` and names that are not the program's.
 pub fn dimension(si: &str) -> Option<Dimension> {
     units::split(si).map(|(_, unit)| unit.dimension)
 }

@@ -1,4 +1,4 @@
-//! What holds for the whole recording: task, axis, rate, selection, known values.
+//! Options of the whole recording: task, axis, rate, selection, known values.
 
 use super::draft::{Draft, UP, task_words};
 use crate::ui::icons::Icon;
@@ -8,7 +8,7 @@ use egui::{ComboBox, DragValue, Role as Accessible, Ui, WidgetInfo};
 use haptics::recording::Task;
 use serde_json::Value;
 
-/// Parameters that can be known beforehand (`spec/logs.md`, "known").
+/// Parameters whose value can be known in advance (`spec/logs.md`, "known").
 const KNOWN: [&str; 20] = [
     "mass_kg",
     "inertia_kg_m2",
@@ -31,7 +31,7 @@ const KNOWN: [&str; 20] = [
     "stiffness_N_m",
     "puncture_force_N",
 ];
-/// A rate to begin with, Hz.
+/// Default rate, Hz.
 const USUAL_RATE_HZ: f64 = 1_000.0;
 
 /// Draws the options.
@@ -61,7 +61,7 @@ pub fn options(ui: &mut Ui, draft: &mut Draft) {
     }
 }
 
-/// A labelled drop-down; the new choice.
+/// Draws a labelled drop-down. Returns the new choice.
 fn choice<T: PartialEq + Clone>(ui: &mut Ui, label: &str, value: &T, shown: &str, all: &[(T, String)]) -> Option<T> {
     let mut chosen = value.clone();
     ui.label(theme::caption(ui, label));
@@ -116,7 +116,7 @@ fn select(ui: &mut Ui, draft: &mut Draft) {
         let all: Vec<(Value, String)> =
             draft.values_of(column).iter().map(|v| (Value::String(v.clone()), v.clone())).collect();
         let label = format!("Only {column} =");
-        // Written as text or as a number, it is the same choice.
+        // Text and number are the same choice.
         let now = Value::String(text(value));
         if let Some(chosen) = choice(ui, &label, &now, &text(value), &all) {
             draft.meta.select.insert(column.clone(), chosen);

@@ -1,4 +1,4 @@
-//! The preview: the path or the curves, what is still missing, and what is doubtful.
+//! The preview: the path or the curves, missing data, and warnings.
 
 use super::Mapping;
 use super::preview::Seen;
@@ -14,10 +14,10 @@ use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;
 use render::ColorRole;
 
-/// What is drawn.
+/// Content of the preview.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum View {
-    /// The path where there is one, else the first curves.
+    /// The path if there is one, otherwise the first curves.
     #[default]
     Automatic,
     /// The path in the plane.
@@ -31,7 +31,7 @@ pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
     let stale = mapping.preview.is_stale(&session.jobs);
     sheet(ui).inner_margin(space::M).show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        // As high as the headings of cards beside it.
+        // As tall as the headings of the cards beside it.
         compact(ui, |ui| {
             ui.set_min_height(16.0);
             ui.label(theme::heading("Preview"));
@@ -91,12 +91,12 @@ fn drawn(ui: &mut Ui, view: &mut View, seen: &Seen) {
     }
 }
 
-/// What a group is called on its tab; extra channels are told apart by their unit.
+/// Tab label of a group; extra channels are distinguished by their unit.
 fn tab(group: &Group) -> String {
     if group.title == "Other" && !group.unit.is_empty() { group.unit.clone() } else { group.title.clone() }
 }
 
-/// The paths of fingers or tool, mm.
+/// Paths of fingers or tool, mm.
 fn paths(prepared: &Prepared) -> Vec<(ColorRole, Vec<PlotPoint>)> {
     let thinned = |position: &[Vec2]| {
         let at = |i: &usize| position.get(*i).map(|p| PlotPoint::new(1e3 * p.x, 1e3 * p.y));
@@ -121,7 +121,7 @@ fn frame<'a>(ui: &Ui, id: &str, height: f32) -> Plot<'a> {
         .custom_y_axes(vec![value_axis(palette(ui), height)])
 }
 
-/// Millimetres along the lower edge, labelled as the times are.
+/// Horizontal axis in millimetres, labelled like the time axis.
 fn value_axis_below(ui: &Ui) -> egui_plot::AxisHints<'static> {
     time_axis(palette(ui), true)
 }
@@ -171,7 +171,7 @@ fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
     });
 }
 
-/// What has come of it, what is missing, what is doubtful.
+/// Draws the result: recordings, missing data, warnings.
 fn verdict(ui: &mut Ui, seen: &Seen) {
     ui.add_space(space::XS);
     if let Some(first) = seen.recordings.first() {

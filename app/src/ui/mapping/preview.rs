@@ -1,4 +1,4 @@
-//! What comes of a mapping: loaded in the background, a moment after the last edit.
+//! Result of a mapping: loaded in the background, a moment after the last edit.
 
 use super::draft::Draft;
 use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
@@ -11,33 +11,33 @@ use haptics::recording::{Meta, Recording, Task};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rest after an edit before the file is read again, s.
+/// Delay after an edit before the file is read again, s.
 const REST_S: f64 = 0.25;
 
-/// What a log becomes with a sidecar.
+/// Content of a log, read with a sidecar.
 #[derive(Debug)]
 pub struct Seen {
     /// The recordings.
     pub recordings: Vec<Arc<Prepared>>,
-    /// What is missing before it can be fitted, in one sentence.
+    /// Data missing for a fit, as one sentence; `None` if it is complete.
     pub missing: Option<String>,
-    /// What is doubtful, one sentence each.
+    /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
 
 /// The state of the preview.
 #[derive(Debug, Default)]
 pub struct Preview {
-    /// What the last reading gave: recordings, or why there are none.
+    /// Result of the last reading: recordings, or the reason why there are none.
     pub seen: Option<Result<Seen, String>>,
-    /// The sidecar that was asked for last.
+    /// Sidecar of the last request.
     asked: Option<Meta>,
-    /// The sidecar of the last picture, and since when it is the same.
+    /// Sidecar of the last frame, and the time since which it is unchanged, s.
     edited: Option<(Meta, f64)>,
 }
 
 impl Preview {
-    /// Once a picture: reads the file again when the mapping has changed and rests.
+    /// Runs once per frame: reads the file again when the mapping has changed and then rested.
     pub fn follow(&mut self, ctx: &egui::Context, jobs: &mut Jobs, path: &Path, draft: &Draft) {
         if let Some(clash) = draft.clash() {
             jobs.cancel(JobKind::Preview);
@@ -64,26 +64,26 @@ impl Preview {
         });
     }
 
-    /// Reads the file here and now: for pictures.
+    /// Reads the file synchronously, for screenshots.
     pub fn read_now(&mut self, path: &Path, meta: Meta) {
         self.seen = Some(see(path, &meta, &Ticket::default()));
         self.asked = Some(meta);
     }
 
-    /// True while the picture is older than the mapping.
+    /// True while the preview is older than the mapping.
     pub fn is_stale(&self, jobs: &Jobs) -> bool {
         self.edited.is_some() || jobs.is_running(JobKind::Preview) || self.asked.is_none()
     }
 }
 
-/// Reads the log with this sidecar; tells how far it is, and ends when nobody wants it any more.
+/// Reads the log with this sidecar. Reports progress, and stops when it is cancelled.
 pub fn see(path: &Path, meta: &Meta, ticket: &Ticket) -> Result<Seen, String> {
     let watch = Watch { progress: &|share| ticket.tell(share), cancelled: ticket.cancelled(), preview: None };
     let recordings = estimator::log::load_with(path, meta, &watch).map_err(|error| explained(&error))?;
     let missing = recordings.first().and_then(missing);
     let mut warnings: Vec<String> = Vec::new();
     for warning in recordings.iter().flat_map(|r| &r.warnings) {
-        // What is missing says so already.
+        // The sentence about missing data says so already.
         if warning.kind == "no-known-column" || (warning.kind == "no-clock" && missing.is_some()) {
             continue;
         }
@@ -97,7 +97,7 @@ pub fn see(path: &Path, meta: &Meta, ticket: &Ticket) -> Result<Seen, String> {
     Ok(Seen { recordings, missing, warnings })
 }
 
-/// The sentence of an error; here nobody needs to be told of sidecars.
+/// Text of an error, without mention of sidecars.
 fn explained(error: &LogError) -> String {
     if let LogError::MissingColumn { column, why, .. } = error {
         return sentence(&format!("`{column}` is still missing: {why}"));
@@ -105,7 +105,7 @@ fn explained(error: &LogError) -> String {
     sentence(&error.to_string())
 }
 
-/// A mechanism that nothing is known to push.
+/// Explanation for a mechanism without a recorded force.
 fn free_motion(recording: &Recording) -> Option<String> {
     let coordinate = ["q_m", "q_rad"].iter().any(|q| recording.channel(q).is_some());
     let pushed = ["f_N", "tau_Nm", "fx_N"].iter().any(|f| recording.channel(f).is_some());
@@ -113,7 +113,7 @@ fn free_motion(recording: &Recording) -> Option<String> {
     (coordinate && !pushed).then(|| text.to_owned())
 }
 
-/// What a recording lacks before its task can be fitted.
+/// Data that a recording lacks before its task can be fitted, as a sentence.
 pub fn missing(recording: &Recording) -> Option<String> {
     let has = |name: &str| recording.channel(name).is_some();
     let task = match task_of(recording, None) {

@@ -1,4 +1,4 @@
-//! The columns of the file, one a line: what is in it, what it means, unit, sign, factor.
+//! The columns of the file, one per line: content, meaning, unit, sign, factor.
 
 use super::draft::{Draft, Role, Row};
 use super::file_units::FileUnit;
@@ -118,7 +118,7 @@ fn means(ui: &mut Ui, draft: &mut Draft, at: usize) {
     }
 }
 
-/// A role in words.
+/// Label of a role.
 pub fn said(role: &Role) -> String {
     match role {
         Role::Extra => "extra channel".to_owned(),

@@ -1,33 +1,33 @@
-//! Reading the names of columns as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
+//! Reading of column names as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
 
 use super::file_units::unit_in;
 use estimator::log::units::Dimension;
 
-/// What a column is about.
+/// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// When.
+    /// Time.
     Time,
-    /// Where.
+    /// Position.
     Position,
-    /// How far turned.
+    /// Angle.
     Angle,
-    /// How fast along a line.
+    /// Linear velocity.
     Velocity,
-    /// How fast around.
+    /// Angular velocity.
     AngularVelocity,
-    /// How hard pushed.
+    /// Force.
     Force,
-    /// How hard twisted.
+    /// Torque.
     Torque,
-    /// Which recording of several.
+    /// Number or name of one recording among several.
     Trial,
-    /// A name of a state.
+    /// Name of a state.
     Label,
 }
 
 impl Kind {
-    /// What its unit may measure.
+    /// Dimensions that its unit may have.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
             Self::Time => &[Dimension::Time],
@@ -41,7 +41,7 @@ impl Kind {
         }
     }
 
-    /// The kind that a unit alone speaks for.
+    /// Kind that a unit alone suggests.
     fn of_dimension(dimension: Dimension) -> Option<Self> {
         [Self::Time, Self::Position, Self::Angle, Self::Velocity, Self::AngularVelocity, Self::Force, Self::Torque]
             .into_iter()
@@ -52,9 +52,9 @@ impl Kind {
 /// A direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// To the right.
+    /// Horizontal, positive to the right.
     X,
-    /// Up.
+    /// Vertical, positive up.
     Y,
     /// Out of the plane.
     Z,
@@ -69,24 +69,24 @@ pub enum Joint {
     Top,
 }
 
-/// What a name says.
+/// Meaning of a column's name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// The quantity.
     pub kind: Option<Kind>,
     /// Its direction.
     pub axis: Option<Axis>,
-    /// The number or side of a finger: 1 is left, 2 is right.
+    /// Number or side of a finger: 1 is left, 2 is right.
     pub finger: Option<u32>,
     /// The joint.
     pub joint: Option<Joint>,
-    /// How much speaks for it.
+    /// Points for the confidence of the reading.
     pub points: i32,
-    /// The words that are not the quantity itself.
+    /// Words that do not name the quantity itself.
     pub words: Vec<String>,
 }
 
-/// Points of a quantity that is named, and of one that only the unit speaks for.
+/// Points of a named quantity, and of one that only the unit suggests.
 const NAMED: i32 = 10;
 const BY_UNIT: i32 = 8;
 
@@ -124,11 +124,12 @@ pub fn read(header: &str) -> Reading {
     reading
 }
 
-/// One quantity out of several words: the force of a position sensor is a force, the rate of an angle an angular velocity.
+/// One quantity from several words: the force of a position sensor is a force, the rate of an angle an angular
+/// velocity.
 fn combined(kinds: &[Kind], by_unit: Option<Kind>) -> Option<Kind> {
     use Kind::{Angle, AngularVelocity, Force, Label, Position, Time, Torque, Trial, Velocity};
     let has = |kind| kinds.contains(&kind);
-    // A unit decides between words that are all there: `angle_rate_deg`, `joint velocity rad/s`.
+    // A unit decides between words that are all present: `angle_rate_deg`, `joint velocity rad/s`.
     if has(Velocity) && (by_unit == Some(AngularVelocity) || has(Angle)) {
         return Some(AngularVelocity);
     }

@@ -1,4 +1,4 @@
-//! The devices page, right column: what came from the boards or over the network, and what was wrong with it.
+//! The devices page, right column: data received from the boards or over the network, and faults in it.
 
 use crate::boards::{ADVICE, Answers};
 use crate::ui::icons::Icon;
@@ -9,7 +9,7 @@ use egui::Ui;
 use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const PACKETS: &str = "Packets";
     pub const LISTENS_AT: &str = "Listens at";
@@ -26,7 +26,7 @@ mod words {
     pub const LOOKING: &str = "Looking for the board at its port …";
 }
 
-/// The card of the running device; nothing for those that cannot lose anything.
+/// Card of the running device; nothing for devices without a lossy connection.
 pub fn answers(ui: &mut Ui, trainer: &Trainer) {
     match &trainer.steering {
         Steering::Udp(monitor) => packets(ui, monitor),
@@ -55,7 +55,7 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
     });
 }
 
-/// What to do about a board whose cable was pulled; nothing while both are in.
+/// Advice for a board whose cable was pulled; nothing while both are connected.
 pub fn unplugged(ui: &mut Ui, tallies: &[Tally; 2]) {
     if !tallies.iter().any(Tally::is_unplugged) {
         return;
@@ -72,7 +72,7 @@ pub fn unplugged(ui: &mut Ui, tallies: &[Tally; 2]) {
     });
 }
 
-/// What two boards have answered, left and right.
+/// Answers of two boards, left and right.
 pub fn boards(ui: &mut Ui, both: [Answers; 2]) {
     plain_card(ui, words::ANSWERS_OF_THE_BOARDS, |ui| {
         for (side, answers) in [words::LEFT, words::RIGHT].into_iter().zip(both) {

@@ -1,4 +1,4 @@
-//! Which parts of the assistant are shown over the picture.
+//! Switches of the assistant's parts over the picture.
 
 use crate::ui::assistant;
 use crate::ui::session::Session;
@@ -6,7 +6,7 @@ use crate::ui::theme;
 use crate::ui::widgets::{call, card};
 use egui::Ui;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SAYS_OVER_THE_PICTURE: &str = "Says over the picture what the hand has measured, and warns (H)";
     pub const ON: &str = "On";

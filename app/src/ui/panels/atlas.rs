@@ -1,4 +1,5 @@
-//! The residual atlas: what the model leaves against the variable of every suspect, with what that suspect alone would take of it.
+//! The residual atlas: the residual against the variable of every candidate cause, with the part that this candidate
+//! alone would explain.
 
 use crate::diagnosis_words::{listed, title};
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
@@ -15,7 +16,7 @@ use egui::{
 use estimator::diagnose::Diagnosis;
 use haptics::law;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const WAS_FOUND_IN_ANOTHER: &str = "was found in another way and has";
     pub const WERE_FOUND_IN_OTHER: &str = "were found in other ways and have";
@@ -23,13 +24,13 @@ mod words {
     pub const NOT_NAMED: &str = "not named";
 }
 
-/// Least size of a cell, points, and the room for its words.
+/// Minimum size of a cell, points, and the height of its text.
 const CELL: [f32; 2] = [204.0, 132.0];
 const WORDS: f32 = 18.0;
-/// Room for numbers beside a large picture.
+/// Space for numbers beside a large picture, points.
 const NUMBERS: [f32; 2] = [52.0, 20.0];
 
-/// The grid, or one suspect large.
+/// Draws the grid, or one candidate enlarged.
 pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
     let open = session.diagnosing.atlas_open.clone();
     match open.and_then(|key| sheet.find(&key)) {
@@ -73,7 +74,7 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis
     }
 }
 
-/// Causes that were not found in a channel: faults of samples, scales out of a free fall.
+/// Causes detected outside of a channel: faults of samples, scales from a free fall.
 fn without_picture(sheet: &Sheet, diagnosis: &Diagnosis) -> Option<String> {
     let unseen =
         diagnosis.causes.iter().filter(|c| law::cause(&c.id).is_some() && sheet.cells.iter().all(|s| s.id != c.id));
@@ -82,7 +83,7 @@ fn without_picture(sheet: &Sheet, diagnosis: &Diagnosis) -> Option<String> {
     (!names.is_empty()).then(|| format!("{} {what} no picture here; the evidence stands beside.", listed(&names)))
 }
 
-/// One suspect of the grid.
+/// Draws one candidate of the grid.
 fn small(ui: &mut Ui, cell: &Cell, size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let words = cell.words();
@@ -113,13 +114,13 @@ fn small(ui: &mut Ui, cell: &Cell, size: egui::Vec2) -> Response {
     ))
 }
 
-/// Both ends of the variable, as numbers.
+/// Both ends of the variable's range, as numbers.
 fn ends(cell: &Cell) -> [String; 2] {
     let digits = decimals(0.1 * (cell.range.1 - cell.range.0)).min(2);
     [cell.range.0, cell.range.1].map(|v| format::number(v, digits))
 }
 
-/// Band, zero, means of what is left, and what the suspect takes of it.
+/// Draws noise band, zero line, binned means of the residual, and the part that the candidate explains.
 fn picture(ui: &Ui, rect: Rect, cell: &Cell, points: bool) {
     let (p, inks) = (palette(ui), inks(ui));
     let painter = ui.painter().with_clip_rect(rect);
@@ -137,7 +138,7 @@ fn picture(ui: &Ui, rect: Rect, cell: &Cell, points: bool) {
     lines(&painter, &cell.taken, &at, suspect_ink(p, cell), if points { 3.0 } else { 2.0 });
 }
 
-/// What was found is green everywhere.
+/// Colour of a candidate; diagnosed causes are green everywhere.
 fn suspect_ink(p: &Palette, cell: &Cell) -> Color32 {
     if cell.named { p.good } else { p.accent }
 }
@@ -148,7 +149,7 @@ fn place(rect: Rect, (low, high): (f64, f64), largest: f64, x: f64, y: f64) -> P
     pos2(rect.left() + right * rect.width(), rect.bottom() - up * rect.height())
 }
 
-/// Forwards solid, backwards dashed.
+/// Draws lines, forwards solid, backwards dashed.
 fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2, color: Color32, width: f32) {
     let stroke = Stroke::new(width, color);
     for (k, line) in lines.iter().enumerate() {
@@ -163,7 +164,7 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
     }
 }
 
-/// One suspect over the whole panel, with numbers and words.
+/// Draws one candidate over the whole panel, with numbers and text.
 fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis) {
     let p = palette(ui);
     compact(ui, |ui| {
@@ -202,7 +203,7 @@ fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis)
     numbers(ui, plot, cell);
 }
 
-/// A quiet grid with its numbers.
+/// Draws a quiet grid with its numbers.
 fn numbers(ui: &Ui, plot: Rect, cell: &Cell) {
     let p = palette(ui);
     let (painter, font) = (ui.painter(), FontId::proportional(11.0));

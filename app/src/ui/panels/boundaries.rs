@@ -1,4 +1,4 @@
-//! Setting states by hand: handles between the states of the band, and what a right click on a state offers.
+//! Manual editing of states: handles between the states of the band, and the context menu of a state.
 
 use crate::ui::by_hand::Change;
 use crate::ui::format;
@@ -8,7 +8,7 @@ use crate::ui::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SET_BY_HAND: &str = "Set by hand";
     pub const STATE: &str = "State";
@@ -23,10 +23,10 @@ mod words {
     pub const WHOLE: &str = "Fit the whole recording";
 }
 
-/// Points at which a boundary can be taken hold of, to either side.
+/// Distance within which a boundary can be grabbed, to either side, points.
 const GRASP: f32 = 4.0;
 
-/// Handles on the boundaries that lie in the visible time; what was dragged.
+/// Draws handles on the boundaries in the visible time range. Returns the change by a drag.
 pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: Rect) -> Option<Change> {
     let mut change = None;
     let (from, to) = view_s;
@@ -59,7 +59,7 @@ pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: R
     change
 }
 
-/// A grip where the boundary can be taken, in another colour while it is held.
+/// Draws a grip at the boundary, in another colour while it is dragged.
 fn mark(ui: &Ui, x: f32, band: Rect, held: bool) {
     let p = palette(ui);
     let ink = if held { p.accent } else { p.text };
@@ -68,7 +68,7 @@ fn mark(ui: &Ui, x: f32, band: Rect, held: bool) {
     painter.circle(Pos2::new(x, band.center().y), 4.5, p.card, Stroke::new(2.0, ink));
 }
 
-/// What a right click on a state offers where the fit takes no states: to fit this stretch of the recording and no more.
+/// Context menu of a state where the fit uses no states: restricts the fit to this time range.
 pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Session) {
     response.context_menu(|ui| {
         ui.set_max_width(230.0);
@@ -84,7 +84,7 @@ pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Se
     });
 }
 
-/// What can be done with a state, on a right click; `at_s` is the time under the pointer.
+/// Context menu of a state; `at_s` is the time under the pointer.
 pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, session: &Session) -> Option<Change> {
     let mut change = None;
     let cursor_s = session.cursor_s;
@@ -129,7 +129,7 @@ pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, sess
     change
 }
 
-/// The states of the task, and none.
+/// States of the task, and none.
 fn states(segmentation: &Segmentation) -> Vec<SystemState> {
     let mut states: Vec<SystemState> =
         segmentation.definition.iter().flat_map(|d| d.states.iter().map(|rule| rule.state)).collect();
@@ -145,7 +145,7 @@ fn states(segmentation: &Segmentation) -> Vec<SystemState> {
     states
 }
 
-/// The subtasks of the recording in their order, and none.
+/// Subtasks of the recording in their order, and none.
 fn subtasks(segmentation: &Segmentation) -> Vec<Option<String>> {
     let mut names: Vec<Option<String>> = vec![None];
     for interval in &segmentation.states {

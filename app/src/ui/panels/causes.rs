@@ -1,4 +1,4 @@
-//! A cause that was found, as a card.
+//! The card of a diagnosed cause.
 
 use crate::diagnosis_words::{gain_unit, said_in_words, shown_unit, small, symbol, title};
 use crate::ui::format;
@@ -10,7 +10,7 @@ use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout
 use estimator::words::amount;
 use haptics::law::{self, Kind};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const PROBABILITY_MORE: &str = "Probability among the causes that could stand in its place";
     pub const IN_THE_WORLD: &str = "in the world";
@@ -29,12 +29,12 @@ mod words {
     pub const WHAT_IS_LEFT: &str = "What is left goes with this, and no known cause does so here.";
 }
 
-/// True when an extended world differs by it.
+/// True if the cause changes the extended world.
 pub fn changes_the_world(cause: &Cause) -> bool {
     cause.kind == Kind::Plant && law::cause(&cause.id).is_some()
 }
 
-/// Its card; `rank` counts from one.
+/// Draws the card; `rank` counts from one.
 pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnosis) {
     let p = palette(ui);
     let chance = format!("{} %", format::number(100.0 * cause.posterior, 0));
@@ -51,7 +51,7 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
                 _ if changes_the_world(cause) => {
                     chip(ui, words::IN_THE_WORLD, p.good).on_hover_text(words::IN_THE_WORLD_MORE);
                 }
-                // What has no name has no law, either.
+                // An unnamed term has no law, either.
                 Kind::Plant => {}
                 Kind::Instrument => {
                     chip(ui, words::IN_THE_MEASUREMENT, p.caution).on_hover_text(words::IN_THE_MEASUREMENT_MORE);
@@ -74,7 +74,7 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
     });
 }
 
-/// What the cause is worth when the model runs on its own.
+/// Rollout error of the base model and of the model with this cause.
 fn forward(ui: &mut Ui, rollout: &Rollout) {
     let rms = |value: f64| amount(value, &rollout.unit);
     let (what, how) = match rollout.of {
@@ -96,7 +96,7 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
     ));
 }
 
-/// A parameter with its error.
+/// Draws a parameter with its standard error.
 fn line(ui: &mut Ui, parameter: &CauseParameter) {
     if let Some(said) = said_in_words(parameter) {
         ui.label(theme::strong(said));
@@ -155,12 +155,12 @@ fn alternative(ui: &mut Ui, other: &Alternative) {
 /// Corners of a chip, points.
 const CORNER: f32 = 9.0;
 
-/// A small label with a rim.
+/// Draws a small outlined label.
 pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
     const AROUND: Vec2 = vec2(7.0, 4.0);
     let (fill, rim) = (palette(ui).sunken, palette(ui).border);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), color);
-    // As one piece: in a row that wraps it goes to the next line whole.
+    // As one piece: in a wrapping row it moves to the next line whole.
     let (rect, response) = ui.allocate_exact_size(galley.size() + 2.0 * AROUND, Sense::hover());
     ui.painter().rect(rect, CORNER, fill, Stroke::new(1.0, rim), StrokeKind::Inside);
     ui.painter().galley(rect.min + AROUND, galley, color);
@@ -168,7 +168,7 @@ pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
     response
 }
 
-/// What the catalogue says.
+/// Draws the catalogue's entry.
 fn page(ui: &mut Ui, id: &str) {
     ui.set_max_width(320.0);
     let Some(entry) = law::cause(id) else {

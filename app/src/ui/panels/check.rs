@@ -1,4 +1,4 @@
-//! *Check on other recordings*: what was found, on data that took no part in it.
+//! *Check on other recordings*: the diagnosed causes on held-out recordings.
 
 use crate::diagnosis_words::{listed, shown_unit, title};
 use crate::ui::checking::{Checked, Holds, On, holds};
@@ -13,7 +13,7 @@ use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Diagnosis, Validation};
 use std::path::PathBuf;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const CHECK_ON_OTHER_RECORDINGS: &str = "Check on other recordings";
     pub const CHECK_ON_OTHER_RECORDINGS_MORE: &str =
@@ -32,7 +32,7 @@ mod words {
     pub const DOES_NOT_HOLD: &str = "It does not hold here: the model alone does better.";
 }
 
-/// The card under the causes, where there is something to check.
+/// Card below the causes, if there is a recording to validate on.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     if diagnosis.causes.is_empty() {
         return;
@@ -71,7 +71,7 @@ fn ask(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// Where several recordings are open, each can be checked on by what the others say.
+/// Leave-one-out validation: each of several open recordings can be checked with the causes from the others.
 fn left_out(ui: &mut Ui, session: &mut Session) {
     if session.recordings.len() < 2 {
         return;

@@ -1,4 +1,4 @@
-//! The card about comfort beside the trainer's picture, and the words over the picture while the world is held still.
+//! The comfort card beside the trainer's picture, and the message over the picture while the world is paused.
 
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -6,7 +6,7 @@ use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const COMFORT: &str = "Comfort";
     pub const LEFT_HANDED: &str = "Left-handed";
@@ -23,7 +23,7 @@ mod words {
     pub const VOLUME: &str = "Volume";
 }
 
-/// Choices that are remembered.
+/// Card of the persistent comfort settings.
 pub fn card(ui: &mut Ui, session: &mut Session) {
     plain_card(ui, words::COMFORT, |ui| {
         let comfort = &mut session.comfort;
@@ -38,7 +38,7 @@ pub fn card(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// How loud. A build without sound says so.
+/// Volume control. A build without sound says so.
 fn sound(ui: &mut Ui, session: &mut Session) {
     let comfort = &mut session.comfort;
     if !cfg!(feature = "sound") {
@@ -58,7 +58,7 @@ fn sound(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What is said over the picture while the world is held still; a click there or the space bar goes on.
+/// Message over the picture while the world is paused; a click there or the space bar resumes.
 pub fn paused(ui: &mut Ui, picture: Rect, trainer: &mut Trainer) {
     let Some((what, then)) = trainer.held_words() else { return };
     let p = palette(ui);

@@ -1,4 +1,4 @@
-//! The world before and after a diagnosis, to be felt by turns.
+//! The base and the extended world of a diagnosis, to be felt alternately.
 
 use crate::ui::session::Session;
 use crate::ui::theme;
@@ -6,7 +6,7 @@ use crate::ui::trainer::WorldChoice;
 use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
 use egui::{Align, Key, Layout, Ui};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const BEFORE: &str = "A  before";
     pub const BEFORE_MORE: &str = "The model alone";
@@ -23,7 +23,7 @@ mod words {
     pub const CLOSE_MORE: &str = "Back to the other worlds";
 }
 
-/// The card beside the trainer's picture, while there is something to compare.
+/// Card beside the trainer's picture, while there are worlds to compare.
 pub fn compare(ui: &mut Ui, session: &mut Session) {
     if session.trainer.compare.is_none() {
         return;
@@ -66,7 +66,7 @@ pub fn compare(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The key that switches; for hands that hold something.
+/// Handles the key that switches, for hands that hold an object.
 pub fn key(ui: &Ui, session: &mut Session) {
     if session.trainer.compare.is_none() || ui.ctx().egui_wants_keyboard_input() {
         return;

@@ -1,4 +1,5 @@
-//! What came of an attempt: the score, every judged measure beside the experts', the way of the hand beside an expert's.
+//! Result of an attempt: the score, every judged measure beside the expert reference, the path of the hand beside an
+//! expert's.
 
 use crate::ui::icons::Icon;
 use crate::ui::lessons::{Debrief, Trace};
@@ -11,7 +12,7 @@ use estimator::training::lesson::grade::{Figure, Grade};
 use haptics::Vec2;
 use render::ColorRole;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const NOT_COMPLETED: &str = "Not completed";
     pub const SCALE_MORE: &str =
@@ -21,13 +22,13 @@ mod words {
     pub const AN_EXPERTS: &str = "an expert's";
 }
 
-/// Height of the picture of both ways, points.
+/// Height of the picture of both paths, points.
 const WAYS: f32 = 120.0;
-/// Where the experts' mean stands on a scale, and how many units the scale is long.
+/// Position of the experts' mean on a scale (share of its length), and the scale's length in units.
 const MEAN_AT: f32 = 0.25;
 const UNITS: f64 = 8.0;
 
-/// All of it.
+/// Draws the whole result.
 pub fn show(ui: &mut Ui, debrief: &Debrief, expert: Option<&Trace>) {
     let grade = &debrief.grade;
     score(ui, grade);
@@ -67,7 +68,7 @@ fn score(ui: &mut Ui, grade: &Grade) {
     });
 }
 
-/// One measure: its value, and where it stands beside the experts'.
+/// Draws one measure: its value, and its position relative to the experts.
 fn measure(ui: &mut Ui, figure: &Figure) {
     let Some(definition) = Definition::of(&figure.measure) else { return };
     let p = palette(ui);
@@ -95,7 +96,7 @@ fn measure(ui: &mut Ui, figure: &Figure) {
         2,
         p.sunken,
     );
-    // The experts: their mean and one unit to both sides.
+    // The experts: their mean ± one unit.
     let band = Rect::from_x_y_ranges(x(-1.0)..=x(1.0), rect.y_range().shrink(2.0));
     ui.painter().rect_filled(band, 2, p.good.gamma_multiply(0.35));
     ui.painter().vline(x(0.0), rect.y_range(), Stroke::new(1.0, p.secondary));
@@ -104,7 +105,7 @@ fn measure(ui: &mut Ui, figure: &Figure) {
     ui.add_space(2.0);
 }
 
-/// The way of the middle between the fingers, and an expert's below it.
+/// Draws the path of the midpoint between the fingers, and an expert's below it.
 fn ways(ui: &mut Ui, own: &Trace, expert: Option<&Trace>) {
     let p = palette(ui);
     let dark = ui.visuals().dark_mode;
@@ -116,7 +117,7 @@ fn ways(ui: &mut Ui, own: &Trace, expert: Option<&Trace>) {
     };
     let ((left, right), (low, high)) = (bounds(|v| v.x), bounds(|v| v.y));
     let inner = rect.shrink(space::S);
-    // The same scale both ways, so that shapes are true.
+    // The same scale on both axes, so that shapes are true.
     let scale =
         (f64::from(inner.width()) / (right - left).max(1e-3)).min(f64::from(inner.height()) / (high - low).max(1e-3));
     let middle = Vec2::new(0.5 * (left + right), 0.5 * (low + high));

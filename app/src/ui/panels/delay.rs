@@ -1,4 +1,4 @@
-//! The line between hand and world: how late it is, whether a model answers, and what the picture shows then.
+//! The link between hand and world: its latency, its prediction model, and the resulting picture.
 
 use crate::ui::format::{number, with_error};
 use crate::ui::session::Session;
@@ -8,7 +8,7 @@ use crate::ui::widgets::{card_with_head, fact, segmented};
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const DELAY: &str = "Delay";
     pub const PRACTISE_OVER_A_SLOW: &str =
@@ -20,20 +20,20 @@ mod words {
     pub const CARRIED_LAST: &str = "Carried last";
 }
 
-/// Round trips to choose from, s.
+/// Selectable round-trip times, s.
 const ROUND_TRIPS: [(f64, &str, &str); 3] = [
     (0.0, "None", "Your hand is where the world is"),
     (0.15, "150 ms", "A line round half the world: 75 ms there, 75 ms back"),
     (0.5, "500 ms", "A line by satellite: a quarter of a second there, as long back"),
 ];
-/// What an unsteady line does to a packet: up to so much more delay, s, and lost so often.
+/// Effect of an unsteady link on a packet: maximum additional latency, s, and loss rate.
 const UNSTEADY: (f64, f64) = (0.02, 0.05);
 
 /// The card beside the trainer's picture.
 pub fn delay(ui: &mut Ui, session: &mut Session) {
     let before = session.trainer.delay();
     let (mut line, mut manner) = (before, before);
-    // The servo starts anew, which would end a recording.
+    // The servo restarts, which would end a recording.
     let free = !session.trainer.is_recording();
     card_with_head(
         ui,
@@ -63,7 +63,7 @@ pub fn delay(ui: &mut Ui, session: &mut Session) {
 fn round_trip(ui: &mut Ui, wanted: &mut Delay) {
     let mut chosen = wanted.round_trip_s;
     if segmented(ui, &mut chosen, &ROUND_TRIPS) {
-        // The first line is one with a model: it shows what models are for.
+        // The first link has a model, to show the purpose of models.
         let first = wanted.is_none();
         *wanted = if chosen == 0.0 {
             Delay::default()
@@ -90,7 +90,7 @@ fn choices(ui: &mut Ui, wanted: &mut Delay) {
     });
 }
 
-/// What the picture shows, and what the model has learnt.
+/// Describes the content of the picture, and the knowledge of the model.
 fn shown(ui: &mut Ui, trainer: &Trainer) {
     let Some(view) = trainer.view() else { return };
     let late_ms = number(1e3 * trainer.delay().one_way_s(), 0);

@@ -1,4 +1,4 @@
-//! The devices page, right column: what the running device can do, what it does now, and a soft push to try it.
+//! The devices page, right column: capabilities of the running device, its live values, and a gentle push to try it.
 
 use super::{Panel, trainer_timing};
 use crate::ui::format::{number, short_time};
@@ -13,7 +13,7 @@ use haptics::device::DeviceSpec;
 use haptics::servo::force_test::MOST_N;
 use haptics::servo::{Snapshot, passivity};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const DEVICE: &str = "Device";
     pub const NO_DEVICE_IS_RUNNING: &str = "No device is running";
@@ -61,10 +61,10 @@ mod words {
     pub const PUSH: &str = "Push";
 }
 
-/// From this width on there are two columns, points: the live values need half of it.
+/// Minimum width for two columns, points: the live values need half of it.
 const TWO_COLUMNS: f32 = 780.0;
 
-/// The running device.
+/// Panel of the running device.
 #[derive(Default)]
 pub struct DeviceDetail;
 
@@ -78,7 +78,7 @@ impl Panel for DeviceDetail {
             session.fail(problem);
         }
         session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
-        // Live values: the page is drawn like a film as long as it is open.
+        // Live values: the page repaints continuously while it is open.
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
         let Some(spec) = session.trainer.spec().cloned() else {
             empty_state(ui, (Icon::Device, words::NO_DEVICE_IS_RUNNING), words::NO_DEVICE_IS_RUNNING_MORE, |_| {});
@@ -104,7 +104,7 @@ impl Panel for DeviceDetail {
     }
 }
 
-/// What it is, what it can do, what it does when asked.
+/// Draws the device's description, its capabilities, and the force test.
 fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
     about(ui, session, spec);
     limits(ui, &session.trainer, spec);
@@ -112,7 +112,7 @@ fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
     super::passivity::passivity(ui, session);
 }
 
-/// What comes from it, and when.
+/// Draws the live values of the device and its timing.
 fn values(ui: &mut Ui, session: &Session) {
     live(ui, &session.trainer);
     super::answers::answers(ui, &session.trainer);
@@ -155,10 +155,10 @@ fn limits(ui: &mut Ui, trainer: &Trainer, spec: &DeviceSpec) {
     });
 }
 
-/// A label with its value, where there is one, and the sentence that explains it.
+/// Label with its value, if there is one, and the sentence that explains it.
 type Limit = (Option<(&'static str, String)>, String);
 
-/// The limits at the actual rate, computed from the device's figures.
+/// Limits at the actual rate, computed from the device's specification.
 fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     if !spec.force_feedback {
         let text = words::FORCE_NOT_FELT;
@@ -196,7 +196,7 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     ]
 }
 
-/// What is felt over a line with waves: b/d is in series with everything, however stiff the world may be at its end.
+/// Limits of a link with wave variables: b/d is in series with everything, however stiff the world at its end.
 fn line_sentences(line_n_m: f64, snapshot: &Snapshot) -> Vec<Limit> {
     let text = words::WAVE_VARIABLES_KEEP;
     let mut said =

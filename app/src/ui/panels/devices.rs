@@ -1,4 +1,4 @@
-//! The devices page, left column: everything that could move the fingers, one line each, to be chosen.
+//! The devices page, left column: all devices for the fingers, one per line, to choose from.
 
 use super::Panel;
 use super::remote::RemoteCard;
@@ -11,7 +11,7 @@ use haptics::device::haply;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const DEVICES: &str = "Devices";
     pub const BUILT_IN: &str = "Built in";
@@ -26,7 +26,7 @@ mod words {
         "Does the task of the world like a person: reaches, trembles, reacts late.";
 }
 
-/// Ports are looked for this often.
+/// Interval between scans for ports.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// The list of devices.
@@ -37,7 +37,7 @@ pub struct DeviceList {
     remote: RemoteCard,
 }
 
-/// What a click asks for.
+/// Request of a click.
 #[derive(Clone, PartialEq)]
 pub(super) enum Choice {
     Hand(HandDevice),
@@ -113,7 +113,7 @@ impl DeviceList {
     }
 }
 
-/// One device as a line that can be clicked; the choice when it was.
+/// Draws one device as a clickable line. Returns its choice when it was clicked.
 pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
     let trainer = &session.trainer;
@@ -145,7 +145,7 @@ pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<
     (response.clicked() && ready.is_ok() && !active).then_some(choice)
 }
 
-/// The engine is started again with the device; what is wrong is said.
+/// Restarts the engine with the device; a problem is reported.
 fn take(session: &mut Session, choice: Choice) {
     let log = session.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
     let taken = match choice {

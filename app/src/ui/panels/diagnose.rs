@@ -1,4 +1,4 @@
-//! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
+//! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
 use super::Panel;
 use crate::ui::atlas::Sheet;
@@ -12,7 +12,7 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const NOTHING_YET: &str = "Nothing to diagnose yet";
     pub const NOTHING_YET_MORE: &str = "Open a log, for example of a crank that was turned. What the simulation gets wrong \
@@ -63,12 +63,12 @@ mod words {
 
 /// Share of the height that the curve over time takes.
 const TIME_SHARE: f32 = 0.36;
-/// Width of the three models to start from.
+/// Width of the chooser of the three base models, points.
 const CHOICES: f32 = 216.0;
-/// Height of a plot's heading.
+/// Height of a plot's heading, points.
 const HEAD: f32 = 20.0;
 
-/// The curves of the diagnosis.
+/// Panel of the diagnosis curves.
 #[derive(Default)]
 pub struct DiagnosePanel;
 
@@ -87,7 +87,7 @@ impl Panel for DiagnosePanel {
             match (curves, atlas) {
                 (Some(curves), None) => draw(ui, session, curves, false),
                 (Some(curves), Some(_)) if !session.diagnosing.shows_atlas => draw(ui, session, curves, true),
-                // Tasks without one coordinate have no curves along it.
+                // Tasks without a single coordinate have no curves along it.
                 (curves, Some((answer, sheet))) => suspects(ui, session, answer, sheet, curves.is_some()),
                 (None, None) => nothing(ui, session),
             }
@@ -136,7 +136,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The button, and the model to start from where there is a choice.
+/// Draws the button, and the chooser of the base model where there is a choice.
 fn begin(ui: &mut Ui, session: &mut Session) {
     start_from(ui, session);
     if primary_button(ui, true, (Icon::Diagnose, words::BEGIN)).clicked() {
@@ -145,7 +145,7 @@ fn begin(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The model of a mechanism to start from; true when it was changed.
+/// Draws the chooser of a mechanism's base model; true if the choice changed.
 pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     let task = session.choice.task;
     let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosing::is_mechanism(&p.recording, task));
@@ -167,7 +167,7 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     changed
 }
 
-/// The atlas with its heading.
+/// Draws the atlas with its heading.
 fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, has_curves: bool) {
     ui.spacing_mut().item_spacing.y = space::XS;
     head(ui, words::ATLAS_HEADING, sheet.unit(), |ui| {
@@ -187,7 +187,7 @@ fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, 
     super::atlas::show(ui, session, sheet, &answer.diagnosis);
 }
 
-/// Curves or atlas.
+/// Draws the switch between curves and atlas.
 fn views(ui: &mut Ui, session: &mut Session) {
     let text = if session.diagnosing.shows_atlas { words::TO_CURVES } else { words::TO_ATLAS };
     let hint = words::SWITCH_MORE;
@@ -243,12 +243,12 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
     cloud_plot(ui, height, cloud, curves);
 }
 
-/// The recording whose curves are shown, where there are several.
+/// Draws the chooser of the shown recording, if there are several.
 fn which(ui: &mut Ui, session: &mut Session) {
     if session.recordings.len() < 2 {
         return;
     }
-    // No higher than the words beside it.
+    // As tall as the text beside it.
     ui.spacing_mut().button_padding = vec2(space::S, 0.0);
     let mut chosen = session.current;
     let name = |k: usize| session.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
@@ -265,7 +265,7 @@ fn which(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// A heading with its unit, and what stands on the right of it.
+/// Draws a heading with its unit, and trailing content on the right.
 fn head(ui: &mut Ui, title: &str, unit: &str, trailing: impl FnOnce(&mut Ui)) {
     compact(ui, |ui| {
         ui.set_min_height(HEAD);
@@ -275,7 +275,7 @@ fn head(ui: &mut Ui, title: &str, unit: &str, trailing: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A line of a colour and what it means.
+/// Draws a legend entry: a coloured line and its text.
 fn key(ui: &mut Ui, color: Color32, width: f32, text: &str) {
     ui.spacing_mut().item_spacing.x = 6.0;
     ui.label(theme::caption(ui, text));

@@ -1,4 +1,4 @@
-//! What a diagnosis answers, beside its curves: the verdict, the causes, the extended model, what to record next.
+//! Answer of a diagnosis, beside its curves: the verdict, the causes, the extended model, the next experiment.
 
 use super::Panel;
 use super::{causes, check, diagnose, next_experiment, why_not};
@@ -15,7 +15,7 @@ use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark}
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::{Diagnosis, Residual};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const DIAGNOSIS: &str = "Diagnosis";
     pub const AGAIN: &str = "Again";
@@ -101,7 +101,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     }
 }
 
-/// What is left in every channel and state, beside the noise.
+/// Draws the residual RMS of every channel and state, beside the noise.
 fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
     let all = &diagnosis.residuals;
     if all.len() < 2 {
@@ -118,7 +118,7 @@ fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
                 let heads = [words::MODEL, if found { words::FOUND } else { "" }, words::NOISE];
                 figures(ui, RichText::new(""), heads.map(|head| theme::caption(ui, head)));
             }
-            // A channel's name may be longer than what is left beside the numbers.
+            // A channel's name may be wider than the space beside the numbers.
             let name = theme::caption(ui, format!("{}, {unit}", format::capitalised(channel)));
             ui.add(egui::Label::new(name).wrap());
             for left in own {
@@ -135,7 +135,7 @@ fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
     });
 }
 
-/// A name and three numbers in one line, which stand below each other.
+/// Draws a name and three aligned numbers in one line.
 fn figures(ui: &mut Ui, name: RichText, numbers: [RichText; 3]) {
     const NUMBER: f32 = 46.0;
     compact(ui, |ui| {
@@ -151,7 +151,7 @@ fn figures(ui: &mut Ui, name: RichText, numbers: [RichText; 3]) {
     });
 }
 
-/// A name, a bar and a number in one line.
+/// Draws a name, a bar and a number in one line.
 fn level(ui: &mut Ui, label: &str, value: f64, most: f64, unit: &str, color: Color32) {
     compact(ui, |ui| {
         let column = |ui: &mut Ui, width: f32, layout: Layout, text: RichText| {
@@ -200,7 +200,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     });
 }
 
-/// The gain of the whole extension.
+/// Draws the improvement by the whole extension.
 fn before_after(ui: &mut Ui, d: &Diagnosis) {
     let unit = compared_unit(d);
     let number = |value: f64| format::significant(value, 3);
@@ -236,7 +236,7 @@ fn feel(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// Causes that the recording could not have shown, each with the reason under the pointer.
+/// Draws the causes that are not testable with the recording, each with the reason in a tooltip.
 fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
     if diagnosis.not_excited.is_empty() {
         return;

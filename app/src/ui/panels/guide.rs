@@ -1,4 +1,5 @@
-//! Over the trainer's picture while a person does an experiment: what to do now, how long still, and a ghost of the fingers to follow.
+//! Guidance over the trainer's picture while a person performs an experiment: the current instruction, the remaining
+//! time, and a ghost of the fingers to follow.
 
 use crate::ui::format;
 use crate::ui::guided::{Guided, Phase};
@@ -13,7 +14,7 @@ use egui::{Frame, Margin, Pos2, ProgressBar, Shape, Stroke, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::HandGoal;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const EXPERIMENT: &str = "Experiment";
     pub const THE_RECORDING_GETS: &str = "The recording gets its end …";
@@ -32,13 +33,13 @@ mod words {
 const WIDTH: f32 = 300.0;
 /// Radius of a ghost finger, points.
 const GHOST: f32 = 12.0;
-/// The word stands so far above them, clear of what is held, points.
+/// Distance of the text above the fingers, clear of the held object, points.
 const WORD_ABOVE: f32 = 52.0;
-/// So far ahead the way is drawn, s, in so many steps.
+/// Length of the previewed path, s, and its number of steps.
 const AHEAD_S: f64 = 1.5;
 const AHEAD_STEPS: u32 = 30;
 
-/// The card of the experiment; also while nothing runs.
+/// Draws the card of the experiment; also while nothing runs.
 pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
     if session.experiments.guided.is_none() {
         return;
@@ -87,7 +88,7 @@ fn ready(ui: &mut Ui, guided: &Guided, begin: &mut bool) {
     *begin = primary_button(ui, true, (Icon::Play, words::BEGIN)).clicked();
 }
 
-/// Says of what object this is, where that is made up.
+/// Names the object of a simulated recording.
 fn simulated(ui: &mut Ui, guided: &Guided) {
     if let Some(about) = &guided.about {
         let text = format!("A SIMULATED object, {about}: the recording will say so.");
@@ -115,7 +116,7 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
     });
 }
 
-/// Two rings where the fingertips are wanted, filled while they are to hold, and the way that they will go.
+/// Draws two rings at the desired fingertip positions, filled while they should hold, and their future path.
 pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
     let Some(guided) = &session.experiments.guided else { return };
     let Some((step, _, goal)) = guided.now(&session.trainer) else { return };
@@ -128,7 +129,7 @@ pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
     rings(ui, view, tips(&goal), &Rings { ahead: ahead.collect(), holds: step.holds, word });
 }
 
-/// The same where an expert's fingers go in a lesson that is practised.
+/// The same for an expert's fingers in a lesson during practice.
 pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
     let lessons = &session.lessons;
     let Some(open) = lessons.open.as_deref().filter(|open| open.phase == lessons::Phase::Practising) else { return };
@@ -148,9 +149,9 @@ pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
     rings(ui, view, point.tips_in_world, &Rings { ahead: ahead.collect(), holds, word });
 }
 
-/// What stands with two rings.
+/// Two rings with their text and path.
 struct Rings {
-    /// The way of their middle, m in the world.
+    /// Path of their midpoint, m in the world.
     ahead: Vec<Vec2>,
     holds: bool,
     word: &'static str,
@@ -162,7 +163,7 @@ fn rings(ui: &Ui, view: &SceneResponse, tips: [Vec2; 2], shown: &Rings) {
     let at = |point: Vec2| on_screen(ui, view, point);
     let ahead: Vec<Pos2> = shown.ahead.iter().map(|point| at(*point)).collect();
     let places = beside(tips.map(at));
-    // Legible over bright metal and dark ground alike.
+    // Legible on both bright metal and dark ground.
     for (width, color) in [(6.0, halo), (2.5, color)] {
         painter.add(Shape::line(ahead.clone(), Stroke::new(width, color)));
         for place in places {
@@ -180,8 +181,8 @@ fn rings(ui: &Ui, view: &SceneResponse, tips: [Vec2; 2], shown: &Rings) {
     ui.ctx().request_repaint();
 }
 
-/// Where the rings of two tips stand on the screen: a tip is the inner face of its pad, so that its ring lies outside of it and covers
-/// nothing of what is held.
+/// Screen positions of the rings of two tips. A tip is the inner face of its pad, so its ring is outside of it and does
+/// not cover the held object.
 fn beside(tips: [Pos2; 2]) -> [Pos2; 2] {
     let apart = tips[1] - tips[0];
     let out = if apart.length() > 1.0 { apart.normalized() } else { egui::Vec2::X };
@@ -210,7 +211,7 @@ mod tests {
             assert!(rings[0].distance(rings[1]) >= 2.0 * GHOST, "{rings:?}");
             assert!((rings[0].distance(left) - GHOST).abs() < 1e-4 && (rings[1].distance(right) - GHOST).abs() < 1e-4);
         }
-        // Seen from behind the left finger is on the right.
+        // Seen from behind, the left finger is on the right.
         let behind = beside([pos2(60.0, 0.0), pos2(20.0, 0.0)]);
         assert!(behind[0].x > 60.0 && behind[1].x < 20.0, "{behind:?}");
     }

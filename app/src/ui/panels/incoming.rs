@@ -8,17 +8,17 @@ use estimator::log::preview::{Curve, Preview};
 use estimator::log::pyramid::Band;
 use render::ColorRole;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const LOG: &str = "Log";
 }
 
-/// Least height of a curve, points; more columns than fit are counted in words.
+/// Minimum height of a curve, points; columns beyond the available space are counted in a text.
 const LEAST_HEIGHT: f32 = 34.0;
-/// Width of the names on the left.
+/// Width of the names on the left, points.
 const NAMES: f32 = 150.0;
 
-/// Draws what has been read so far. The curves grow from left to right as the file does.
+/// Draws the part read so far. The curves grow from left to right with the progress.
 pub fn incoming(ui: &mut Ui, preview: &Preview, progress: &Progress) {
     let share = progress.share.unwrap_or(1.0).clamp(1e-3, 1.0);
     let pixels = (ui.available_width() * ui.pixels_per_point()) as usize;
@@ -56,12 +56,12 @@ fn draw(ui: &Ui, rect: Rect, curve: &Curve, share: f64, index: usize) {
     ui.painter().add(Shape::line(map.line(&curve.points), Stroke::new(1.2, color)));
 }
 
-/// From the curve's times and values to the screen.
+/// Map from the curve's times and values to the screen.
 struct Map {
     area: Rect,
-    /// First time, and points a unit of time.
+    /// First time, and points per unit of time.
     time: (f64, f64),
-    /// Smallest value, and points a unit of value.
+    /// Minimum value, and points per unit of value.
     value: (f64, f64),
 }
 
@@ -82,7 +82,7 @@ impl Map {
 
     fn at(&self, time: f64, value: f64) -> Pos2 {
         let x = f64::from(self.area.left()) + (time - self.time.0) * self.time.1;
-        // A value that never changes runs through the middle.
+        // A constant value is drawn through the middle.
         let up = if self.value.1 > 0.0 {
             (value - self.value.0) * self.value.1
         } else {
@@ -91,7 +91,7 @@ impl Map {
         pos2(x as f32, self.area.bottom() - up as f32)
     }
 
-    /// Every piece from its lower to its upper end, or the other way, whichever is nearer to where the line stands.
+    /// Line through the lower and upper end of every band, in the order that starts nearer to the line's current end.
     fn line(&self, points: &[(f64, Band)]) -> Vec<Pos2> {
         let mut line: Vec<Pos2> = Vec::with_capacity(2 * points.len());
         for (time, band) in points {
@@ -121,7 +121,7 @@ mod tests {
         assert_eq!((line.len(), line[0].x, line[5].x), (6, 100.0, 200.0));
         let (top, bottom) = line.iter().fold((f32::MAX, f32::MIN), |(t, b), p| (t.min(p.y), b.max(p.y)));
         assert_eq!((top, bottom), (10.0, 60.0));
-        // From the first piece's upper end into the second at its lower one, which is the same value.
+        // From the first band's upper end into the second at its lower one, which is the same value.
         assert_eq!(line[1].y, line[2].y);
     }
 

@@ -1,4 +1,4 @@
-//! What the marks of the force gauges and of their running curve mean.
+//! Legends of the force gauges and of their live curve.
 
 use crate::ui::format::number;
 use crate::ui::theme::{self, palette, role};
@@ -6,7 +6,7 @@ use crate::ui::widgets::{compact, swatch};
 use egui::{Color32, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const WHAT_IS_MORE: &str =
         "What is more is cut off before it reaches your device; the light Saturated says so.";
@@ -16,7 +16,7 @@ mod words {
     pub const LIMIT_MORE: &str = "The largest force that is passed on";
 }
 
-/// Below the gauges: the upright mark.
+/// Legend below the gauges: the upright mark.
 pub fn gauges(ui: &mut Ui, limit_n: f64) {
     compact(ui, |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 12.0), Sense::hover());
@@ -26,7 +26,7 @@ pub fn gauges(ui: &mut Ui, limit_n: f64) {
     });
 }
 
-/// Below the running curve.
+/// Legend below the live curve.
 pub fn strip(ui: &mut Ui, seconds: f64) {
     let (dark, p) = (ui.visuals().dark_mode, palette(ui));
     compact(ui, |ui| {

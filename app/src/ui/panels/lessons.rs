@@ -1,4 +1,4 @@
-//! Lessons beside the trainer's picture: the list, what one is about, and how far an attempt is.
+//! Lessons beside the trainer's picture: the list, the description of a lesson, and the progress of an attempt.
 
 use super::debrief;
 use crate::ui::dock::Pane;
@@ -12,7 +12,7 @@ use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const LESSONS: &str = "Lessons";
     pub const LESSONS_MORE: &str = "From the first touch to the real task. Each is shown, practised and tested.";
@@ -44,7 +44,7 @@ mod words {
     pub const ANSWER_THE_QUESTION: &str = "Answer the question on the right.";
 }
 
-/// What a click asks for.
+/// Request of a click.
 #[derive(Clone)]
 enum Wish {
     Open(Arc<Lesson>),
@@ -58,7 +58,7 @@ enum Wish {
     Progress,
 }
 
-/// All of it.
+/// Draws the whole column.
 pub fn side(ui: &mut Ui, session: &mut Session) {
     session.lessons.load();
     let wish = if session.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
@@ -94,7 +94,7 @@ fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
     wish
 }
 
-/// A lesson in the list; true when it was chosen.
+/// Draws a lesson of the list; true when it was chosen.
 fn row(ui: &mut Ui, number: usize, lesson: &Lesson) -> bool {
     let mut chosen = false;
     compact(ui, |ui| {
@@ -221,7 +221,7 @@ fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&
     wish
 }
 
-/// The time since the hand began, and what is left of it.
+/// Draws the time since the hand's first motion, and the remaining time.
 fn clock(ui: &mut Ui, open: &Open, at_most_s: Option<f64>) {
     compact(ui, |ui| {
         if at_most_s.is_some() {
@@ -238,7 +238,7 @@ fn clock(ui: &mut Ui, open: &Open, at_most_s: Option<f64>) {
     }
 }
 
-/// Goals and rules, with how far they are.
+/// Draws goals and rules with their progress.
 fn goals(ui: &mut Ui, open: &Open, running: bool) {
     let p = palette(ui);
     for (goal, standing) in open.progress.standings() {
@@ -257,7 +257,7 @@ fn goals(ui: &mut Ui, open: &Open, running: bool) {
     }
 }
 
-/// A line with a round mark before it: ticked once it is reached.
+/// Draws a line with a round mark, ticked once the goal is reached.
 fn mark(ui: &mut Ui, ticked: bool, color: Color32, says: &str) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
@@ -266,7 +266,7 @@ fn mark(ui: &mut Ui, ticked: bool, color: Color32, says: &str) {
     });
 }
 
-/// The usual buttons, and the one thing to do on the right.
+/// Draws the secondary buttons, and the main button on the right.
 fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str), Wish)>) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal(|ui| {
@@ -286,7 +286,7 @@ fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str)
     wish
 }
 
-/// What to do now, for the line over the picture; nothing outside of lessons.
+/// Current instruction for the line over the picture; `None` outside of lessons.
 pub fn hint(session: &Session) -> Option<String> {
     let open = session.lessons.open.as_deref()?;
     match &open.phase {

@@ -22,7 +22,7 @@ use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const LOG: &str = "Log";
     pub const NO_RECORDING_YET_MORE: &str =
@@ -39,13 +39,13 @@ mod words {
     pub const SHOW_THIS_PLOT: &str = "Show this plot";
 }
 
-/// Least height of a plot, points.
+/// Minimum height of a plot, points.
 const LEAST_HEIGHT: f32 = 56.0;
-/// Height of the line with the name and the views.
+/// Height of the line with the name and the views, points.
 const HEADER: f32 = 32.0;
-/// A plot of what is left over is so high, of a quantity's plot.
+/// Height of a residual plot relative to a plot of a quantity.
 const LEFT_OVER_HEIGHT: f32 = 0.62;
-/// Height of band, subtasks, legend and slider together.
+/// Total height of band, subtasks, legend and slider, points.
 const FOOT: f32 = 102.0;
 
 /// The log panel.
@@ -73,7 +73,7 @@ impl Panel for LogPanel {
             };
             header(ui, session, &prepared);
             overlay_legend(ui, session);
-            // Apart from the session for as long as both are read.
+            // Taken out of the session for as long as both are read.
             let mut plots = std::mem::take(&mut session.plots);
             let area = match plots.view {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
@@ -87,7 +87,7 @@ impl Panel for LogPanel {
     }
 }
 
-/// A plot to draw: which group, what of it, its share of the height.
+/// Plot to draw: its group, its content, its share of the height.
 struct Place {
     group: usize,
     kind: RowKind,
@@ -114,7 +114,7 @@ fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
 
 fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
     ui.horizontal_wrapped(|ui| {
-        // As high as the tallest, so that the rest stands in its middle.
+        // As tall as the tallest, so that the rest is centred.
         ui.set_min_height(HEADER);
         ui.label(theme::heading(words::LOG));
         ui.add_space(space::S);
@@ -132,7 +132,7 @@ fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
     ui.add_space(space::XS);
 }
 
-/// Which quantities have a plot.
+/// Draws the chips that select the plotted quantities.
 fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
     let p = palette(ui);
     for group in &prepared.groups {
@@ -146,7 +146,7 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
     }
 }
 
-/// Where the shown recording's curves come from.
+/// Sources of the shown recording's curves.
 fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
     let analysis = session.analysis.as_ref();
     Sources {
@@ -171,7 +171,7 @@ fn places(sources: &Sources<'_>, plots: &mut PlotChoices, prepared: &Prepared) -
     places
 }
 
-/// The shift of what is held, in words, and the place of what is held or pointed at.
+/// Shift of the dragged recording as text, with true if it snapped; and index of the dragged or hovered recording.
 fn under_hand(plots: &PlotChoices, clockless: bool) -> (Option<(String, bool)>, Option<usize>) {
     let Some(held) = plots.held else { return (None, plots.pointed) };
     let place = plots.overlaid.iter().position(|o| o.recording == held.recording);
@@ -182,7 +182,7 @@ fn under_hand(plots: &PlotChoices, clockless: bool) -> (Option<(String, bool)>, 
     (Some((words, held.snapped)), place)
 }
 
-/// Shifts what is held by its curve; the time of a curve that was only clicked on.
+/// Shifts the dragged recording. Returns the time of a curve that was only clicked.
 fn shifting(
     ui: &Ui,
     session: &mut Session,
@@ -209,7 +209,7 @@ fn shifting(
 }
 
 impl LogPanel {
-    /// One signal against another; where the slider below lies horizontally.
+    /// Draws one signal against another. Returns the horizontal extent of the slider below.
     fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
         let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
         let times = (session.view_s, session.cursor_s);
@@ -221,7 +221,7 @@ impl LogPanel {
         area
     }
 
-    /// Draws the plots; where their area lies horizontally.
+    /// Draws the plots. Returns the horizontal extent of their area.
     fn rows(
         &mut self,
         ui: &mut Ui,
@@ -240,7 +240,7 @@ impl LogPanel {
         let shares: f32 = places.iter().map(Place::share).sum();
         let room = ui.available_height() - FOOT;
         let each = ((room - axis_height() - 4.0 * places.len() as f32) / shares).max(LEAST_HEIGHT);
-        // The wheel zooms; only the bar scrolls, where there are more plots than room.
+        // The wheel zooms; only the bar scrolls, if there are more plots than space.
         let scroll =
             ScrollArea::vertical().id_salt("plots").max_height(room.max(LEAST_HEIGHT)).auto_shrink([false, true]);
         scroll.scroll_source(egui::scroll_area::ScrollSource::SCROLL_BAR).show(ui, |ui| {

@@ -1,4 +1,5 @@
-//! Drawn over the trainer's picture: flashes of impacts, and where the device is when its tips hang on a virtual coupling.
+//! Marks over the trainer's picture: flashes of impacts, and the device's position while its tips are on a virtual
+//! coupling.
 
 use crate::ui::scene::SceneResponse;
 use crate::ui::theme::role;
@@ -10,9 +11,9 @@ use render::ColorRole;
 
 /// Radius of the strongest flash, points.
 const LARGEST: f64 = 34.0;
-/// Flashes are this colour in both themes: a spark.
+/// Colour of flashes in both themes: a spark.
 const SPARK: Color32 = Color32::from_rgb(0xFF, 0xB3, 0x1A);
-/// A device closer than this to its tip is not drawn beside it, m.
+/// Distance below which a device is not drawn beside its tip, m.
 const SAME_M: f64 = 2e-4;
 
 fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
@@ -20,7 +21,7 @@ fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
     view.rect.min + egui::vec2(pixel.x, pixel.y) / ui.pixels_per_point()
 }
 
-/// A spark and a ring that grows and fades, by the speed of each impact.
+/// Draws a spark and a growing, fading ring for each impact, by its speed.
 pub fn flashes(ui: &Ui, view: &SceneResponse, impacts: &Impacts) {
     let painter = ui.painter().with_clip_rect(view.rect);
     for flash in impacts.flashes() {
@@ -33,7 +34,7 @@ pub fn flashes(ui: &Ui, view: &SceneResponse, impacts: &Impacts) {
     }
 }
 
-/// The device's own fingers as rings, tied to the tips in the world.
+/// Draws the device's own fingers as rings, connected to the tips in the world.
 pub fn device(ui: &Ui, view: &SceneResponse, snapshot: &Snapshot) {
     if snapshot.coupling.is_none() {
         return;

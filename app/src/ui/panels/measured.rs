@@ -1,4 +1,4 @@
-//! What has been measured so far, and what is still missing: beside the servo, and for a loaded recording.
+//! Estimates so far and missing information: beside the servo, and for a loaded recording.
 
 use crate::ui::assistant::{NEEDLE, only_thing};
 use crate::ui::format;
@@ -13,7 +13,7 @@ use estimator::online::enough::Enough;
 use estimator::online::leak::Verdict;
 use estimator::online::{Event, Report};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const ON: &str = "On";
     pub const ON_MORE: &str = "Measure the object while it is handled";
@@ -41,7 +41,7 @@ mod words {
     pub const ENOUGH_DATA: &str = "Enough data?";
 }
 
-/// Changes are told for so long, s.
+/// Display time of a change, s.
 const TOLD_S: f64 = 20.0;
 
 /// The card beside the trainer's picture.
@@ -68,7 +68,7 @@ pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
     watch.on = on;
 }
 
-/// True when it is to begin anew.
+/// Draws the report; true if the estimation should restart.
 fn told(ui: &mut Ui, watch: &mut Watch, report: &Report, called: Option<&str>) -> bool {
     if report.enough.is_empty() {
         ui.label(theme::caption(ui, words::NOTHING_YET_PICK_IT_UP));
@@ -131,8 +131,8 @@ fn event_words(event: &Event) -> String {
     )
 }
 
-/// One block of lines an object: value ± error, a bar to the wanted accuracy, and the motion that is missing. `called`: what it is, where
-/// the estimator takes it for a block.
+/// Draws one block of lines per object: value ± standard error, a bar to the target accuracy, and the missing motion.
+/// `called` names the object where the estimator takes it for a block.
 pub fn rows(ui: &mut Ui, parameters: &[Parameter], all: &[Enough], called: Option<&str>) {
     let mut object = "";
     // Mass is weight over gravity: one line is enough.

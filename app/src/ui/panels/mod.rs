@@ -1,4 +1,4 @@
-//! One panel a file, behind one trait.
+//! One panel per file, behind one trait.
 
 pub(super) mod answers;
 mod assistant;
@@ -51,9 +51,9 @@ use super::session::Session;
 
 /// A part of the window that shows and changes the session.
 pub trait Panel {
-    /// Its name, for people and for tests.
+    /// Title, for users and for tests.
     fn title(&self) -> &'static str;
 
-    /// Draws it into all the room there is.
+    /// Draws the panel into the available space.
     fn ui(&mut self, ui: &mut egui::Ui, session: &mut Session);
 }

@@ -1,4 +1,4 @@
-//! The motion that an experiment asks of a mechanism: a curve to follow on the real machine, and a file of it.
+//! The motion that an experiment requires of a mechanism: a curve to follow on the real machine, and a file of it.
 
 use crate::experiment::MotionPlan;
 use crate::ui::format;
@@ -10,7 +10,7 @@ use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use estimator::diagnose::Experiment;
 use haptics::law::Coordinate;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SAVE_TOOL_MORE: &str =
         "Writes time and the tool's place as a CSV into the folder of recordings, for a machine that can follow it";
@@ -19,13 +19,13 @@ mod words {
     pub const SAVE_THE_PLAN: &str = "Save the plan";
 }
 
-/// Height of the curve, and room for numbers left of it and below, points.
+/// Height of the curve, and space for numbers left of it and below, points.
 const HEIGHT: f32 = 132.0;
 const NUMBERS: [f32; 2] = [40.0, 18.0];
-/// Points that the curve is drawn with, a point of width.
+/// Number of curve points per point of width.
 const FINENESS: f32 = 2.0;
 
-/// The curve, and the button that saves it.
+/// Draws the curve, and the button that saves it.
 pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: Coordinate) {
     let plan = match MotionPlan::new(asked) {
         Ok(plan) => plan,

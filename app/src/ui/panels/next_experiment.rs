@@ -1,5 +1,5 @@
-//! *Record next*: the experiment that would settle what is open, and three ways to it: rehearsed on simulated objects, done by hand in
-//! Train, loaded from a file.
+//! *Record next*: the experiment that would resolve the open question, and three ways to perform it. It can be
+//! simulated, performed by hand in Train, or loaded from a file.
 
 use super::motion_plan;
 use crate::diagnosis_words::{listed, one, small, title};
@@ -18,7 +18,7 @@ use estimator::diagnose::{Diagnosis, NextExperiment};
 use haptics::law::Coordinate;
 use std::path::PathBuf;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const REHEARSE: &str = "Rehearse it";
     pub const PLAN_MORE: &str = "The motion over time, to follow on the real machine. A mechanism that is driven directly has \
@@ -43,7 +43,7 @@ mod words {
     pub const NOT_MEASURED: &str = "Not measured";
 }
 
-/// The card under the causes.
+/// Card below the causes.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
     plain_card(ui, words::RECORD_NEXT, |ui| {
@@ -66,14 +66,15 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     });
 }
 
-/// The coordinate of what has no handle: nothing for what the hand of Train can hold.
+/// Coordinate of a directly driven mechanism; `None` for objects that the hand of Train can hold.
 fn driven(session: &Session, diagnosis: &Diagnosis) -> Option<Coordinate> {
     let task = session.choice.task;
     let is_mechanism = session.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
     is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
 }
 
-/// By the scripted operator, and by hand: in Train, or after a plan on the real mechanism.
+/// Draws the buttons: simulated by the scripted operator, or performed by hand, in Train or after a plan on the real
+/// mechanism.
 fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven: bool) {
     let ctx = ui.ctx().clone();
     ui.horizontal_wrapped(|ui| {
@@ -102,7 +103,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
     }
 }
 
-/// A menu of the objects that it can be done on in Train.
+/// Draws a menu of the objects available for it in Train.
 fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     let ctx = ui.ctx().clone();
     let by_hand = egui::Button::new((Icon::Touch, words::IN_TRAIN));
@@ -122,7 +123,7 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     response.on_hover_text(words::IN_TRAIN_MORE);
 }
 
-/// What came of the rehearsal.
+/// Draws the result of the simulation.
 fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     if let Some(problem) = &session.diagnosing.rehearsal_problem {
         remark(ui, Icon::Doubt, problem);
@@ -145,7 +146,7 @@ fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     }
 }
 
-/// One object: what was simulated, and how often it came out. True when its recording is to be added.
+/// Draws one object: the simulated truth, and how often it was diagnosed. True if its recording should be added.
 fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
     let mut add = false;
     let rounds = outcome.rounds.len();
@@ -174,7 +175,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
     add
 }
 
-/// What every round named, in lines.
+/// Diagnosed causes of every round, as lines.
 fn came_out(outcome: &Outcome) -> String {
     let names = |ids: &[String]| listed(&ids.iter().map(|id| title(id)).collect::<Vec<_>>());
     let round = |(k, round): (usize, &crate::experiment::Round)| {
@@ -191,7 +192,7 @@ fn summary(rehearsal: &Rehearsal, next: &NextExperiment) -> String {
     format!("{settled} of {all} settled the question rightly; {expected}\u{a0}% were expected.")
 }
 
-/// A recording that was made on the real object.
+/// Loads a recording of the real object.
 fn load(ui: &mut Ui, session: &mut Session) {
     ui.add_space(space::XS);
     ui.label(theme::caption(ui, words::DID_IT));
@@ -212,7 +213,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What a later recording settled, and which recordings were simulated: above the causes.
+/// Questions resolved by a later recording, and simulated recordings: above the causes.
 pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
     if !diagnosis.settled.is_empty() {
         plain_card(ui, words::SETTLED, |ui| {

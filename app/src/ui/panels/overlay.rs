@@ -1,4 +1,4 @@
-//! Recordings laid over the shown one: the menu that chooses them, and the legend with their shifts.
+//! Recordings overlaid on the shown one: the menu that chooses them, and the legend with their shifts.
 
 use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::JobKind;
@@ -8,7 +8,7 @@ use crate::ui::widgets::{quiet_icon_button, swatch};
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Ui};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const OVERLAY: &str = "Overlay";
     pub const OVERLAY_MORE: &str = "Lay other recordings of this file over the shown one";
@@ -22,10 +22,10 @@ mod words {
     pub const TAKE_AWAY: &str = "Take it away";
 }
 
-/// Longest name in the legend, letters.
+/// Maximum length of a name in the legend, characters.
 const LONGEST_NAME: usize = 22;
 
-/// The button with the list of the loaded recordings, where there are several.
+/// Draws the button with the list of the loaded recordings, if there are several.
 pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
     if session.recordings.len() < 2 {
         return;
@@ -48,9 +48,9 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
     response.on_hover_text(words::OVERLAY_MORE);
 }
 
-/// One entry for each recording that lies over the shown one; nothing without any.
+/// Draws one entry for each overlaid recording.
 pub fn overlay_legend(ui: &mut Ui, session: &mut Session) {
-    // A recording does not lie over itself.
+    // A recording is not overlaid on itself.
     let (current, count) = (session.current, session.recordings.len());
     session.plots.overlaid.retain(|o| o.recording != current && o.recording < count);
     if session.plots.overlaid.is_empty() {
@@ -106,7 +106,7 @@ fn short(name: &str) -> String {
     if count <= LONGEST_NAME {
         return name.to_owned();
     }
-    // The end tells recordings of one series apart.
+    // The end distinguishes recordings of one series.
     format!("…{}", name.chars().skip(count - LONGEST_NAME + 1).collect::<String>())
 }
 

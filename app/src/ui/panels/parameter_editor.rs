@@ -1,4 +1,4 @@
-//! One parameter: another value is tried on the replay at once, and what is known of it beforehand is stated.
+//! The editor of one parameter: a trial value is simulated at once, and prior knowledge is set here.
 
 use crate::ui::fit_choice::Stated;
 use crate::ui::format::{self, Quantity};
@@ -12,7 +12,7 @@ use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const CLOSE: &str = "Close";
     pub const NO_VALUE: &str = "It has no value that could be varied: state one below.";
@@ -35,12 +35,12 @@ mod words {
     pub const NOT_ABOVE: &str = "Not above";
 }
 
-/// The slider goes so many standard errors to either side …
+/// Half-range of the slider in standard errors.
 const SIGMAS: f64 = 6.0;
-/// … or this share of the value, whichever is more.
+/// Minimum half-range of the slider, as a share of the value.
 const SHARE: f64 = 0.5;
 
-/// How a parameter comes to its value.
+/// Source of a parameter's value.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Source {
     Estimated,
@@ -48,7 +48,7 @@ enum Source {
     Known,
 }
 
-/// The card of the selected parameter, if one is.
+/// Draws the card of the selected parameter, if there is one.
 pub fn selected(ui: &mut Ui, session: &mut Session) {
     let Some(analysis) = session.analysis.clone() else { return };
     let Some(name) = session.selected_parameter.clone() else { return };
@@ -98,7 +98,7 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
     outcome(ui, session, tried.is_some());
 }
 
-/// What the tried values leave of the force, beside what the fit leaves.
+/// Draws the force residual of the trial values, beside that of the fit.
 fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
     if !session.what_if.is_on() {
         ui.label(theme::caption(ui, words::THE_SIMULATED_CURVES));
@@ -151,7 +151,7 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
     if segmented(ui, &mut source, &choices) {
         stated.known.remove(&name);
         stated.prior.remove(&name);
-        // What stands in the slider is what one wants to hold on to.
+        // The slider's value is the one to keep.
         let value = session.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
         let std = parameter.std_error.filter(|e| *e > 0.0).unwrap_or_else(|| (0.1 * value.abs()).max(1e-6));
         match source {
@@ -212,7 +212,7 @@ fn line(ui: &mut Ui, label: &str, unit: &str, value: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A field for a number in SI, shown in the quantity's unit.
+/// Draws a number field: stored in SI, shown in the quantity's unit.
 fn number(ui: &mut Ui, value: &mut f64, quantity: &Quantity, least: Option<f64>) {
     let mut shown = *value * quantity.factor;
     let speed = (0.005 * shown.abs()).max(1e-5);

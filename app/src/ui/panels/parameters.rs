@@ -1,4 +1,4 @@
-//! The fitted parameters: value ± error in sensible units; what the recording cannot show is greyed, with its reason.
+//! The fitted parameters: value ± standard error in readable units. Unidentifiable ones are greyed, with the reason.
 
 use super::Panel;
 use crate::ui::fit_choice::Stated;
@@ -14,7 +14,7 @@ use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
 use estimator::simulate::Simulation;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const PARAMETERS: &str = "Parameters";
     pub const FITTING: &str = "Fitting …";
@@ -31,7 +31,7 @@ mod words {
     pub const REPLAYING_THE_MOTION: &str = "Replaying the motion through the fitted world …";
 }
 
-/// Height of a line.
+/// Height of a line, points.
 const LINE: f32 = 21.0;
 
 /// The parameter table.
@@ -68,7 +68,7 @@ impl Panel for ParametersPanel {
     }
 }
 
-/// Why there is no table yet.
+/// Explains why there is no table yet.
 fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
     let (title, text) = match (&session.fit_problem, busy) {
         (_, true) => (words::FITTING, words::FITTING_MORE),
@@ -160,7 +160,7 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
             row.col(|ui| {
                 let text = RichText::new(words::NOT_SHOWN).size(12.0).italics().color(palette(ui).faint);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    // Slanted letters lean out of their place.
+                    // Italics extend beyond their box.
                     ui.add_space(2.0);
                     ui.label(text);
                 });
@@ -185,7 +185,7 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
     });
 }
 
-/// An icon and a word beside parameters of which something is stated.
+/// Icon and word beside parameters with a user-defined prior, bound or value.
 fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static str)> {
     let (stated, name) = (&session.choice.stated, Stated::name_of(parameter));
     if stated.known.contains_key(&name) {
@@ -197,7 +197,7 @@ fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static
     }
 }
 
-/// What it is, how it was found, or why there is no value.
+/// Tooltip: meaning, origin of the value, or the reason why there is none.
 fn explain(ui: &mut Ui, parameter: &Parameter) {
     ui.set_max_width(320.0);
     if let Some(lesson) = teach::parameter(&parameter.name) {
@@ -213,7 +213,7 @@ fn explain(ui: &mut Ui, parameter: &Parameter) {
     ui.label(theme::caption(ui, words::CLICK_TO_TRY));
 }
 
-/// How well the model reproduces what was measured.
+/// Draws how well the model reproduces the measurement.
 fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
     ui.add_space(space::S);
     if let Some(quality) = &fit.quality {
@@ -233,13 +233,13 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
     }
 }
 
-/// Share of the measured force above which the replay is said to depart.
+/// Share of the measured force above which the simulation counts as deviating.
 const DEPARTS: f64 = 0.5;
 
-/// What the replay through the fitted world leaves of the measured force.
+/// Draws the force residual of the simulation in the fitted world.
 fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
     let Some(prepared) = session.prepared() else { return };
-    // Together: a channel that carries little force may well be wrong by all of it.
+    // Taken together: a channel that carries little force may be entirely wrong.
     let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {
         measured += prepared.mean_square(name);

@@ -1,4 +1,4 @@
-//! The passivity observer's figure, and the switch of the controller.
+//! The passivity observer's reading, and the switch of the controller.
 
 use crate::ui::format::number;
 use crate::ui::icons::Icon;
@@ -8,7 +8,7 @@ use crate::ui::trainer::USUAL_CONTROL_N_S_M;
 use crate::ui::widgets::{card, fact, remark};
 use egui::{Align, Layout, Ui};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const CONTROLLER: &str = "Controller";
     pub const NOT_WHILE_A_RECORDING: &str = "Not while a recording runs.";
@@ -25,10 +25,10 @@ const WHY: &str = "The observer always counts the energy that the world has take
                    zero) the force on you can start to swing; the controller then brakes your fingers until it is back. It is off \
                    unless you want it: it makes some contacts feel sticky.";
 
-/// Energy below this is worth a word, J: rounding and short moments are not.
+/// Energy below which a warning is shown, J: rounding and brief moments are above it.
 const GIVEN_OUT_J: f64 = -0.5e-3;
 
-/// Strengths to choose from: the most damping, N s/m.
+/// Selectable damping limits, N s/m.
 const STRENGTHS: [(&str, f64); 3] = [("0.5", 0.5), ("2", USUAL_CONTROL_N_S_M), ("10", 10.0)];
 
 /// The card beside the trainer's picture and on the devices page.
@@ -36,7 +36,7 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
     let Some(energy_j) = session.trainer.scene().map(|(snapshot, _)| snapshot.tick.energy_j) else { return };
     let before = session.trainer.control_n_s_m();
     let (mut on, mut most) = (before.is_some(), before.unwrap_or(USUAL_CONTROL_N_S_M));
-    // The servo starts anew, which would end a recording.
+    // The servo restarts, which would end a recording.
     let free = !session.trainer.is_recording();
     let switch = |ui: &mut Ui| {
         let response = ui.add_enabled(free, egui::Checkbox::new(&mut on, words::CONTROLLER));

@@ -1,4 +1,4 @@
-//! *Progress*: who practises, their learning curve at a lesson, and their attempts.
+//! *Progress*: the trainee, the learning curve at a lesson, and the attempts.
 
 use super::Panel;
 use crate::history::Attempt;
@@ -16,7 +16,7 @@ use egui::{
     TextEdit, Ui, pos2, vec2,
 };
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const PROGRESS: &str = "Progress";
     pub const WHO_PRACTISES: &str = "Who practises";
@@ -53,22 +53,22 @@ mod words {
     pub const NOT_MET: &str = "not met";
 }
 
-/// How the time of an attempt is written.
+/// Format of an attempt's time.
 const DATE_FORMAT: &str = "%Y-%m-%d %H:%M UTC";
 
-/// Height of the curve, points, and the room for its numbers.
+/// Height of the curve, points, and the space for its numbers.
 const CURVE: f32 = 240.0;
 const NUMBERS: [f32; 2] = [40.0, 36.0];
-/// Above the plot stands what its heights are, points.
+/// Height of the axis title above the plot, points.
 const NAME: f32 = 20.0;
 /// Radius of an attempt's mark, points.
 const MARK: f32 = 3.5;
 /// Height of a row of the table, points.
 const ROW: f32 = 18.0;
-/// Attempts that the table shows at most: the last ones.
+/// Maximum number of attempts in the table: the last ones.
 const MOST_ROWS: usize = 200;
 
-/// The progress of who practises.
+/// Panel of the trainee's progress.
 #[derive(Default)]
 pub struct ProgressPanel;
 
@@ -144,7 +144,7 @@ fn learning(ui: &mut Ui, session: &mut Session) {
     ui.add(egui::Label::new(theme::caption(ui, in_words(&learned))).wrap());
 }
 
-/// Which lesson is looked at.
+/// Draws the chooser of the lesson.
 fn lessons(ui: &mut Ui, session: &mut Session) {
     let (practised, shown) = (session.learning.practised(), session.learning.shown());
     let mut chosen: Option<Practised> = None;
@@ -177,7 +177,7 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// A mark and what it means.
+/// Draws a legend entry: a mark and its meaning.
 fn key(ui: &mut Ui, words: &str, mark: impl FnOnce(&Ui, Rect)) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, ROW), Sense::hover());
     mark(ui, rect);
@@ -185,7 +185,7 @@ fn key(ui: &mut Ui, words: &str, mark: impl FnOnce(&Ui, Rect)) {
     ui.add_space(space::S);
 }
 
-/// What the curve says.
+/// Text about the learning curve.
 fn in_words(learned: &Learned) -> String {
     let number = |value: f64| format::significant(value, 3);
     let mut words = Vec::new();
@@ -213,7 +213,7 @@ fn in_words(learned: &Learned) -> String {
     words.join(" ")
 }
 
-/// Where numbers stand in the picture.
+/// Map from numbers to positions in the picture.
 struct Axes {
     plot: Rect,
     last: f64,
@@ -241,7 +241,7 @@ impl Axes {
         pos2(self.plot.left() + right * self.plot.width(), self.plot.bottom() - up * self.plot.height())
     }
 
-    /// A quiet grid with its numbers.
+    /// Draws a quiet grid with its numbers.
     fn draw(&self, ui: &Ui) {
         let (p, font) = (palette(ui), FontId::proportional(11.0));
         let painter = ui.painter();
@@ -267,7 +267,7 @@ impl Axes {
     }
 }
 
-/// Attempts, means of sessions, the power law with its band, the expert's level.
+/// Draws attempts, session means, the power law with its confidence band, and the expert level.
 fn curve(ui: &mut Ui, learned: &Learned, expert: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CURVE), Sense::hover());
     let spoken = format!("Scores of {} attempts, in their order", learned.tries.len());
@@ -319,7 +319,7 @@ fn band(learned: &Learned, axes: &Axes, color: egui::Color32) -> Mesh {
     mesh
 }
 
-/// The attempt under the pointer, in words.
+/// Shows a tooltip for the attempt under the pointer.
 fn hints(response: &egui::Response, learned: &Learned, axes: &Axes) {
     let Some(pointer) = response.hover_pos() else { return };
     let near = |(number, t): &&(usize, estimator::training::progress::Try)| {
@@ -333,7 +333,7 @@ fn hints(response: &egui::Response, learned: &Learned, axes: &Axes) {
     }
 }
 
-/// `2026-11-22 19:05 UTC`.
+/// Time of an attempt, as `2026-11-22 19:05 UTC`.
 fn when(attempt: &Attempt) -> String {
     attempt.began.strftime(DATE_FORMAT).to_string()
 }

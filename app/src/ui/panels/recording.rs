@@ -1,4 +1,4 @@
-//! The left column of the calibration: which recording, how it is read, refit, save.
+//! The left column of the calibration: choice of the recording, its task, refit, save.
 
 use super::Panel;
 use crate::ui::files;
@@ -13,7 +13,7 @@ use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const OPEN: &str = "Open …";
     pub const OPEN_MORE: &str = "Open a log (Ctrl+O)";
@@ -189,7 +189,7 @@ fn fit(ui: &mut Ui, session: &mut Session) {
     ui.checkbox(&mut session.refits.live, words::FOLLOW).on_hover_text(hint);
 }
 
-/// Which part of the recording is fitted.
+/// Draws the chooser of the fitted time range.
 fn part(ui: &mut Ui, session: &mut Session) {
     let Some(prepared) = session.prepared().filter(|p| !p.clockless()) else { return };
     let (whole, shown) = (prepared.span(), session.view_s);
@@ -215,7 +215,7 @@ fn part(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// States that were set by hand, and what is stated of parameters, with the way back.
+/// Draws the manually set states and parameter values, with a button to clear them.
 fn by_hand(ui: &mut Ui, session: &mut Session) {
     if session.choice.segments.contains_key(&session.current) {
         ui.horizontal_wrapped(|ui| {
@@ -313,7 +313,7 @@ impl RecordingPanel {
     }
 }
 
-/// A path field with `…` and `Save`; true when it is to be saved there.
+/// Draws a path field with `…` and `Save`; true if it should be saved there.
 fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
     let (place, does) = match purpose {
         Purpose::SaveReport => (words::WHERE_REPORT, words::WRITE_REPORT),

@@ -1,4 +1,4 @@
-//! The devices page, left column: what has to be known of a remote device.
+//! The devices page, left column: settings of a remote device.
 
 use super::devices::{Choice, row};
 use crate::ui::icons::Icon;
@@ -11,7 +11,7 @@ use haptics::device::udp::{Key, PORT};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const OVER_THE_NETWORK: &str = "Over the network";
     pub const WAVE_VARIABLES: &str = "Wave variables";
@@ -34,20 +34,20 @@ mod words {
         "From here to the device and back. The longer, the softer the world has to be felt";
 }
 
-/// The key file is looked at this often.
+/// Interval between checks of the key file.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// The card of the remote device.
 #[derive(Default)]
 pub struct RemoteCard {
-    /// The fields that the running device was opened with.
+    /// Fields with which the running device was opened.
     in_use: Option<Remote>,
     doubts: Vec<String>,
     doubted: Option<(String, Instant)>,
 }
 
 impl RemoteCard {
-    /// Draws it; the choice when the device was asked for.
+    /// Draws the card. Returns the choice when the device was requested.
     pub(super) fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<Choice> {
         let mut chosen = None;
         plain_card(ui, words::OVER_THE_NETWORK, |ui| {
@@ -86,7 +86,7 @@ impl RemoteCard {
         chosen
     }
 
-    /// What is to be doubted about the key, looked up now and then: the file can change at any time.
+    /// Problem with the key, checked at intervals: the file can change at any time.
     fn doubt(&mut self, key: &str) {
         let known = self.doubted.as_ref().is_some_and(|(of, at)| of == key && at.elapsed() < LOOK_AGAIN);
         if !known {

@@ -1,4 +1,4 @@
-//! Everything that was found: parameters, constraints, warnings, and what to do with them.
+//! All results: parameters, constraints, warnings, and the actions on them.
 
 use super::Panel;
 use super::parameters::ParametersPanel;
@@ -11,7 +11,7 @@ use crate::ui::widgets::{card, plain_card, primary_button, remark};
 use egui::{RichText, ScrollArea, Ui};
 use estimator::estimate::{Constraint, ConstraintKind};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const RESULTS: &str = "Results";
     pub const CONSTRAINTS: &str = "Constraints";
@@ -85,7 +85,7 @@ fn constraints(ui: &mut Ui, session: &Session) {
     });
 }
 
-/// What it is, and of which object where there are several.
+/// Kind of the constraint, with its object if there are several.
 fn heading(constraint: &Constraint) -> String {
     let kind = kind(constraint.kind);
     constraint.object.as_deref().map_or(kind.to_owned(), |object| {
@@ -108,7 +108,7 @@ fn kind(kind: ConstraintKind) -> &'static str {
     }
 }
 
-/// Numbers of a constraint as short lines.
+/// Values of a constraint as short lines.
 fn facts(constraint: &Constraint) -> Vec<String> {
     let mut facts = Vec::new();
     let millimetres = |value: f64, error: Option<&f64>| {
@@ -187,7 +187,7 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// A link to the next of several places; the one that was asked for.
+/// Draws a link to the next of several intervals. Returns the requested one.
 fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) -> Option<(f64, f64)> {
     let next = places.iter().position(|(from, _)| *from > cursor_s + 1e-9).unwrap_or(0);
     let place = places.get(next)?;
@@ -197,7 +197,7 @@ fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) 
         n => format!("Go to {at} ({} of {n})", next + 1),
     };
     ui.horizontal(|ui| {
-        // Below the words of the remark.
+        // Below the text of the remark.
         ui.add_space(icons::SMALL + 6.0 - ui.spacing().item_spacing.x);
         ui.link(RichText::new(text).size(11.5)).clicked().then_some(*place)
     })

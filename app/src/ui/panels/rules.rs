@@ -1,5 +1,5 @@
-//! The editor of a task's rules: which states there are, when they hold, what they show, and which subtasks they make up. What is
-//! changed is tried at once on the recording below.
+//! The editor of a task's rules: its states, their conditions, the parameters that they identify, and the subtasks that
+//! they form. A change is applied at once to the recording below.
 
 use super::Panel;
 use super::rules_table::{states, subtasks};
@@ -13,7 +13,7 @@ use egui::{DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::definition::Definition;
 use haptics::recording::Task;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const ADD_A_STATE: &str = "Add a state";
     pub const RULES: &str = "Rules";
@@ -36,14 +36,14 @@ mod words {
     pub const FORCE_BIAS: &str = "Force bias";
 }
 
-/// Height of what stands below the tables: thresholds, name, and what is wrong.
+/// Height of the part below the tables, points: thresholds, name, and problems.
 const FOOT: f32 = 94.0;
 
-/// The editor of the rules.
+/// Panel of the rules editor.
 #[derive(Default)]
 pub struct RulesPanel;
 
-/// What the head's buttons ask for.
+/// Request of the head's buttons.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Asked {
     Nothing,
@@ -122,7 +122,7 @@ fn reset(session: &mut Session) {
     (open.fault, open.untried) = (None, true);
 }
 
-/// Thresholds with hysteresis. A needle has none.
+/// Draws the thresholds with hysteresis. A needle has none.
 fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
     if open.draft.like == Task::Needle {
         ui.label(theme::caption(ui, words::A_NEEDLES_PHASES));
@@ -150,14 +150,14 @@ fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
         let mut percent = 100.0 * policy.leave;
         let drag = DragValue::new(&mut percent).range(5.0..=100.0).speed(0.5).max_decimals(0).suffix(" %");
         ui.add(drag).on_hover_text(words::HYSTERESIS_MORE);
-        // A value that nobody has touched stays as it is written.
+        // An untouched value stays as it is written.
         if (percent - 100.0 * policy.leave).abs() > 1e-9 {
             policy.leave = percent / 100.0;
         }
     });
 }
 
-/// The name to save under, and what is wrong; true when it is to be saved.
+/// Draws the name for saving, and the problems; true if it should be saved.
 fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
     let mut save = false;
     ui.add_space(space::XS);
@@ -181,7 +181,7 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
     save
 }
 
-/// A parameter for the list of what a state shows.
+/// Label of a parameter in the list of a state.
 pub(super) fn parameter(name: &str) -> String {
     if name == "force_bias" { words::FORCE_BIAS.to_owned() } else { format::parameter(name, None).label }
 }

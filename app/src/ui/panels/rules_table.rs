@@ -12,7 +12,7 @@ use estimator::segment::definition::{Step, Subtasks, signals};
 use estimator::segment::shows;
 use haptics::recording::Task;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const TOUCH: &str = "Touch";
     pub const TOUCH_MORE: &str = "Any force of a finger";
@@ -44,12 +44,12 @@ mod words {
     pub const IN_ANY_ORDER: &str = "Subtasks: whenever the state lasts a while; {n} counts them.";
 }
 
-/// Height of a line.
+/// Height of a line, points.
 const LINE: f32 = 30.0;
-/// Where there is less room than this the table of states is drawn closely, points.
+/// Width below which the table of states is drawn compactly, points.
 const ROOMY: f32 = 740.0;
 
-/// Widths in the table of states, points.
+/// Column widths of the table of states, points.
 struct Widths {
     state: f32,
     phase: f32,
@@ -67,22 +67,22 @@ impl Widths {
         }
     }
 
-    /// Three chips beside each other.
+    /// Width of three adjacent chips, points.
     fn signs(&self) -> f32 {
         3.0 * self.chip + 2.0 * CHIP_GAP + 4.0
     }
 }
 
-/// Between the signs of a signal.
+/// Gap between the signs of a signal, points.
 const CHIP_GAP: f32 = 1.0;
 
-/// What is done with a line.
+/// Operation on a line.
 enum Done {
     Up(usize),
     Gone(usize),
 }
 
-/// A signal in words, and what it is.
+/// Label and description of a signal.
 fn signal(name: &str) -> (&str, &str) {
     match name {
         "contact" => (words::TOUCH, words::TOUCH_MORE),
@@ -97,7 +97,7 @@ fn signal(name: &str) -> (&str, &str) {
     }
 }
 
-/// States, when they hold and what they show.
+/// Draws the states, their conditions and the parameters that they identify.
 pub fn states(ui: &mut Ui, open: &mut Rules) {
     let known = signals(open.draft.like);
     let needle = open.draft.like == Task::Needle;
@@ -154,7 +154,7 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
     }
 }
 
-/// Up and away.
+/// Draws the buttons to move a line up and to remove it.
 fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut Option<Done>) {
     row.col(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -171,7 +171,7 @@ fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut
     });
 }
 
-/// A choice among the states that fit the task.
+/// Draws a chooser among the states allowed for the task.
 fn state(ui: &mut Ui, open: &mut Rules, id: (&str, usize), place: impl Fn(&mut Rules) -> &mut SystemState) {
     let all: Vec<SystemState> = open.states().collect();
     let chosen = place(open);
@@ -186,7 +186,7 @@ fn state(ui: &mut Ui, open: &mut Rules, id: (&str, usize), place: impl Fn(&mut R
     call(&list.response, &format!("State of {} {}", id.0, id.1 + 1));
 }
 
-/// The signs that a signal may have: three chips, none of them lit for any.
+/// Draws the allowed signs of a signal: three chips, none of them lit for any sign.
 fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, (name, values): (&str, &[&str]), chip_width: f32) {
     ui.spacing_mut().item_spacing.x = CHIP_GAP;
     ui.spacing_mut().button_padding = vec2(0.0, 0.0);
@@ -210,7 +210,7 @@ fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, (name, values): (&str, &[&s
     }
 }
 
-/// The phase of a needle.
+/// Draws the chooser of a needle's phase.
 fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
     let when = &mut open.draft.states[rule].when;
     let mut chosen = when.get("phase").cloned().unwrap_or_default();
@@ -232,7 +232,7 @@ fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
     }
 }
 
-/// What a state shows: a menu with ticks.
+/// Draws the parameters that a state identifies: a menu with checkboxes.
 fn shown(ui: &mut Ui, open: &mut Rules, rule: usize) {
     let all = shows::parameters(open.draft.like);
     let shown = &mut open.draft.states[rule].shows;
@@ -259,7 +259,7 @@ fn shown(ui: &mut Ui, open: &mut Rules, rule: usize) {
     list.response.on_hover_text(format!("Fits take their samples from the states that show a parameter.\n{text}"));
 }
 
-/// Subtasks with their states: in an expected order, or each on its own.
+/// Draws the subtasks with their states: in an expected order, or each on its own.
 pub fn subtasks(ui: &mut Ui, open: &mut Rules) {
     ui.separator();
     ui.add_space(space::XS);
@@ -282,7 +282,7 @@ pub fn subtasks(ui: &mut Ui, open: &mut Rules) {
     });
 }
 
-/// One list of subtasks.
+/// Draws one list of subtasks.
 fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) -> &mut Vec<Step>) {
     let ordered = matches!(open.draft.subtasks, Subtasks::Ordered(_));
     let mut done = None;

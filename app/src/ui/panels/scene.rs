@@ -1,4 +1,4 @@
-//! The recording in space: the hand follows the cursor, path, forces and constraints lie over it.
+//! The 3D view of the recording: the hand follows the cursor; path, forces and constraints are overlaid.
 
 use super::Panel;
 use crate::ui::icons::{self, Icon};
@@ -14,7 +14,7 @@ use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use render::Camera;
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SCENE: &str = "Scene";
     pub const THE_RECORDED_HAND: &str =
@@ -25,19 +25,19 @@ mod words {
     pub const SHOWN: &str = "Shown";
 }
 
-/// Narrower, the picture has no room for switches and legend, points.
+/// Minimum width of a picture with space for switches and legend, points.
 const WIDE: f32 = 420.0;
-/// Lower, it has no room for a legend, points.
+/// Minimum height of a picture with space for a legend, points.
 const HIGH: f32 = 180.0;
-/// Room that the button beside the switches needs, points.
+/// Width of the button beside the switches, points.
 const RESET: f32 = 120.0;
 
-/// The 3-D view of the recording.
+/// Panel of the 3D view.
 pub struct ScenePanel {
     rig: Rig,
-    /// The recording that the camera was set up for.
+    /// Recording for which the camera was set up.
     of: usize,
-    /// How like the recording its replay is, with the replay that this was computed of.
+    /// Agreement of the replay with the recording, with the identity of that replay.
     likeness: Option<(usize, Likeness)>,
 }
 
@@ -83,7 +83,7 @@ impl Panel for ScenePanel {
 }
 
 impl ScenePanel {
-    /// A recording without a place in space.
+    /// Draws a recording without a position in space.
     fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
         let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
             let text = words::THIS_RECORDING_HAS;
@@ -96,7 +96,7 @@ impl ScenePanel {
         mechanism.write_over(ui, view.rect, &view.camera, view.size);
     }
 
-    /// The legend, where it is wanted and has room.
+    /// Legend, if it is switched on and there is space.
     fn legend(&mut self, ui: &Ui, session: &Session, prepared: &Prepared) -> Option<Legend> {
         let room = ui.available_size();
         if !session.layers.legend || room.x < WIDE || room.y < HIGH {
@@ -106,7 +106,7 @@ impl ScenePanel {
         Some(Legend::new(ui, room.x, session, prepared, self.likeness.as_ref().map(|(_, like)| like)))
     }
 
-    /// Compares the replay with the recording, once for each replay.
+    /// Compares the replay with the recording, once per replay.
     fn compare(&mut self, session: &Session, prepared: &Prepared) {
         let found = session.replay().zip(session.analysis.as_ref()).filter(|_| session.layers.replay);
         let Some((replay, analysis)) = found else {
@@ -119,7 +119,8 @@ impl ScenePanel {
         }
     }
 
-    /// Another recording, or a fit of it, changes what the whole picture is; a camera that was moved stays.
+    /// Resets the camera's home for another recording or fit, which changes the extent of the picture; a camera that
+    /// was moved stays.
     fn set_up(&mut self, session: &Session, prepared: &Arc<Prepared>) {
         self.home(camera_for(session, prepared), prepared);
     }
@@ -135,7 +136,7 @@ impl ScenePanel {
     }
 }
 
-/// What can be switched on and off in the picture: name, hint, and where it is kept.
+/// Switch of a layer: name, hint, and its field.
 type Switch = (&'static str, &'static str, fn(&mut SceneLayers) -> &mut bool);
 const SWITCHES: [Switch; 7] = [
     ("Path", "Where the fingers went, in the visible time", |l| &mut l.path),
@@ -155,10 +156,10 @@ const SWITCHES: [Switch; 7] = [
     ("Legend", "What the marks mean", |l| &mut l.legend),
 ];
 
-/// Switches in the corner of the picture; in a small one they are in a menu.
+/// Draws the switches in the corner of the picture; a small picture has them in a menu.
 fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - RESET, 26.0));
-    // A child of its own: it lies over the picture and takes no room.
+    // A child of its own: it covers the picture and takes no space.
     let rows =
         egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true).with_cross_align(egui::Align::Center);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(room).layout(rows));

@@ -1,4 +1,4 @@
-//! The scripted operator: its level of skill, its deliberate mistake, and watching again.
+//! The scripted operator: its skill level, its deliberate mistake, and replaying it.
 
 use crate::operator;
 use crate::ui::session::Session;
@@ -8,7 +8,7 @@ use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SKILL: &str = "Skill";
     pub const MISTAKE: &str = "Mistake";
@@ -22,7 +22,7 @@ mod words {
     pub const NO_MISTAKE_MORE: &str = "Does it as well as it can";
 }
 
-/// What stands in the operator's card while the script moves the fingers.
+/// Content of the operator's card while the script moves the fingers.
 pub fn script(ui: &mut Ui, session: &mut Session) {
     let before = session.trainer.script.clone();
     let possible = session.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();

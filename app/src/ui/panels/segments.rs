@@ -14,7 +14,7 @@ use estimator::segment::score::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SEGMENTS: &str = "Segments";
     pub const STATES_AND_SUBTASKS: &str = "States and subtasks";
@@ -39,16 +39,16 @@ mod words {
     pub const NO_STATES_TAKEN: &str = "The fit of this task takes no states; a right click fits this stretch alone.";
 }
 
-/// Height of the band.
+/// Height of the band, points.
 const BAND: f32 = 22.0;
-/// No word is as narrow as this.
+/// Minimum width of a word, points.
 const LEAST_WORD: f32 = 14.0;
-/// Height of a line of the list.
+/// Height of a line of the list, points.
 const LINE: f32 = 21.0;
-/// Height of the subtasks' line.
+/// Height of the subtasks' line, points.
 const SUBTASKS: f32 = 18.0;
 
-/// The segmentation by itself.
+/// Panel of the segmentation alone.
 #[derive(Default)]
 pub struct SegmentsPanel;
 
@@ -87,7 +87,7 @@ fn spaced(sequence: &str) -> String {
     sequence.chars().flat_map(|c| [c, ' ']).collect::<String>().trim_end().to_owned()
 }
 
-/// The band between the given edges, with its names to the left, and the legend below.
+/// Draws the band between the given edges, with its names to the left, and the legend below.
 pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     let busy = session.jobs.is_running(crate::ui::jobs::JobKind::Fit);
     let analysis = session.analysis.clone();
@@ -150,7 +150,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word(segmentation, interval.state)));
-        // Menu and tooltip of hundreds of states would cost most of the picture.
+        // Menus and tooltips of hundreds of states would take most of the frame time.
         if !response.hovered() && !response.clicked() && !some_menu_is_open {
             continue;
         }
@@ -190,13 +190,12 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
 }
 
-/// The state in words; what turns or slides is not known of every mechanism.
-/// What a state is called in a recording of this task.
+/// Name of a state in a recording of this task. It is neutral where turning and sliding cannot be distinguished.
 pub fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
     if state == SystemState::Turning && segmentation.task != "crank" { words::MOVING } else { state_name(state) }
 }
 
-/// Text in a box when it fits.
+/// Draws text in a box if it fits.
 fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) -> bool {
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), ink);
     let fits = galley.size().x + 6.0 < rect.width();
@@ -224,7 +223,7 @@ fn tooltip(ui: &mut Ui, interval: &Interval, state: &str, shows: &[String], by_m
     ui.label(theme::caption(ui, format!("{share} % {text}")));
 }
 
-/// Neighbouring intervals of one subtask, as one bracket.
+/// Runs of adjacent intervals of one subtask, each as one bracket.
 fn runs(segmentation: &Segmentation) -> Vec<(Range<f64>, String)> {
     let mut runs: Vec<(Range<f64>, String)> = Vec::new();
     for interval in &segmentation.states {
@@ -265,7 +264,7 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
         }
     }
     compact(ui, |ui| {
-        // Where the band is too short for the legend, the legend starts at the left edge.
+        // If the band is too short for the legend, the legend starts at the left edge.
         if ui.available_width() - indent > 125.0 * present.len() as f32 {
             ui.add_space(indent - ui.spacing().item_spacing.x);
         }
@@ -282,7 +281,7 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
     });
 }
 
-/// How the states agree with the labels of the recording.
+/// Draws the agreement of the states with the labels of the recording.
 fn agreement(ui: &mut Ui, score: &Score) {
     let text = format!(
         "labels: {} % agree, boundaries F1 {}",
@@ -304,7 +303,7 @@ fn agreement(ui: &mut Ui, score: &Score) {
     });
 }
 
-/// All intervals as a list: for reading, and for the picture of this panel.
+/// Draws all intervals as a list: for reading, and for the screenshot of this panel.
 fn intervals(ui: &mut Ui, session: &mut Session) {
     let analysis = session.analysis.clone();
     let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref()) else {
@@ -314,7 +313,7 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
     let mut seek = None;
     let elided = |ui: &mut Ui, text: RichText| drop(ui.add(egui::Label::new(text).truncate()));
     let p = palette(ui);
-    // Where there is little room, states and subtasks share it.
+    // In a narrow panel, states and subtasks share the width.
     let state = (0.34 * ui.available_width()).clamp(60.0, 130.0);
     TableBuilder::new(ui)
         .id_salt("intervals")

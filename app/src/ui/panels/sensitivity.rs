@@ -1,4 +1,4 @@
-//! How the result depends on the parameters, and how they go together: bars, and a matrix of correlations.
+//! Sensitivity of the result to the parameters, and their correlations: bars, and a matrix.
 
 use super::Panel;
 use crate::ui::format;
@@ -10,7 +10,7 @@ use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SENSITIVITY: &str = "Sensitivity";
     pub const LOOKING_MORE: &str = "Every parameter is changed a little, and the motion replayed.";
@@ -28,9 +28,9 @@ mod words {
     pub const COULOMB: &str = "Coulomb";
 }
 
-/// Side of a cell of the matrix, points: at most, and at least.
+/// Side of a cell of the matrix, points: maximum and minimum.
 const CELL: (f32, f32) = (34.0, 16.0);
-/// Two parameters that go together more than this can hardly be told apart.
+/// Absolute correlation above which two parameters are hardly distinguishable.
 const ALIKE: f64 = 0.9;
 
 /// The sensitivity panel.
@@ -117,7 +117,7 @@ fn together(ui: &mut Ui, groups: &[Correlations]) {
     }
 }
 
-/// Names to the left, the lower triangle of cells to their right, numbered below.
+/// Draws names to the left, the lower triangle of cells to their right, numbered below.
 fn matrix(ui: &mut Ui, group: &Correlations) {
     let p = palette(ui);
     let n = group.names.len();
@@ -150,7 +150,7 @@ fn matrix(ui: &mut Ui, group: &Correlations) {
     }
 }
 
-/// Accent for what grows together, caution for what grows against each other; nothing where neither.
+/// Colour of a correlation: accent if positive, caution if negative, none near zero.
 fn color(p: &Palette, correlation: f64) -> Color32 {
     let end = if correlation >= 0.0 { p.accent } else { p.caution };
     theme::mix(p.sunken, end, correlation.abs() as f32)

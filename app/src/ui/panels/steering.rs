@@ -5,8 +5,8 @@ use crate::ui::trainer::{HandDevice, Steering, Trainer};
 use egui::{Event, Key, TouchPhase, Ui};
 use haptics::device::{KeysHeld, TouchHandle};
 
-/// Gives this picture's touches to the touch device. Fingers on the glass while the mouse is the device make it the touch screen:
-/// whoever touches means it. The error is that of starting the device.
+/// Passes this frame's touches to the touch device. A touch while the mouse is the device switches to the touch screen.
+/// The error is that of starting the device.
 pub fn touches(ui: &Ui, view: &SceneResponse, trainer: &mut Trainer) -> Result<(), String> {
     let events: Vec<(u64, TouchPhase, egui::Pos2)> = ui.input(|i| {
         let touch = |event: &Event| match event {
@@ -41,7 +41,7 @@ fn pass_on(handle: &mut TouchHandle, (id, phase): (u64, TouchPhase), in_world: O
     }
 }
 
-/// Gives the held keys to the keyboard device; none while a text field or another window has the keyboard.
+/// Passes the held keys to the keyboard device; none while a text field or another window has the keyboard.
 pub fn keys(ui: &Ui, trainer: &mut Trainer) {
     let Steering::Keyboard(handle) = &mut trainer.steering else { return };
     let elsewhere = ui.ctx().egui_wants_keyboard_input();

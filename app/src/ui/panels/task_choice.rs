@@ -13,7 +13,7 @@ use estimator::segment::library;
 use haptics::recording::{Recording, Task};
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const TASK: &str = "Task";
     pub const YOURS: &str = "Yours";
@@ -23,17 +23,17 @@ mod words {
     pub const RULES: &str = "Rules …";
 }
 
-/// Tasks on offer.
+/// Offered tasks.
 const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
 
-/// What the user has picked.
+/// Selection of the user.
 enum Picked {
     Automatic,
     BuiltIn(Task),
     Own(String),
 }
 
-/// The drop-down, and the way to the task's rules.
+/// Draws the drop-down, and the button to the task's rules.
 pub fn task_choice(ui: &mut Ui, session: &mut Session) {
     let mut picked = None;
     ui.horizontal(|ui| {
@@ -45,7 +45,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
         let text = match (&choice.own, choice.task) {
             (Some(own), _) => own.name.clone(),
             (None, Some(task)) => format::object(task.name()),
-            // As short as the narrow card needs it.
+            // Short enough for the narrow card.
             (None, None) => format!("Auto: {told}"),
         };
         let list = ComboBox::from_id_salt("task")
@@ -88,7 +88,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
     edit(ui, session);
 }
 
-/// The name of the task that a recording is read as.
+/// Name of the task as which a recording is read.
 fn told(recording: &Recording, task: Option<Task>) -> String {
     let own = recording.meta.other.get(SIDECAR_KEY).and_then(|own| own.get("name")?.as_str());
     own.or(task.map(Task::name)).unwrap_or("unknown").replace('-', " ")

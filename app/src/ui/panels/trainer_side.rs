@@ -1,4 +1,4 @@
-//! Beside the trainer's picture: world, operator, recording, forces, timing.
+//! The column beside the trainer's picture: world, operator, recording, forces, timing.
 
 use super::{Panel, legend};
 use crate::ui::files;
@@ -12,7 +12,7 @@ use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const FREE: &str = "Free practice";
     pub const FREE_MORE: &str = "Any world, any operator";
@@ -64,7 +64,7 @@ mod words {
     pub const NET_FORCE_UP: &str = "Net force, up";
 }
 
-/// Seconds that the running curve shows.
+/// Length of the live curve, s.
 const STRIP_S: f64 = 8.0;
 
 /// The right column of the trainer.
@@ -77,7 +77,7 @@ impl Panel for TrainerSide {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        // Commands name them, wherever one is.
+        // The command palette lists them in every workspace.
         session.lessons.load();
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -146,7 +146,7 @@ fn world(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// One place of the list, with what is `missing` for it; the choice when it was clicked.
+/// Draws one entry of the list, with its `missing` requirement. Returns the choice when it was clicked.
 fn world_choice(
     ui: &mut Ui,
     session: &mut Session,
@@ -249,7 +249,7 @@ fn measure(ui: &mut Ui, label: &str, newtons: f64) {
     });
 }
 
-/// Grip and net force of the last seconds, and what its lines are.
+/// Draws grip and net force of the last seconds, with a legend.
 fn strip(ui: &mut Ui, history: &History, limit: f64) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 64.0), Sense::hover());
     ui.painter().rect_filled(rect, 4, palette(ui).sunken);

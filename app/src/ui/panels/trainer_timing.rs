@@ -1,4 +1,4 @@
-//! How well the servo keeps its time, in numbers.
+//! Timing of the servo, in numbers.
 
 use crate::ui::format;
 use crate::ui::theme::{self, palette, space};
@@ -9,7 +9,7 @@ use haptics::servo::Snapshot;
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
 use haptics::servo::timing::{Percentiles, RECENT_S, Timing};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const TIMING: &str = "Timing";
     pub const NO_TICK_WAS: &str = "No tick was timed yet: the figures come as soon as the servo runs.";
@@ -48,7 +48,7 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
 
 fn table(ui: &mut Ui, timing: &Timing) {
     egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
-        // What is now, and what was ever: a stall while the window opened is no news an hour later.
+        // Recent and overall values: a stall while the window opened is no news an hour later.
         let recent = &timing.recent;
         head(ui, &format!("last {RECENT_S:.0} s"));
         percentiles(ui, words::PERIOD, &recent.period);
@@ -63,12 +63,12 @@ fn table(ui: &mut Ui, timing: &Timing) {
     });
 }
 
-/// Whether anything was measured: no duration of a real clock is exactly nothing.
+/// True if anything was measured: no duration of a real clock is exactly zero.
 fn was_timed(p: &Percentiles) -> bool {
     p.max_s > 0.0
 }
 
-/// How old the newest sample of a device is, in words.
+/// Age of a device's newest sample, as text.
 pub fn sample_age(age_s: f64) -> String {
     if age_s > 0.0 { format::short_time(age_s) } else { words::NEW_AT_THIS_TICK.to_owned() }
 }
@@ -101,7 +101,7 @@ fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {
     }
 }
 
-/// What the operator feels through a virtual coupling.
+/// Description of the feel through a virtual coupling.
 pub fn coupling_sentence(coupling: &Coupling) -> String {
     if coupling.damping_n_s_m == 0.0 && coupling.stiffness_n_m <= SOFTEST_N_M {
         return format!(
@@ -126,7 +126,7 @@ fn head(ui: &mut Ui, span: &str) {
 fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {
     ui.label(theme::caption(ui, label));
     for seconds in [p.p50_s, p.p99_s, p.p999_s, p.max_s] {
-        // A pointer gets no force, so none has an age.
+        // A pointer renders no force, so the force has no age.
         let text = if was_timed(p) { format::short_time(seconds) } else { "–".to_owned() };
         ui.label(RichText::new(text).size(11.5));
     }

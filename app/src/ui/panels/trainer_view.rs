@@ -12,7 +12,7 @@ use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const TRAINER: &str = "Trainer";
     pub const NO_SERVO: &str = "The servo is not running";
@@ -49,15 +49,15 @@ mod words {
     pub const REPLAY_OF_THE_OPEN: &str = "Replay of the open log";
 }
 
-/// Speed of the fingers under the arrow keys, m/s.
+/// Speed of the fingers by the arrow keys, m/s.
 const KEY_SPEED_M_S: f64 = 0.04;
-/// Newtons of pinch a point of scrolling.
+/// Change of pinch force per point of scrolling, N.
 const WHEEL_N: f64 = 0.004;
 
-/// The picture of the trainer, and what the mouse does in it.
+/// Picture of the trainer, and its mouse control.
 pub struct TrainerView {
     rig: Rig,
-    /// The window had the focus in the picture before.
+    /// True if the window had the focus in the previous frame.
     had_focus: bool,
     #[cfg(feature = "sound")]
     sound: Option<Result<crate::ui::sound::Sound, String>>,
@@ -74,7 +74,7 @@ impl Default for TrainerView {
     }
 }
 
-/// The whole hand, fingers and objects as large as it allows.
+/// Camera that shows the whole hand, with fingers and objects as large as possible.
 fn home() -> Camera {
     Camera { pitch_rad: 0.16, ..Camera::hand() }.framing([-0.094, -0.142].into(), [0.094, 0.014].into())
 }
@@ -85,7 +85,7 @@ impl Panel for TrainerView {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        // The window's first picture comes before the servo, which takes a processor for itself.
+        // The window's first frame comes before the servo, which occupies a processor.
         if session.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
             ui.ctx().request_repaint();
             sheet(ui).show(ui, |ui| ui.set_min_size(ui.available_size()));
@@ -96,7 +96,7 @@ impl Panel for TrainerView {
         }
         super::compare::key(ui, session);
         let has_focus = ui.input(|i| i.focused);
-        // Where nothing ever has the focus (no window manager) there is none to be lost.
+        // Without a window manager nothing ever has the focus, so none can be lost.
         if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.comfort.pauses {
             session.trainer.lose_focus();
         }
@@ -115,7 +115,7 @@ impl Panel for TrainerView {
             let trainer = &session.trainer;
             let state = trainer.seen().unwrap_or(&snapshot.state).clone();
             let saturated = state.tip_force_n.map(|f| f.norm() > limit);
-            // The far world stands behind the model as a ghost; without a model its late picture is all there is.
+            // The remote world is shown as a ghost behind the model; without a model only its delayed picture is shown.
             let ghost = trainer.view().filter(|view| view.predicted).map(|view| view.there.clone());
             let options = ViewOptions { saturated, ghost, ..ViewOptions::default() };
             let scene = (std::sync::Arc::clone(world), state, options);
@@ -161,7 +161,7 @@ impl Panel for TrainerView {
     }
 }
 
-/// What is drawn over the picture.
+/// Draws the overlays of the picture.
 fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
     if let Some((snapshot, _)) = session.trainer.scene() {
         marks::device(ui, view, snapshot);
@@ -173,7 +173,8 @@ fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
 }
 
 impl TrainerView {
-    /// Lets impacts, slips and forces that are too large be heard. The output is opened with the first of them; a machine without sound is told about once.
+    /// Plays impacts, slips and excessive forces. The first of them opens the audio output; a machine without sound is
+    /// reported once.
     #[cfg(feature = "sound")]
     fn knock(&mut self, session: &mut Session) {
         let struck_m_s = session.trainer.struck_m_s.take();
@@ -238,14 +239,14 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
         if i.num_presses(Key::Space) % 2 == 1 {
             trainer.pinch.latched = !trainer.pinch.latched;
         }
-        // Where pictures are rare, several presses come with one of them.
+        // At a low frame rate, one frame may contain several presses.
         let times = |key: Key| i.num_presses(key) as f64;
         let change = times(Key::Plus) + times(Key::Equals) - times(Key::Minus);
         trainer.pinch.strengthen(0.2 * change);
     });
 }
 
-/// What mouse and keys do, along the lower edge.
+/// Draws the functions of mouse and keys along the lower edge.
 fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice, left_handed: bool) {
     let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
     let layout = egui::Layout::left_to_right(Align::Center);
@@ -302,7 +303,7 @@ fn watching(trainer: &Trainer) -> &'static str {
     }
 }
 
-/// One line along the upper edge, beside the button that resets the view.
+/// Draws one line along the upper edge, beside the button that resets the view.
 fn pill(ui: &mut Ui, rect: Rect, text: &str) {
     let p = palette(ui);
     let room = rect.shrink(space::M).with_max_x(rect.right() - 116.0);

@@ -1,4 +1,4 @@
-//! Play, pause, speed, and an overview of the whole recording to move in.
+//! Play, pause, speed, and an overview of the whole recording for navigation.
 
 use crate::ui::format;
 use crate::ui::icons::Icon;
@@ -7,7 +7,7 @@ use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{call, icon_button};
 use egui::{Pos2, Rangef, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const SPEED_OF_PLAYING: &str = "Speed of playing";
     pub const PAUSE: &str = "Pause";
@@ -18,7 +18,7 @@ mod words {
 /// Playback speeds on offer.
 const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
 
-/// The line under the band; the slider lies between the given edges.
+/// Draws the line under the band; the slider is between the given edges.
 pub fn transport(ui: &mut Ui, session: &mut Session, area: Rangef) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
     let buttons = Rect::from_min_max(rect.min, Pos2::new(area.min - space::S, rect.bottom()));
@@ -52,13 +52,13 @@ fn speed_text(speed: f64) -> String {
     format!("{speed} ×")
 }
 
-/// Plays, or stops it.
+/// Draws the button for play and pause.
 fn play_button(ui: &mut Ui, playing: bool) -> egui::Response {
     let (icon, name) = if playing { (Icon::Pause, words::PAUSE) } else { (Icon::Play, words::PLAY) };
     icon_button(ui, icon, true, name).on_hover_text(format!("{name} (Space)"))
 }
 
-/// The whole recording in its states' colours, the visible part framed, the cursor as a handle.
+/// Draws the whole recording in its states' colours, the visible part framed, the cursor as a handle.
 fn overview(ui: &mut Ui, session: &mut Session, rect: Rect) {
     let Some(prepared) = session.prepared().cloned() else { return };
     let (p, dark) = (palette(ui), ui.visuals().dark_mode);

@@ -1,4 +1,4 @@
-//! The video of the hand: its picture at the time cursor, and where it lies in time.
+//! The video of the hand: its frame at the time cursor, and its synchronization.
 
 use super::Panel;
 use crate::ui::files;
@@ -17,7 +17,7 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const READING: &str = "Reading the video …";
     pub const READING_MORE: &str = "Its pictures are kept, so that any moment is there at once.";
@@ -46,7 +46,7 @@ mod words {
     pub const VIDEO: &str = "Video";
 }
 
-/// Room for the controls below the picture, points.
+/// Space for the controls below the picture, points.
 const CONTROLS: f32 = 64.0;
 
 /// The video panel.
@@ -89,7 +89,7 @@ fn none(ui: &mut Ui, session: &mut Session) {
 fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
     empty_state(ui, (Icon::Doubt, words::FAILED), problem, |ui| {
         ui.horizontal(|ui| {
-            // Buttons in the middle of the line that the text stands on.
+            // Buttons in the middle of the text's line.
             ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
             if ui.button((Icon::Reload, words::AGAIN)).clicked() {
                 session.read_video_again();
@@ -122,7 +122,7 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
     ui.painter().rect_filled(room, corners, p.sunken);
     let time_s = session.video_time_s().unwrap_or(0.0);
     let now = video.index_at(time_s);
-    // Before its beginning and after its end its first and last picture stand, dimmed.
+    // Before its start and after its end, its first and last frame are shown, dimmed.
     let index = now.unwrap_or(if time_s < 0.0 { 0 } else { video.count() - 1 });
     let ctx = ui.ctx().clone();
     let texture = session.video_picture(&ctx, video, index);
@@ -152,7 +152,8 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
     }
 }
 
-/// Dragging across the picture runs through the video: its width is ten seconds, or all of it where that is less.
+/// Scrubs through the video by dragging across the picture: its width is ten seconds, or the whole length if that is
+/// shorter.
 fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
     let by = response.drag_delta().x;
     if !response.dragged() || by == 0.0 {
@@ -188,7 +189,7 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
     });
 }
 
-/// Where the video lies in time.
+/// Draws the position of the video in time.
 fn place(ui: &mut Ui, session: &mut Session) {
     let Some(mut begins_at_s) = session.video_source().map(|s| s.begins_at_s) else { return };
     ui.label(theme::caption(ui, words::BEGINS));
@@ -207,7 +208,7 @@ fn place(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// Runs through the video while it is looked at by itself.
+/// Draws a scrubber while the video is unlinked.
 fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
     let step_s = 1.0 / video.rate_hz;
     ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);

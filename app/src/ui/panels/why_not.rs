@@ -1,4 +1,4 @@
-//! *Why not …?*: any cause of the catalogue that was not named, and what spoke against it.
+//! *Why not …?*: any cause of the catalogue that was not named, and the evidence against it.
 
 use crate::diagnosis_words::{small, title};
 use crate::ui::format;
@@ -9,7 +9,7 @@ use egui::{Align, ComboBox, Layout, RichText, Ui};
 use estimator::diagnose::Diagnosis;
 use haptics::law;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const CARD: &str = "Why not …?";
     pub const CHOOSE_A_CAUSE: &str = "Choose a cause";
@@ -21,7 +21,7 @@ mod words {
     pub const IT_IS_NOT_LOOKED: &str = "It is not looked for in recordings of this kind.";
 }
 
-/// The card under the causes.
+/// Card below the causes.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     let mut others: Vec<&str> =
         law::causes().map(|c| c.id).filter(|id| diagnosis.causes.iter().all(|c| c.id != *id)).collect();
@@ -65,7 +65,7 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     });
 }
 
-/// Why a cause was not named, in a sentence.
+/// Reason why a cause was not named, as a sentence.
 fn reason(diagnosis: &Diagnosis, id: &str) -> String {
     if let Some(other) = diagnosis.alternatives.iter().find(|a| a.id == id) {
         let share = format::number(100.0 * other.posterior, 0);

@@ -1,4 +1,4 @@
-//! The log as one signal against another: which two, coloured by what, and the plot.
+//! The log as one signal against another: choice of both signals, colour, and the plot.
 
 use crate::ui::format;
 use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
@@ -11,7 +11,7 @@ use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;
 use std::sync::Arc;
 
-/// What this panel says; sentences with numbers in them stand where the numbers are.
+/// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const UPWARDS: &str = "Upwards";
     pub const TO_THE_RIGHT: &str = "To the right";
@@ -23,11 +23,12 @@ mod words {
     pub const COLOUR_FROM_DARK: &str = "Colour: from dark to bright in the course of the visible time.";
 }
 
-/// What can be made of a signal here.
+/// Offered transforms of a signal.
 const TRANSFORMS: [Transform; 5] =
     [Transform::None, Transform::Derivative, Transform::SecondDerivative, Transform::Integral, Transform::MinusMean];
 
-/// Draws pickers and plot into the rows' place; where the time slider below lies horizontally, and where the user has put the cursor, s.
+/// Draws choosers and plot in place of the rows. Returns the horizontal extent of the time slider below, and the time
+/// to which the user moved the cursor, s.
 pub fn xy_view(
     ui: &mut Ui,
     cache: &mut XyCache,
@@ -43,7 +44,7 @@ pub fn xy_view(
     let Some((x_axis, y_axis)) = chosen(plots, prepared) else { return (area, None) };
     (plots.xy.x, plots.xy.y) = (Some(x_axis), Some(y_axis));
     ui.scope_builder(UiBuilder::new().max_rect(left).id_salt("xy gutter"), |ui| {
-        // Of a short plot the last choices are scrolled to.
+        // In a short plot the last choosers are reached by scrolling.
         let scroll = ScrollArea::vertical().id_salt("xy choices").max_height(height).min_scrolled_height(0.0);
         scroll.show(ui, |ui| gutter(ui, plots, sources, cursor_s));
     });
@@ -72,7 +73,7 @@ pub fn xy_view(
     (area, seek)
 }
 
-/// What was chosen, as far as the recording has it; else its first two signals.
+/// Chosen signals as far as the recording has them; otherwise its first two.
 fn chosen(plots: &PlotChoices, prepared: &Prepared) -> Option<(XyAxis, XyAxis)> {
     let axis = |group: &Group, trace: &Trace| XyAxis {
         group: group.key(),
@@ -95,7 +96,7 @@ fn find<'a>(prepared: &'a Prepared, axis: &XyAxis) -> Option<(&'a Group, &'a Tra
     Some((group, group.traces.iter().find(|t| t.name == axis.name)?))
 }
 
-/// The axis' curve and its unit; `None` while it is computed.
+/// Curve of an axis and its unit; `None` while it is computed.
 fn signal(plots: &mut PlotChoices, prepared: &Arc<Prepared>, axis: &XyAxis) -> Option<(Arc<Levels>, String)> {
     let (group, trace) = find(prepared, axis)?;
     let of = Arc::clone(&trace.levels);
@@ -160,7 +161,7 @@ fn pick(ui: &mut Ui, salt: &str, axis: &mut XyAxis, prepared: &Prepared) {
     response.response.on_hover_text(format!("{salt}: what is made of it"));
 }
 
-/// The value at the cursor.
+/// Draws the value at the cursor.
 fn value(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Arc<Prepared>, upwards: bool, cursor_s: f64) {
     let axis = if upwards { plots.xy.y.clone() } else { plots.xy.x.clone() };
     let Some((levels, unit)) = axis.and_then(|axis| signal(plots, prepared, &axis)) else { return };
@@ -169,7 +170,7 @@ fn value(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Arc<Prepared>, upwards
     ui.label(egui::RichText::new(text).size(11.5).color(palette(ui).text));
 }
 
-/// The states that occur, in their colours.
+/// Draws the occurring states in their colours.
 fn states(ui: &mut Ui, sources: &Sources<'_>) {
     let dark = ui.visuals().dark_mode;
     let mut seen: Vec<SystemState> = Vec::new();

@@ -10,8 +10,8 @@ use std::hash::Hash;
 /// Width of the labels of the vertical axis.
 pub const AXIS_WIDTH: f32 = 44.0;
 
-/// A plot that nobody pushes about by accident: a quiet grid of about `across` lines to the right, more lines upwards where it is at
-/// least `tall`, values at the left.
+/// Plot without pan and zoom: a quiet grid of about `across` vertical lines, more horizontal lines where it is at least
+/// `tall`, and values at the left.
 pub fn still_plot(id: impl Hash + Debug, p: &Palette, height: f32, across: f64, tall: f32) -> Plot<'static> {
     Plot::new(id)
         .height(height)
@@ -51,7 +51,8 @@ pub fn variable_axis(p: &Palette, unit: &'static str) -> AxisHints<'static> {
 /// Half the height of a label, points.
 const HALF_LABEL: f64 = 6.0;
 
-/// Values in the group's unit, on an axis of so many points. A value at the very end would be cut in half: it is left out.
+/// Vertical axis in the group's unit, `height` points tall. A label at the very end would be cut in half, so it is
+/// omitted.
 pub fn value_axis(p: &Palette, height: f32) -> AxisHints<'static> {
     AxisHints::new_y()
         .formatter(move |mark, range| {
@@ -65,7 +66,7 @@ pub fn value_axis(p: &Palette, height: f32) -> AxisHints<'static> {
         .tick_label_font(FontId::proportional(11.0))
 }
 
-/// About `wanted` lines at a step of 1, 2 or 5 times a power of ten.
+/// Grid marks, about `wanted` of them, at a step of 1, 2 or 5 times a power of ten.
 pub fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
     let rough = ((high - low) / wanted).max(1e-12);
     let decade = 10.0_f64.powf(rough.log10().floor());

@@ -1,4 +1,4 @@
-//! What the user has chosen about the plots: which are shown, what is made of their curves, which recordings lie over each other.
+//! The user's choices about the plots: visible groups, transforms of their curves, and overlaid recordings.
 
 use super::curves::NoiseCache;
 use super::derived::Derived;
@@ -8,7 +8,7 @@ use estimator::signal::transform::Transform;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How the log is looked at.
+/// View of the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LogView {
@@ -19,18 +19,18 @@ pub enum LogView {
     Xy,
 }
 
-/// What was chosen for the plot of one quantity.
+/// Choice for the plot of one quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GroupChoice {
     /// Shown or not; `None`: as usual for this quantity.
     pub shown: Option<bool>,
-    /// What is made of its curves.
+    /// Transform of its curves.
     pub transform: Transform,
-    /// What the curves on the screen were made with: that of before while the new ones are computed.
+    /// Transform of the curves on the screen; it lags behind `transform` while the new curves are computed.
     #[serde(skip)]
     pub drawn: Transform,
-    /// A second plot below shows what the models leave.
+    /// True if a second plot below shows the residuals of the models.
     pub left_over: bool,
     /// Hidden curves and layers, by name.
     pub hidden: BTreeSet<String>,
@@ -53,13 +53,13 @@ impl GroupChoice {
 /// A recording laid over the shown one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlaid {
-    /// Which of the loaded ones.
+    /// Index into the loaded recordings.
     pub recording: usize,
-    /// What is added to its times, s (samples without a clock).
+    /// Time offset added to its times, s (samples without a clock).
     pub offset_s: f64,
 }
 
-/// What an XY plot tells by colour.
+/// Quantity that colour encodes in an XY plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum XyColor {
@@ -77,7 +77,7 @@ pub struct XyAxis {
     pub group: String,
     /// Name of its trace.
     pub name: String,
-    /// What is made of it.
+    /// Transform of the signal.
     pub transform: Transform,
 }
 
@@ -85,28 +85,28 @@ pub struct XyAxis {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct XyChoice {
-    /// To the right.
+    /// Horizontal axis.
     pub x: Option<XyAxis>,
-    /// Upwards.
+    /// Vertical axis.
     pub y: Option<XyAxis>,
-    /// Told by colour.
+    /// Quantity that colour encodes.
     pub color: XyColor,
 }
 
-/// Everything that was chosen about the plots, and the curves that were computed for it.
+/// All choices about the plots, and the curves computed for them.
 #[derive(Debug, Default)]
 pub struct PlotChoices {
     /// Time or XY.
     pub view: LogView,
-    /// By [`Group::key`].
+    /// Choices by [`Group::key`].
     pub groups: BTreeMap<String, GroupChoice>,
     /// Recordings that lie over the shown one, in the order in which they were added.
     pub overlaid: Vec<Overlaid>,
-    /// The one of them that is held by its curve.
+    /// Overlaid recording that the pointer drags by its curve.
     pub held: Option<Held>,
-    /// The place of the one that the pointer was over in the picture before.
+    /// Index of the overlaid recording that was under the pointer in the previous frame.
     pub pointed: Option<usize>,
-    /// Where recordings are most like each other.
+    /// Shifts at which recordings match best.
     pub likeliest: Likeliest,
     /// The XY plot.
     pub xy: XyChoice,
@@ -116,7 +116,7 @@ pub struct PlotChoices {
     pub noise: NoiseCache,
 }
 
-/// What of the choices a project keeps.
+/// Part of the choices that a project stores.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KeptChoices {
@@ -127,39 +127,39 @@ pub struct KeptChoices {
 }
 
 impl PlotChoices {
-    /// For a project.
+    /// Copy of the choices for a project.
     pub fn kept(&self) -> KeptChoices {
         let without_curves = |choice: &GroupChoice| GroupChoice { drawn: Transform::None, ..choice.clone() };
         let groups = self.groups.iter().map(|(key, choice)| (key.clone(), without_curves(choice)));
-        // A plot that somebody only looked at needs no word.
+        // A group with default choices is not stored.
         let groups = groups.filter(|(_, choice)| *choice != GroupChoice::default()).collect();
         KeptChoices { view: self.view, groups, overlaid: self.overlaid.clone(), xy: self.xy.clone() }
     }
 
-    /// As a project has it.
+    /// Restores the choices of a project.
     pub fn restore(&mut self, kept: KeptChoices) {
         let KeptChoices { view, groups, overlaid, xy } = kept;
         (self.view, self.groups, self.overlaid, self.xy) = (view, groups, overlaid, xy);
     }
 
-    /// What was chosen for a group.
+    /// Choices of a group.
     pub fn of(&mut self, group: &Group) -> &mut GroupChoice {
         self.groups.entry(group.key()).or_default()
     }
 
-    /// Whether a group has a plot.
+    /// True if a group has a plot.
     pub fn is_shown(&self, group: &Group) -> bool {
         self.groups.get(&group.key()).and_then(|choice| choice.shown).unwrap_or(group.shown)
     }
 
-    /// The user does not want to wait for the curves that are being computed: those on the screen stay.
+    /// Cancels the curves that are being computed; those on the screen stay.
     pub fn give_up(&mut self) {
         for choice in self.groups.values_mut() {
             choice.transform = choice.drawn;
         }
     }
 
-    /// Other recordings were loaded: which lie over which is of no use any more.
+    /// Clears the overlays: other recordings were loaded, so the indices are no longer valid.
     pub fn forget_recordings(&mut self) {
         self.overlaid.clear();
         self.likeliest.clear();
@@ -167,7 +167,7 @@ impl PlotChoices {
     }
 }
 
-/// A transform in words.
+/// Name of a transform for the user.
 pub fn name(transform: Transform) -> &'static str {
     match transform {
         Transform::None => "As recorded",
@@ -179,7 +179,7 @@ pub fn name(transform: Transform) -> &'static str {
     }
 }
 
-/// The unit of a quantity after `order` derivatives with respect to time (of integrals where negative): mm/s² for 2 of mm.
+/// Unit of a quantity after `order` derivatives with respect to time (integrals if negative): mm/s² for 2 of mm.
 pub fn unit_after(unit: &str, order: i32, clockless: bool) -> String {
     if order == 0 {
         return unit.to_owned();
@@ -201,7 +201,7 @@ pub fn unit_after(unit: &str, order: i32, clockless: bool) -> String {
     }
 }
 
-/// A unit without its time, and the power of that: mm/s is mm and −1.
+/// Splits a unit into the part without time and the power of time: mm/s is mm and −1.
 fn split<'a>(unit: &'a str, time: &str) -> (&'a str, i32) {
     for (digits, power) in [("²", 2), ("³", 3), ("", 1)] {
         if let Some(base) = unit.strip_suffix(&format!("/{time}{digits}")) {

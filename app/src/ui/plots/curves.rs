@@ -1,4 +1,4 @@
-//! Which curves stand in a plot: measured, simulated, extended, those of other recordings, and what the models leave.
+//! Curves of a plot: measured, simulated, extended, those of other recordings, and the residuals of the models.
 
 use super::choices::{GroupChoice, Overlaid, PlotChoices, unit_after};
 use super::derived::{Derived, Recipe};
@@ -12,25 +12,25 @@ use estimator::signal::transform::Transform;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What a curve is of.
+/// Source of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layer {
     /// The shown recording.
     Measured,
-    /// The measured motion in the fitted world.
+    /// Simulation of the measured motion in the fitted world.
     Simulated,
-    /// The measured motion in the world with what the diagnosis found.
+    /// Simulation of the measured motion in the extended world, which includes the diagnosed causes.
     Extended,
-    /// Another recording, by its place among those that are laid over.
+    /// Another recording, by its index among the overlaid ones.
     Other(usize),
-    /// Measured less simulated.
+    /// Residual of the fitted world: measured minus simulated.
     LeftSimulated,
-    /// Measured less extended.
+    /// Residual of the extended world: measured minus extended.
     LeftExtended,
 }
 
 impl Layer {
-    /// Its name among what can be hidden; `None` where single curves are hidden.
+    /// Name of the layer's visibility switch; `None` where single curves are hidden.
     pub fn switch(self) -> Option<&'static str> {
         match self {
             Self::Simulated | Self::LeftSimulated => Some("layer: simulated"),
@@ -40,21 +40,21 @@ impl Layer {
     }
 }
 
-/// The switch of the noise's band.
+/// Name of the visibility switch of the noise band.
 pub const NOISE_SWITCH: &str = "layer: noise";
 
 /// One curve of a plot.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Place of its trace in the group.
+    /// Index of its trace in the group.
     pub trace: usize,
-    /// What it is of.
+    /// Source of the curve.
     pub layer: Layer,
     /// Its values.
     pub levels: Arc<Levels>,
-    /// The recording that they are of.
+    /// Recording of the curve.
     pub prepared: Arc<Prepared>,
-    /// What is added to its times, s.
+    /// Time offset added to its times, s.
     pub offset_s: f64,
     /// Standard deviation of the measured curve's noise, in the shown unit, where a model is compared with it.
     pub sigma: Option<f64>,
@@ -63,13 +63,13 @@ pub struct Curve {
 /// The curves of one plot.
 #[derive(Clone, Debug, Default)]
 pub struct Drawn {
-    /// In the order in which they are drawn.
+    /// Curves in drawing order.
     pub curves: Vec<Curve>,
     /// Their unit.
     pub unit: String,
-    /// What was made of them.
+    /// Transform that was applied to them.
     pub transform: Transform,
-    /// Others are being computed.
+    /// True while newer curves are being computed.
     pub pending: bool,
 }
 
@@ -80,22 +80,22 @@ impl Drawn {
     }
 }
 
-/// Where curves come from.
+/// Sources of the curves.
 #[derive(Clone, Copy)]
 pub struct Sources<'a> {
-    /// All that is loaded.
+    /// All loaded recordings.
     pub recordings: &'a [Arc<Prepared>],
     /// The shown one.
     pub prepared: &'a Arc<Prepared>,
-    /// In the fitted world.
+    /// Simulation in the fitted world.
     pub simulated: Option<&'a Replayed>,
-    /// In the extended world.
+    /// Simulation in the extended world.
     pub extended: Option<&'a Replayed>,
-    /// The fit, with the segmentation of the shown recording.
+    /// Fit, with the segmentation of the shown recording.
     pub analysis: Option<(&'a Arc<Analysis>, &'a Segmentation)>,
 }
 
-/// Noise that was measured already, by curve and fit; both live as long as their entry.
+/// Cache of measured noise, by curve and fit; both live as long as their entry.
 #[derive(Debug, Default)]
 pub struct NoiseCache(HashMap<(usize, usize), Remembered>);
 
@@ -105,7 +105,7 @@ struct Remembered {
     _of: (Arc<Levels>, Option<Arc<Analysis>>),
 }
 
-/// More than any window shows.
+/// Limit of the cache, above the number of curves that any window shows.
 const MOST_REMEMBERED: usize = 256;
 
 impl NoiseCache {
@@ -123,12 +123,13 @@ impl NoiseCache {
     }
 }
 
-/// The curves of a group's plot, and of the plot of what is left below it, where that is switched on and there is something to compare.
+/// Curves of a group's plot, and those of the residual plot below it. The second is `None` where it is switched off or
+/// where there is no model to compare.
 pub fn curves(sources: &Sources<'_>, choices: &mut PlotChoices, group: &Group) -> (Drawn, Option<Drawn>) {
     let choice = choices.of(group).clone();
     let PlotChoices { derived, noise, overlaid, .. } = choices;
     let build = Build { sources, choice: &choice, group, overlaid };
-    // While curves are computed, those of before stay.
+    // The previous curves stay while the new ones are computed.
     let wanted = build.main(derived, choice.transform, true);
     let mut main = wanted.unwrap_or_else(|| {
         let before = build.main(derived, choice.drawn, false);
@@ -170,7 +171,7 @@ impl Build<'_> {
         Recipe { prepared: Arc::clone(self.sources.prepared), of: Arc::clone(of), less: None, transform }
     }
 
-    /// Every curve of the plot; `None` while one of them is still to be computed. Asked for, it will be.
+    /// Every curve of the plot; `None` while one of them is still missing. With `ask` the missing ones are requested.
     fn main(&self, derived: &mut Derived, transform: Transform, ask: bool) -> Option<Drawn> {
         let mut wanted: Vec<(usize, Layer, f64, Recipe)> = Vec::new();
         for layer in [Layer::Simulated, Layer::Extended].into_iter().filter(|l| self.is_on(*l)) {
@@ -189,7 +190,7 @@ impl Build<'_> {
         let mut missing = false;
         let mut drawn = Vec::with_capacity(wanted.len());
         for (trace, layer, offset_s, recipe) in wanted {
-            // All that is missing is asked for at once.
+            // All missing curves are requested at once.
             match if ask { derived.get(&recipe) } else { derived.peek(&recipe) } {
                 Some(levels) => {
                     drawn.push(Curve { trace, layer, levels, prepared: recipe.prepared, offset_s, sigma: None });
@@ -202,7 +203,7 @@ impl Build<'_> {
         (!missing).then_some(Drawn { curves: drawn, unit, transform, pending: false })
     }
 
-    /// The same signals of another recording.
+    /// Curves of the same signals in another recording.
     fn others(
         &self,
         place: usize,
@@ -221,7 +222,7 @@ impl Build<'_> {
         }
     }
 
-    /// How far a model may be off by noise alone: that of the measured curve beside it.
+    /// Sets the noise of each model curve: the standard deviation of the measured curve beside it.
     fn measure_noise(&self, cache: &mut NoiseCache, drawn: &mut Drawn) {
         let measured: Vec<(usize, Arc<Levels>)> = drawn
             .curves
@@ -236,7 +237,7 @@ impl Build<'_> {
         }
     }
 
-    /// What the models leave of the measured curves, transformed as those are.
+    /// Residuals of the models, with the transform of the measured curves.
     fn left(&self, derived: &mut Derived, main: &Drawn) -> Drawn {
         let mut left = Drawn { unit: main.unit.clone(), transform: main.transform, ..Drawn::default() };
         for layer in [Layer::LeftSimulated, Layer::LeftExtended].into_iter().filter(|l| self.is_on(*l)) {
@@ -258,7 +259,7 @@ impl Build<'_> {
     }
 }
 
-/// True when a model says something about a curve of the group: there is something to compare.
+/// True if a model predicts a curve of the group, so that there is something to compare.
 pub fn can_compare(replay: Option<&Replayed>, group: &Group) -> bool {
     replay.is_some_and(|r| group.traces.iter().any(|t| r.curves.iter().any(|(name, _)| *name == t.name)))
 }

@@ -1,25 +1,26 @@
-//! Thinning to extremes: every pixel column keeps its smallest and its largest value, so no spike is lost.
+//! Thinning to extremes: every pixel column keeps its minimum and maximum, so no spike is lost.
 
 use super::levels::Samples;
 use egui_plot::PlotPoint;
 use estimator::log::pyramid::Pyramid;
 use std::ops::Range;
 
-/// Least number of the pyramid's blocks in a column whose edges are moved to theirs.
+/// Number of pyramid blocks per column from which column edges are moved to block edges.
 const BLOCKS_IN_A_COLUMN: usize = 10;
 
-/// Samples of a stretch of time, dealt out to columns of pixels: found once for all curves of a recording.
+/// Samples of a time span, assigned to pixel columns. They are found once for all curves of a recording.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
-    /// The samples that are drawn: those inside, and a neighbour on either side, so that lines run on.
+    /// Drawn samples: those inside, and one neighbour on either side, so that lines continue to the edge.
     samples: Range<usize>,
-    /// One past the last sample of each column that has any, and the time in its middle; empty where every sample is drawn.
+    /// End (one past the last sample) and centre time of each column that has samples; empty where every sample is
+    /// drawn.
     ends: Vec<(usize, f64)>,
 }
 
 impl Columns {
-    /// `count` columns between two times. Their edges lie where the pyramid's blocks do, as long as a column has many of those: no sample
-    /// needs to be read then, and nothing moves by more than a tenth of a pixel.
+    /// `count` columns between two times. Their edges coincide with the pyramid's block edges, as long as a column has
+    /// many blocks. No sample then needs to be read, and no edge moves by more than a tenth of a pixel.
     pub fn new(times: &[f64], from: f64, to: f64, count: usize) -> Self {
         let n = times.len();
         let first = times.partition_point(|t| *t < from).saturating_sub(1);
@@ -27,7 +28,7 @@ impl Columns {
         Self::within(times, first..end, count)
     }
 
-    /// The same of samples whose numbers are known.
+    /// Like [`new`](Self::new), for samples whose range is known.
     pub fn within(times: &[f64], samples: Range<usize>, count: usize) -> Self {
         let Range { start: first, end } = samples;
         let count = count.max(1);
@@ -52,9 +53,10 @@ impl Columns {
     }
 }
 
-/// The first sample from `at` on that is not before `limit`, looked for outwards from `usual` samples further on: clocks are nearly even.
+/// First sample from `at` on that is not before `limit`. The search starts `usual` samples ahead and widens, because
+/// clocks are nearly even.
 fn step_to(times: &[f64], at: usize, usual: usize, limit: f64) -> usize {
-    // Every sample before `low` is before the limit, none from `high` on is.
+    // Every sample before `low` is before the limit; none from `high` on is.
     let (mut low, mut high, mut step) = (at, times.len(), 1);
     let guess = (at + usual).min(high);
     if guess < high && times[guess] < limit {
@@ -79,12 +81,13 @@ fn step_to(times: &[f64], at: usize, usual: usize, limit: f64) -> usize {
     low + times[low..high].partition_point(|t| *t < limit)
 }
 
-/// The curve between two times in at most two points a column (plus the neighbours outside, so that lines run on).
+/// Curve between two times in at most two points per column (plus the neighbours outside, so that lines continue to the
+/// edge).
 pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns: usize) -> Vec<PlotPoint> {
     decimate_in(times, levels, &Columns::new(times, from, to, columns))
 }
 
-/// [`decimate`] into columns that are known already.
+/// [`decimate`] into known columns.
 pub fn decimate_in(times: &[f64], levels: Samples<'_>, columns: &Columns) -> Vec<PlotPoint> {
     let n = times.len().min(levels.len());
     let (first, end) = (columns.samples.start, columns.samples.end.min(n));
@@ -102,7 +105,7 @@ pub fn decimate_in(times: &[f64], levels: Samples<'_>, columns: &Columns) -> Vec
         let next = (*next).min(end);
         let (low, high) = levels.range(at, next);
         at = next;
-        // Nothing in this column is a number.
+        // No sample of this column is a number.
         if low > high {
             continue;
         }
@@ -163,7 +166,7 @@ mod tests {
             let mut at = columns.samples.start;
             for (next, middle) in &columns.ends {
                 assert!(*next > at && times[at] <= *middle && *middle <= times[next - 1]);
-                // A tenth of a column to either side; what has few samples is exact.
+                // A tenth of a column to either side; a column with few samples is exact.
                 assert!(times[next - 1] - times[at] <= 1.25 * width, "{at}..{next} of {from} to {to}");
                 at = *next;
             }
@@ -199,7 +202,7 @@ mod tests {
         assert_eq!((samples.value(42), samples.range(0, 5_000), samples.range(3, 7)), (42.0, (0.0, 99.0), (3.0, 6.0)));
         assert!(samples.value(5_000).is_nan() && samples.range(7, 7).0.is_infinite());
         assert!(decimate(&times, samples, 0.0, 5e3, 20).iter().all(|p| (0.0..=99.0).contains(&p.y)));
-        // A recording that is another one by now.
+        // A recording that has been replaced since.
         assert!(decimate(&times, levels.samples(&Recording::default()), 0.0, 5e3, 20).is_empty());
     }
 }

@@ -1,5 +1,5 @@
-//! Curves that are computed from others: transforms, and what a model leaves. Made once, in the background where that takes longer than
-//! a picture may, kept while somebody looks at them.
+//! Curves computed from others: transforms and residuals. Each is made once, in the background where that takes longer
+//! than a frame allows, and kept while it is shown.
 
 use super::levels::Levels;
 use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
@@ -9,23 +9,23 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// Samples that may be computed while a picture is being drawn: 3 to 6 ms; more is for a job.
+/// Number of samples that may be computed within a frame, 3 to 6 ms; larger curves are computed by a job.
 const AT_ONCE: usize = 150_000;
 
-/// How a curve comes from others.
+/// Definition of a derived curve.
 #[derive(Clone, Debug)]
 pub struct Recipe {
-    /// The recording that it is of.
+    /// Recording of the curve.
     pub prepared: Arc<Prepared>,
-    /// The curve …
+    /// Curve to start from.
     pub of: Arc<Levels>,
-    /// … less this one …
+    /// Curve to subtract.
     pub less: Option<Arc<Levels>>,
-    /// … transformed.
+    /// Transform applied to the difference.
     pub transform: Transform,
 }
 
-/// A recipe by identity. What it points at lives as long as the entry that has it for its key.
+/// Identity of a recipe. Its targets live as long as the entry that has it for a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
     of: usize,
@@ -73,12 +73,12 @@ impl Recipe {
 
 #[derive(Debug)]
 struct Cooked {
-    /// Keeps alive what the key points at.
+    /// Keeps the targets of the key alive.
     _recipe: Recipe,
     levels: Arc<Levels>,
 }
 
-/// What is there, and what is still wanted.
+/// Cache of derived curves, and the recipes still requested.
 #[derive(Debug, Default)]
 pub struct Derived {
     cooked: HashMap<Key, Cooked>,
@@ -88,7 +88,7 @@ pub struct Derived {
 }
 
 impl Derived {
-    /// The curve of a recipe; `None` while it is not there yet: then a job will bring it.
+    /// Curve of a recipe; `None` while it is missing, in which case a job is requested.
     pub fn get(&mut self, recipe: &Recipe) -> Option<Arc<Levels>> {
         if recipe.less.is_none() && recipe.transform == Transform::None {
             return Some(Arc::clone(&recipe.of));
@@ -110,7 +110,7 @@ impl Derived {
         None
     }
 
-    /// The curve of a recipe if it is there.
+    /// Curve of a recipe if it is in the cache.
     pub fn peek(&mut self, recipe: &Recipe) -> Option<Arc<Levels>> {
         if recipe.less.is_none() && recipe.transform == Transform::None {
             return Some(Arc::clone(&recipe.of));
@@ -119,34 +119,34 @@ impl Derived {
         self.cooked.get(&recipe.key()).map(|cooked| Arc::clone(&cooked.levels))
     }
 
-    /// At the end of a picture: what nobody looked at is let go, what is missing is begun.
+    /// Ends a frame: drops the curves that nobody used and starts a job for the missing ones.
     pub fn settle(&mut self, ctx: &egui::Context, jobs: &mut Jobs) {
         let used = std::mem::take(&mut self.used);
         self.cooked.retain(|key, _| used.contains(key));
         self.spent = 0;
         let wanted = std::mem::take(&mut self.wanted);
-        // One at a time: what is wanted by now is asked for again in the next picture.
+        // One job at a time: recipes that are still needed are requested again in the next frame.
         if !wanted.is_empty() && !jobs.is_running(JobKind::Curves) {
             jobs.start_watched(ctx, JobKind::Curves, "Computing curves".to_owned(), move |ticket| cook(wanted, ticket));
         }
     }
 
-    /// A job has ended.
+    /// Stores the curves of a finished job.
     pub fn take(&mut self, made: Vec<(Recipe, Arc<Levels>)>) {
         for (recipe, levels) in made {
             let key = recipe.key();
-            // Until the next picture says that nobody wants it.
+            // Kept until the next frame shows that nobody uses it.
             self.used.insert(key);
             self.cooked.insert(key, Cooked { _recipe: recipe, levels });
         }
     }
 
-    /// Curves that are kept.
+    /// Number of cached curves.
     pub fn len(&self) -> usize {
         self.cooked.len()
     }
 
-    /// True when none is.
+    /// True if the cache is empty.
     pub fn is_empty(&self) -> bool {
         self.cooked.is_empty()
     }

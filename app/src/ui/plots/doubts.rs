@@ -6,12 +6,12 @@ use egui::{Pos2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
 use haptics::recording::Warning;
 
-/// Least width of a shade, points: one sample in a million is still seen.
+/// Minimum width of a shade, points, so that one sample in a million is still visible.
 const LEAST_WIDTH: f32 = 3.0;
 /// Height of the mark along the upper edge, points.
 const MARK_HEIGHT: f32 = 4.0;
 
-/// Where a warning applies, from and to, s (or samples of a clockless log).
+/// Intervals of a warning, from and to, s (or samples of a clockless log).
 pub fn places(prepared: &Prepared, warning: &Warning) -> Vec<(f64, f64)> {
     let time = |sample: usize| prepared.times.get(sample).copied();
     let place =
@@ -19,14 +19,14 @@ pub fn places(prepared: &Prepared, warning: &Warning) -> Vec<(f64, f64)> {
     warning.spans.iter().filter_map(place).collect()
 }
 
-/// True when a warning belongs into the plot of a group: its own channel's, or every one for the clock.
+/// True if a warning belongs in the plot of a group: it is about one of its channels, or about the clock.
 fn concerns(prepared: &Prepared, group: &Group, warning: &Warning) -> bool {
     let Some(column) = &warning.column else { return true };
     let is_channel = prepared.recording.channels.iter().any(|c| c.name == *column);
     !is_channel || group.traces.iter().any(|t| t.name == *column)
 }
 
-/// Shades what is doubtful in a plot; what the pointer points at, in words.
+/// Shades the doubtful spans of a plot. Returns the explanation of the one under the pointer.
 pub fn shade(ui: &Ui, transform: &PlotTransform, prepared: &Prepared, group: &Group) -> Option<String> {
     let p = palette(ui);
     let area: Rect = *transform.frame();
@@ -74,7 +74,7 @@ mod tests {
             ..Recording::default()
         };
         let prepared = Prepared::new(recording);
-        // A span that is not there is left out.
+        // A span outside the recording is omitted.
         assert_eq!(places(&prepared, &warning("f_N")), [(1.0, 2.0), (4.0, 4.0)]);
         let shown = |column: &str| -> Vec<bool> {
             prepared.groups.iter().map(|g| concerns(&prepared, g, &warning(column))).collect()

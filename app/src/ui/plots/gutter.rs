@@ -10,24 +10,24 @@ use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilde
 
 /// Height of an entry, points.
 const LINE: f32 = 14.0;
-/// Empty room below its words, points.
+/// Empty space below its text, points.
 const BELOW: f32 = 2.0;
-/// Size of its words.
+/// Font size of its text, points.
 const WORDS: f32 = 11.5;
-/// In less room than this not even a letter of a name can be read.
+/// Minimum width of a name, points: not even one letter is readable in less.
 const LEAST_NAME: f32 = 14.0;
 
 /// One line of the gutter.
 struct Entry<'a> {
     label: String,
-    /// Where the lines stand in two columns.
+    /// Short text for the layout in two columns.
     brief: Option<String>,
     hint: String,
     color: Color32,
     width: f32,
-    /// What a click hides.
+    /// Name of the visibility switch that a click toggles.
     switch: &'a str,
-    /// The curve whose value is told.
+    /// Curve of the displayed value.
     curve: Option<&'a Curve>,
 }
 
@@ -37,13 +37,13 @@ pub fn gutter(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
     ui.add_space(2.0);
     head(ui, choice, input);
     let entries = entries(ui, input);
-    // Whole lines: half a line cannot be read. The last one needs no room below its words.
+    // Whole lines: half a line cannot be read. The last line needs no space below its text.
     let room = ((ui.available_height() + BELOW) / LINE).floor().max(1.0) * LINE;
     let sample = input.prepared.sample_at(input.cursor_s);
     let scroll = egui::ScrollArea::vertical().id_salt(("curves", input.index)).min_scrolled_height(0.0);
     scroll.max_height(room).show(ui, |ui| {
         ui.spacing_mut().interact_size.y = LINE;
-        // Two columns when one would not fit.
+        // Two columns where one would not fit.
         let columns = if entries.len() as f32 * LINE > room { 2 } else { 1 };
         let width = (ui.available_width() - space::S) / columns as f32;
         for line in entries.chunks(columns) {
@@ -109,7 +109,7 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
                     } else {
                         format!("− {model}")
                     },
-                    // What the words stand for is said in the plot of the force.
+                    // The force plot explains the abbreviations.
                     brief: Some(format!("{}, {}", trace.label, &model[..3])),
                     hint: format!("{} measured less {model}", trace.name),
                     color: curve_color(input, curve, dark, p),
@@ -122,7 +122,7 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
     }
 }
 
-/// The models and the band of the noise.
+/// Entries of the models and of the noise band.
 fn layers<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
     let inks = super::inks(ui);
     let entry = |label: &str, hint: &str, color, width, switch| Entry {
@@ -166,7 +166,7 @@ fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Ent
             let right = ui.max_rect().right();
             dash(ui, if shown { entry.color } else { p.border }, entry.width);
             let words = if shown { p.secondary } else { p.faint };
-            // The value comes first; the name takes what is left, and its end goes where that is too little.
+            // The value comes first; the name takes the remaining width and is truncated where that is too small.
             let room = right - ui.cursor().left() - value.size().x - ui.spacing().item_spacing.x;
             let label = entry.brief.as_ref().filter(|_| narrow).unwrap_or(&entry.label);
             let name = egui::Label::new(RichText::new(label).size(WORDS).color(words)).truncate();
@@ -193,19 +193,19 @@ fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Ent
     }
 }
 
-/// The value with its unit, for the tooltip: in the gutter it may have been left out.
+/// Value with its unit, for the tooltip: the gutter may omit the unit.
 fn whole_value(input: &RowInput<'_>, entry: &Entry<'_>, sample: usize) -> String {
     let value = entry.curve.map(|c| c.levels.samples(&c.prepared.recording).value(sample));
     let value = value.filter(|v| v.is_finite());
     value.map_or_else(String::new, |v| format!(", {} {}", format::significant(v, 5), input.drawn.unit))
 }
 
-/// What an entry tells of the cursor's time.
+/// Value of an entry at the cursor, as text.
 fn value_words(input: &RowInput<'_>, entry: &Entry<'_>, sample: usize, narrow: bool) -> Option<String> {
     let curve = entry.curve?;
     let value = Some(curve.levels.samples(&curve.prepared.recording).value(sample)).filter(|v| v.is_finite())?;
     match input.kind {
-        // Its name takes the room of two.
+        // Its name takes the width of two.
         RowKind::LeftOver => (!narrow).then(|| format::significant(value, 2)),
         RowKind::Curves => Some(value_text(value, &input.drawn.unit, narrow)),
     }

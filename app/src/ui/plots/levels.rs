@@ -1,4 +1,4 @@
-//! One curve's values, or where they stand already, with a pyramid of their extremes.
+//! Values of one curve, stored or referenced, with a pyramid of their extremes.
 
 use estimator::log::pyramid::{Band, Pyramid};
 use estimator::simulate::Simulation;
@@ -6,11 +6,11 @@ use haptics::recording::Recording;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Samples that a pyramid is fed with at a time where they are computed on the way.
+/// Number of samples per chunk when a pyramid is built from values computed on the fly.
 const CHUNK: usize = 4096;
 
-/// One curve's values, or where they stand already, with a pyramid of their extremes: a column of pixels over a million samples looks
-/// at tens of blocks, not at samples.
+/// Values of one curve, stored or referenced, with a pyramid of their extremes: a pixel column over a million samples
+/// reads tens of blocks instead of samples.
 #[derive(Clone, Debug, Default)]
 pub struct Levels {
     source: Source,
@@ -22,13 +22,13 @@ pub struct Levels {
 
 #[derive(Clone, Debug)]
 enum Source {
-    /// A channel of the recording, which holds the values already.
+    /// Channel of the recording, which holds the values.
     Channel(usize),
-    /// A predicted channel of a simulation, which holds them.
+    /// Predicted channel of a simulation, which holds the values.
     Simulated(Arc<Simulation>, usize),
-    /// One curve less another, sample by sample.
+    /// One curve minus another, sample by sample.
     Difference(Arc<Levels>, Arc<Levels>),
-    /// Values that nobody else holds.
+    /// Values stored here.
     Own(Arc<Vec<f64>>),
 }
 
@@ -39,26 +39,26 @@ impl Default for Source {
 }
 
 impl Levels {
-    /// Of values that nobody else holds, in the shown unit.
+    /// Curve that stores its values, in the shown unit.
     pub fn new(values: Vec<f64>) -> Self {
         let pyramid = Arc::new(Pyramid::of(&values));
         Self { pyramid, source: Source::Own(Arc::new(values)), factor: 1.0, offset: 0.0 }
     }
 
-    /// Of channel `index` of a recording, whose `values` stay there; shown times `factor`.
+    /// Curve of channel `index` of a recording, which keeps the `values`; shown times `factor`.
     pub fn of_channel(index: usize, values: &[f64], factor: f64) -> Self {
         let pyramid = Arc::new(Pyramid::of(values));
         Self { pyramid, source: Source::Channel(index), factor, offset: 0.0 }
     }
 
-    /// Of a predicted channel, whose values stay in the simulation; shown times `factor`.
+    /// Curve of a predicted channel, whose values stay in the simulation; shown times `factor`.
     pub fn of_simulation(simulation: &Arc<Simulation>, index: usize, factor: f64) -> Self {
         let values = simulation.predicted.get(index).map_or(&[][..], |c| c.values.as_slice());
         let pyramid = Arc::new(Pyramid::of(values));
         Self { pyramid, source: Source::Simulated(Arc::clone(simulation), index), factor, offset: 0.0 }
     }
 
-    /// `of` less `less`, of which no sample is stored.
+    /// Difference `of` minus `less`, of which no sample is stored.
     pub fn difference(of: &Arc<Self>, less: &Arc<Self>, recording: &Recording) -> Self {
         let (a, b) = (of.samples(recording), less.samples(recording));
         let n = a.len().min(b.len());
@@ -76,7 +76,7 @@ impl Levels {
         Self { offset: self.offset + offset, ..self.clone() }
     }
 
-    /// The samples, to be drawn.
+    /// View of the samples, for drawing.
     pub fn samples<'a>(&'a self, recording: &'a Recording) -> Samples<'a> {
         let values = match &self.source {
             Source::Own(values) => Values::Slice(values),
@@ -106,7 +106,7 @@ pub struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match &self.values {
             Values::Slice(values) => values.len(),
@@ -114,12 +114,12 @@ impl Samples<'_> {
         }
     }
 
-    /// True without any.
+    /// True if there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A value in the shown unit; NaN outside.
+    /// Value of a sample in the shown unit; NaN outside the curve.
     pub fn value(&self, sample: usize) -> f64 {
         let raw = match &self.values {
             Values::Slice(values) => values.get(sample).copied().unwrap_or(f64::NAN),

@@ -1,14 +1,14 @@
-//! A thinned curve as an item of a plot: the same shapes that [`egui_plot::Line`] makes of it, for a third of the time.
+//! A thinned curve as a plot item: the same shapes as [`egui_plot::Line`], for a third of the time.
 //!
-//! Long logs put tens of thousands of points into every picture. The general item finds each of them on the screen twice and divides for it;
-//! here each is found once, and multiplied.
+//! Long logs put tens of thousands of points into every frame. The general item computes each screen position twice,
+//! with a division; this one computes each once, with a multiplication.
 
 use egui::epaint::{BandPoint, BandShape};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
 use std::ops::RangeInclusive;
 
-/// Points that lie closer together than this are one column of a band, points.
+/// Points closer together than this form one column of a band, points.
 const COLUMN: f32 = 1.0;
 
 /// Points in the order of time, joined by lines.
@@ -19,7 +19,7 @@ pub struct ThinnedLine<'a> {
 }
 
 impl<'a> ThinnedLine<'a> {
-    /// Of points whose times never go back.
+    /// Line through points whose times never decrease.
     pub fn new(points: &'a [PlotPoint], width: f32, color: Color32) -> Self {
         Self { base: PlotItemBase::new(String::new()), points, stroke: Stroke::new(width, color) }
     }
@@ -53,7 +53,7 @@ impl PlotItem for ThinnedLine<'_> {
     }
 
     fn bounds(&self) -> PlotBounds {
-        // Rows say themselves what they show.
+        // The rows set their bounds themselves.
         PlotBounds::NOTHING
     }
 
@@ -66,7 +66,7 @@ impl PlotItem for ThinnedLine<'_> {
     }
 }
 
-/// From values to the screen: place = edge + (value − lowest) × scale, so that what lies on an edge stays there.
+/// Map from values to the screen: position = edge + (value − lowest) × scale, so that a value on an edge stays there.
 struct Screen {
     edge: [f64; 2],
     lowest: [f64; 2],
@@ -88,14 +88,14 @@ impl Screen {
     }
 }
 
-/// The runs of points whose lines reach into what can be seen. Where there is no number there is no line.
+/// Runs of points whose line segments reach the visible area. A non-finite point interrupts the line.
 fn visible(places: &[Pos2], clip: Rect) -> impl Iterator<Item = &[Pos2]> {
     let alone = (places.len() == 1 && clip.contains(places[0])).then_some(places);
     let mut at = 0;
     let runs = std::iter::from_fn(move || {
         let is_seen = |k: usize| {
             let (a, b) = (places[k], places[k + 1]);
-            // Nearly all lie inside with an end.
+            // Nearly all have one end inside.
             (clip.contains(a) && b.is_finite())
                 || (a.is_finite() && b.is_finite() && clip.intersects(Rect::from_two_pos(a, b)))
         };
@@ -119,13 +119,14 @@ fn shape(run: &[Pos2], stroke: Stroke) -> Shape {
     Shape::line(run.to_vec(), stroke)
 }
 
-/// From the lowest to the highest point of each column, and half the line's width to either side; all points are numbers.
+/// Band from the lowest to the highest point of each column, widened by half the line width to either side. All points
+/// must be finite.
 fn columns(run: &[Pos2], width: f32) -> Vec<BandPoint> {
     let mut columns: Vec<BandPoint> = Vec::with_capacity(run.len());
     let Some((first, others)) = run.split_first() else { return columns };
     let reach = 0.5 * width;
     let band = |x: f32, low: f32, high: f32| BandPoint::new(x, low - reach..=high + reach);
-    // The first column stands where it begins, the others in their middle.
+    // The first column is drawn at its start, the others at their centre.
     let (mut x, mut low, mut high, mut middle) = (first.x, first.y, first.y, 0.0);
     for place in others {
         if place.x - x <= COLUMN {
@@ -136,7 +137,7 @@ fn columns(run: &[Pos2], width: f32) -> Vec<BandPoint> {
             (x, low, high, middle) = (place.x, place.y, place.y, 0.5 * COLUMN);
         }
     }
-    // … and the last one where it ends.
+    // The last column is drawn at its end.
     columns.push(band(run[run.len() - 1].x, low, high));
     columns
 }
@@ -166,7 +167,7 @@ mod tests {
                 });
             })
         };
-        // The first picture finds out where things stand. There is no card to give letters to.
+        // The first frame settles the layout. There is no GPU to receive the font texture.
         draw().textures_delta.clear();
         let mut output = draw();
         output.textures_delta.clear();

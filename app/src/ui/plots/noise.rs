@@ -1,4 +1,4 @@
-//! How noisy a curve is: the band around what a model says.
+//! Noise of a curve: the band around the prediction of a model.
 
 use super::levels::Levels;
 use crate::ui::prepare::Prepared;
@@ -9,16 +9,16 @@ use estimator::signal::noise::white_noise_under_fast_motion;
 use estimator::signal::transform::Transform;
 use std::ops::Range;
 
-/// Samples that are looked at, at most: the error of a standard deviation from so many is below half a percent.
+/// Maximum number of samples: the standard error of a standard deviation from so many is below half a percent.
 const MOST_SAMPLES: usize = 60_000;
-/// A free phase loses this share at either end: the hand has just let go, or is about to touch.
+/// Share of a free phase that is discarded at either end: the hand has just let go, or is about to touch.
 const EDGE_SHARE: f64 = 0.15;
-/// A free phase with fewer samples says nothing.
+/// Minimum number of samples of a usable free phase.
 const LEAST_SAMPLES: usize = 24;
 
-/// Standard deviation of a force curve's noise, in its unit: its spread in the phases in which nothing is touched; where there are none,
-/// that of its fastest part. `raw` is the curve before the `transform`, `drawn` the one after it. `None` where neither can tell:
-/// an integral's noise grows with time.
+/// Standard deviation of a force curve's noise, in its unit. It is the spread in the contact-free phases, or that of
+/// the fastest part of the signal where there are none. `raw` is the curve before the `transform`, `drawn` the one
+/// after it. `None` where neither applies: the noise of an integral grows with time.
 pub fn sigma(
     raw: &Levels,
     drawn: &Levels,
@@ -44,7 +44,7 @@ fn free_phases(prepared: &Prepared, segmentation: &Segmentation) -> Vec<Range<us
     .collect()
 }
 
-/// Spread about each phase's own mean: a zero that drifts from one to the next is no noise.
+/// Spread about each phase's own mean: a zero that drifts from one phase to the next is not noise.
 fn in_phases(curve: &Levels, prepared: &Prepared, phases: &[Range<usize>]) -> Option<f64> {
     let samples = curve.samples(&prepared.recording);
     let share = MOST_SAMPLES / phases.len().max(1);
@@ -83,7 +83,7 @@ mod tests {
     use haptics::recording::{Channel, Recording};
     use std::collections::BTreeMap;
 
-    /// Even noise of standard deviation 1 that needs no library: a sum of twelve uniform numbers less six.
+    /// Uniform-sum noise of standard deviation 1 without a library: twelve uniform numbers minus six.
     fn noise(n: usize) -> Vec<f64> {
         let mut state = 88_172_645_463_325_252_u64;
         let mut uniform = || {

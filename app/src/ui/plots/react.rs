@@ -1,4 +1,4 @@
-//! What the pointer does in a plot over time.
+//! Pointer interaction of a plot over time.
 
 use super::row::{PlotCache, RowInput, RowOutcome};
 use super::shift::{Grasp, under};
@@ -6,8 +6,8 @@ use crate::ui::theme::{self, palette, space};
 use egui::{Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use egui_plot::PlotTransform;
 
-/// Left on the curve of another recording: shifts it. Left: cursor. Wheel: zoom about the pointer. Right or middle: move. Double click:
-/// everything.
+/// Handles the pointer. Left drag on the curve of another recording shifts it; left drag elsewhere moves the cursor.
+/// The wheel zooms about the pointer, right or middle drag pans, and a double click shows everything.
 pub fn react(
     ui: &mut Ui,
     response: &Response,
@@ -47,7 +47,7 @@ pub fn react(
     outcome
 }
 
-/// Whether the pointer has to do with the curve of another recording.
+/// Interaction of the pointer with the curve of another recording, if any.
 fn grasp(
     ui: &Ui,
     response: &Response,
@@ -71,7 +71,7 @@ fn grasp(
     Some(if pressed && down_here { Grasp::Takes(place, at_s) } else { Grasp::Over(place) })
 }
 
-/// A hand, and what it holds.
+/// Draws the hand cursor and the shift of the dragged recording.
 fn show_grasp(ui: &mut Ui, response: &Response, transform: &PlotTransform, input: &RowInput<'_>, grasp: Grasp) {
     if let Grasp::Over(_) = grasp {
         ui.set_cursor_icon(CursorIcon::Grab);

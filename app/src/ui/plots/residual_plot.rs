@@ -9,19 +9,19 @@ use render::ColorRole;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-/// The noise band reaches so many standard deviations to either side.
+/// Half-width of the noise band, standard deviations.
 pub const BAND_SIGMAS: f64 = 2.0;
 
-/// Colours of what is shown.
+/// Colours of the curves.
 #[derive(Clone, Copy, Debug)]
 pub struct Inks {
-    /// What was measured.
+    /// Colour of the measurement.
     pub measured: Color32,
-    /// The model.
+    /// Colour of the base model.
     pub model: Color32,
-    /// The model with what was found.
+    /// Colour of the extended model.
     pub extended: Color32,
-    /// The band of the noise.
+    /// Colour of the noise band.
     pub noise: Color32,
 }
 
@@ -63,7 +63,8 @@ pub fn force_plot(ui: &mut Ui, height: f32, curves: &Residuals) {
     });
 }
 
-/// What is left of the force against one variable: a cloud before, means before and after, the noise as a band.
+/// Draws the force residual against one variable: a cloud for the base model, binned means of both models, and the
+/// noise band.
 pub fn cloud_plot(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
     let (p, inks) = (palette(ui), inks(ui));
     let plot = quiet(("residual", cloud.title), p, height).custom_x_axes(vec![variable_axis(p, "")]);
@@ -89,12 +90,12 @@ fn line(points: &[PlotPoint], color: Color32) -> Line<'_> {
     Line::new("", PlotPoints::Borrowed(points)).color(color).width(2.0).allow_hover(false)
 }
 
-/// True when the means of a variable are told apart by the direction of motion.
+/// True if the means of a variable are separated by direction of motion.
 pub fn has_directions(suspect: Suspect) -> bool {
     suspect != Suspect::Velocity
 }
 
-/// A plot that only shows.
+/// Plot without interaction.
 fn quiet(id: impl Hash + Debug, p: &Palette, height: f32) -> Plot<'static> {
     still_plot(id, p, height, 8.0, 170.0).sense(Sense::hover())
 }

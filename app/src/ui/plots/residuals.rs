@@ -1,4 +1,4 @@
-//! Curves of a diagnosis: measured against modelled force over time, and what is left against each suspect variable.
+//! Curves of a diagnosis: measured and modelled force over time, and the residual against each candidate variable.
 
 use crate::ui::format;
 use egui_plot::PlotPoint;
@@ -7,80 +7,80 @@ use estimator::diagnose::course::{Course, Instant};
 use estimator::log::gap_above_s;
 use std::f64::consts::TAU;
 
-/// Most points of a curve, and of a cloud.
+/// Maximum number of points of a curve, and of a cloud.
 const MOST_POINTS: usize = 3_000;
-/// Longest time between neighbours of a curve, s.
+/// Maximum time between neighbours of a curve, s.
 const GAP_S: f64 = 0.05;
-/// Bins of a trend, and rows that a bin needs.
+/// Number of bins of a trend, and minimum number of rows per bin.
 const BINS: usize = 60;
 const LEAST_ROWS: usize = 4;
-/// Share of what is left that the axis shows.
+/// Share of the residuals that the axis covers.
 const SHOWN_SHARE: f64 = 0.995;
-/// Rows that are trusted less are not drawn: there the direction of motion is a guess, and with it the sign of all friction.
+/// Minimum weight of a drawn row: below it the direction of motion is uncertain, and with it the sign of all friction.
 const LEAST_WEIGHT: f64 = 0.5;
 
-/// A variable that what is left may depend on.
+/// Variable on which the residual may depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Suspect {
-    /// Place along the motion.
+    /// Position along the motion.
     Position,
     /// Its rate.
     Velocity,
-    /// Force across the motion.
+    /// Normal force, perpendicular to the motion.
     NormalForce,
     /// Time.
     Time,
 }
 
-/// A line of means, broken where there were none.
+/// Line of binned means, interrupted at empty bins.
 pub type Trend = Vec<Vec<PlotPoint>>;
 
-/// What is left against one variable.
+/// Residual against one variable.
 #[derive(Clone, Debug)]
 pub struct Cloud {
-    /// Which variable.
+    /// Variable of the horizontal axis.
     pub suspect: Suspect,
-    /// In words.
+    /// Name of the variable for the user.
     pub title: &'static str,
-    /// Its shown unit.
+    /// Unit of the shown variable.
     pub unit: &'static str,
-    /// What the model leaves, thinned.
+    /// Residual of the base model, thinned.
     pub before: Vec<PlotPoint>,
-    /// Means of it over ranges of the variable, forwards and backwards.
+    /// Binned means of that residual over the variable, forwards and backwards.
     pub trend_before: [Trend; 2],
-    /// The same with what was found.
+    /// Binned means of the extended model's residual, forwards and backwards.
     pub trend_after: [Trend; 2],
     /// Shown range of the variable.
     pub range: (f64, f64),
 }
 
-/// One recording's curves.
+/// Curves of one recording.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     /// Shown unit of the force.
     pub unit: &'static str,
-    /// Whether that is what a free motion needs, not what a sensor told.
+    /// True if the force was computed from the free motion instead of measured by a sensor.
     pub is_free: bool,
-    /// Measured force, in stretches without a gap.
+    /// Measured force, in segments without a gap.
     pub measured: Vec<Vec<PlotPoint>>,
-    /// The model's.
+    /// Force of the base model.
     pub modelled: Vec<Vec<PlotPoint>>,
-    /// That of the model with what was found.
+    /// Force of the extended model.
     pub extended: Vec<Vec<PlotPoint>>,
     /// Shown range of time, s.
     pub span_s: (f64, f64),
     /// Shown range of the force.
     pub force: (f64, f64),
-    /// Largest residual that is shown, N or N m.
+    /// Magnitude of the largest shown residual, N or N m.
     pub largest: f64,
-    /// Noise of one row, N or N m.
+    /// Noise of one row (1 σ), N or N m.
     pub noise: f64,
-    /// What is left against each variable that was measured.
+    /// Residual against each measured variable.
     pub clouds: Vec<Cloud>,
 }
 
 impl Residuals {
-    /// The curves of the recording of this number.
+    /// Curves of the recording with this index.
     pub fn new(diagnosis: &Diagnosis, recording: usize) -> Self {
         let course = &diagnosis.course;
         let rows: Vec<&Instant> = course.instants.iter().filter(|i| i.recording == recording).collect();
@@ -88,7 +88,7 @@ impl Residuals {
         let times: Vec<f64> = rows.iter().map(|i| i.time_s).collect();
         let gap_s = gap_above_s(&times).unwrap_or(f64::INFINITY);
         let curve = |rows: &[&Instant], far_s: f64, of: &dyn Fn(&Instant) -> f64| {
-            // Without the rows in between, neighbours may be far apart; nor is anything known of a gap.
+            // Rows were skipped, so neighbours may be far apart, and gaps cannot be detected otherwise.
             rows.chunk_by(|a, b| b.follows && b.time_s - a.time_s <= far_s)
                 .map(|stretch| thin(&stretch.iter().map(|i| [i.time_s, of(i)].into()).collect::<Vec<_>>(), rows.len()))
                 .collect::<Vec<_>>()
@@ -147,7 +147,7 @@ impl Cloud {
             rows.iter().zip(&x).step_by(step).map(|(i, x)| PlotPoint::new(*x, i.left_before)).collect::<Vec<_>>();
         let range = range(x.iter().copied(), 0.02);
         let trends = |of: fn(&Instant) -> f64| {
-            // Against velocity both directions have their own half already; against time they alternate.
+            // Against velocity each direction already has its own half; against time they alternate.
             match suspect {
                 Suspect::Velocity => [trend(rows, &x, range, of, |_| true), Trend::new()],
                 _ => {
@@ -167,7 +167,7 @@ impl Cloud {
     }
 }
 
-/// More than one turn was made: places of all turns are laid over each other.
+/// True if the motion covers more than one turn: the positions of all turns are superimposed.
 fn wraps(course: &Course, rows: &[&Instant]) -> bool {
     let (low, high) = range(rows.iter().map(|i| i.angle_rad), 0.0);
     course.turns && high - low > 1.2 * TAU
@@ -183,7 +183,7 @@ fn value(suspect: Suspect, course: &Course, instant: &Instant) -> f64 {
     }
 }
 
-/// Means over even ranges of x, each row as far as it is trusted; ranges with few rows are left out.
+/// Means over equal bins of x, weighted by the trust in each row; bins with few rows are omitted.
 fn trend(
     rows: &[&Instant],
     x: &[f64],
@@ -209,7 +209,7 @@ fn trend(
     parts.map(|part| part.iter().flatten().copied().collect()).collect()
 }
 
-/// Lowest and highest value with a share of room at both ends; never empty.
+/// Lowest and highest value with a margin at both ends; never empty.
 fn range(values: impl Iterator<Item = f64>, room: f64) -> (f64, f64) {
     let (low, high) =
         values.filter(|v| v.is_finite()).fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
@@ -221,7 +221,7 @@ fn range(values: impl Iterator<Item = f64>, room: f64) -> (f64, f64) {
     (low - room, high + room)
 }
 
-/// The extremes of equal numbers of points, in their order, so that all curves together have no more than [`MOST_POINTS`].
+/// Thins points to their extremes in equal groups, in order, so that all curves together have at most [`MOST_POINTS`].
 fn thin(points: &[PlotPoint], all: usize) -> Vec<PlotPoint> {
     let bucket = 2 * all.div_ceil(MOST_POINTS);
     if bucket <= 2 {

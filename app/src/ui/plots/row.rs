@@ -1,4 +1,4 @@
-//! One plot over time: its curves with the models' and the noise's band, the states behind them, the cursor.
+//! One plot over time: its curves, those of the models, the noise band, the states behind them, and the cursor.
 
 use super::axes::{AXIS_WIDTH, still_plot, time_axis};
 use super::choices::GroupChoice;
@@ -22,66 +22,66 @@ use std::sync::Arc;
 pub const GUTTER: f32 = 196.0;
 /// Height of the labels of the time axis.
 const AXIS_HEIGHT: f32 = 20.0;
-/// How much of their colour other recordings keep.
+/// Opacity of other recordings' curves.
 const DIMMED: f32 = 0.75;
 
-/// Curves under the hand are so much broader, points.
+/// Additional width of curves under the pointer, points.
 const GRASPED: f32 = 1.2;
 
-/// What a row is for.
+/// Content of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RowKind {
-    /// A quantity's curves.
+    /// Curves of a quantity.
     Curves,
-    /// What the models leave of them.
+    /// Residuals of the models.
     LeftOver,
 }
 
-/// What a row shows.
+/// Input of a row.
 pub struct RowInput<'a> {
-    /// Which row it is.
+    /// Index of the row.
     pub index: usize,
-    /// What it is for.
+    /// Content of the row.
     pub kind: RowKind,
-    /// The quantity.
+    /// Quantity of the row.
     pub group: &'a Group,
     /// The shown recording.
     pub prepared: &'a Arc<Prepared>,
     /// The curves.
     pub drawn: &'a Drawn,
-    /// The fitted world says something about them, shown or hidden.
+    /// True if the fitted world predicts a curve, shown or hidden.
     pub has_simulated: bool,
-    /// The extended world does.
+    /// True if the extended world predicts a curve, shown or hidden.
     pub has_extended: bool,
     /// States, as a faint tint.
     pub segmentation: Option<&'a Segmentation>,
-    /// Visible time.
+    /// Visible time range, s.
     pub view_s: (f64, f64),
-    /// The cursor.
+    /// Time of the cursor, s.
     pub cursor_s: f64,
-    /// Whether the time axis is labelled here.
+    /// True if the time axis is labelled here.
     pub time_axis: bool,
     /// Height, points.
     pub height: f32,
-    /// Another recording is held by its curve: its shift in words, and whether it has come to rest.
+    /// Shift of the recording that is dragged by its curve, as text, and whether it has snapped.
     pub held: Option<(String, bool)>,
-    /// The place of the recording that the pointer was over, or holds: its curves stand out.
+    /// Index of the overlaid recording under the pointer, or dragged by it; its curves are emphasised.
     pub grasped: Option<usize>,
 }
 
-/// What the user did in a row.
+/// Result of the user's actions in a row.
 pub struct RowOutcome {
-    /// The cursor was put here.
+    /// New time of the cursor, s.
     pub seek: Option<f64>,
-    /// The visible time was changed.
+    /// New visible time range, s.
     pub view_s: Option<(f64, f64)>,
-    /// Where the plot's area lies horizontally.
+    /// Horizontal extent of the plot area, points.
     pub area: Rangef,
-    /// The pointer has to do with the curve of another recording.
+    /// Interaction with the curve of another recording.
     pub grasp: Option<Grasp>,
 }
 
-/// Thinned curves, kept while the view stays.
+/// Thinned curves, kept while the view is unchanged.
 #[derive(Default)]
 pub struct PlotCache {
     curves: HashMap<(usize, usize), Cached>,
@@ -89,23 +89,23 @@ pub struct PlotCache {
     columns: HashMap<ColumnsKey, (Arc<Prepared>, Columns)>,
 }
 
-/// Recording, visible time in its own, columns.
+/// Recording, visible time range in its own time, number of columns.
 type ColumnsKey = (usize, [u64; 2], usize);
-/// More recordings than are ever laid over each other.
+/// Limit of the cache, above the number of recordings that are ever overlaid.
 const MOST_COLUMNS: usize = 32;
 
 struct Cached {
     key: CacheKey,
-    /// Keeps alive what the key points at.
+    /// Keeps the targets of the key alive.
     _curve: Curve,
     points: Vec<PlotPoint>,
     band: Option<Band>,
 }
 
-/// What the points were made for: recording, curve, visible time, offset, columns.
+/// Identity of thinned points: recording, curve, visible time range and offset, columns.
 type CacheKey = (usize, usize, [u64; 3], usize, Option<u64>);
 
-/// The noise's band: times, lower and upper edge.
+/// Noise band: times, lower and upper edge.
 struct Band {
     times: Vec<f64>,
     low: Vec<f64>,
@@ -156,7 +156,7 @@ impl PlotCache {
 }
 
 impl Band {
-    /// `reach` to either side of a curve that has one or two points at a time.
+    /// Band of half-width `reach` around a curve that has one or two points per time.
     fn around(points: &[PlotPoint], reach: f64) -> Self {
         let mut band = Self { times: Vec::new(), low: Vec::new(), high: Vec::new() };
         for at in points.chunk_by(|a, b| a.x == b.x) {
@@ -183,7 +183,7 @@ pub fn row(ui: &mut Ui, cache: &mut PlotCache, choice: &mut GroupChoice, input: 
     .inner
 }
 
-/// The colour of a curve: its own, or that of what it is compared with.
+/// Colour of a curve: its own, or that of the model.
 pub fn curve_color(input: &RowInput<'_>, curve: &Curve, dark: bool, p: &Palette) -> Color32 {
     let trace = &input.group.traces[curve.trace];
     let own = theme::curve(dark, trace.role, trace.second);
@@ -194,7 +194,7 @@ pub fn curve_color(input: &RowInput<'_>, curve: &Curve, dark: bool, p: &Palette)
         Layer::Extended => p.good,
         Layer::LeftSimulated if alone => theme::role(dark, render::ColorRole::Simulated),
         Layer::LeftExtended if alone => p.good,
-        // Several traces are told apart by their own colours, the models by how strong these are.
+        // Several traces are distinguished by their own colours, the models by opacity.
         Layer::LeftSimulated if input.drawn.has(Layer::LeftExtended) => own.gamma_multiply(0.45),
         Layer::Measured | Layer::LeftSimulated | Layer::LeftExtended => own,
     }
@@ -202,7 +202,7 @@ pub fn curve_color(input: &RowInput<'_>, curve: &Curve, dark: bool, p: &Palette)
 
 fn width(layer: Layer) -> f32 {
     match layer {
-        // A broad band under the measured curve: seen where they agree and where they part.
+        // A broad line under the measured curve shows agreement and deviation.
         Layer::Simulated => 4.5,
         Layer::Extended => 2.8,
         Layer::Measured => 1.4,
@@ -245,7 +245,7 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_nois
     react(ui, &response.response, &response.transform, cache, input)
 }
 
-/// Around the last model of every trace; about zero where the row is of what is left.
+/// Draws noise bands around the last model of every trace; around zero in a residual row.
 fn bands<'a>(plot: &mut PlotUi<'a>, cache: &'a PlotCache, input: &RowInput<'_>, ink: Color32) {
     if input.kind == RowKind::LeftOver {
         if let Some(sigma) = input.drawn.curves.iter().filter_map(|c| c.sigma).reduce(f64::max) {
@@ -263,12 +263,12 @@ fn bands<'a>(plot: &mut PlotUi<'a>, cache: &'a PlotCache, input: &RowInput<'_>, 
     }
 }
 
-/// The visible curves with a little air; never an empty range. A model that goes elsewhere does not press what was measured flat.
+/// Range of the visible curves with a margin; never empty. A diverging model must not compress the measured curves.
 fn y_range(cache: &PlotCache, input: &RowInput<'_>, show_noise: bool) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let counts = |curve: &&Curve| !matches!(curve.layer, Layer::Simulated | Layer::Extended);
     for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| counts(c)) {
-        // Compared, not `min` and `max`: there are tens of thousands of them.
+        // Explicit comparison instead of `min` and `max`: there are tens of thousands of points.
         for point in cache.points(input, place).iter().filter(|p| p.y.is_finite()) {
             low = if point.y < low { point.y } else { low };
             high = if point.y > high { point.y } else { high };
@@ -303,7 +303,7 @@ fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>) {
     }
 }
 
-/// Height that a row of plots adds for the time axis.
+/// Height that the time axis adds to a row of plots, points.
 pub const fn axis_height() -> f32 {
     AXIS_HEIGHT
 }

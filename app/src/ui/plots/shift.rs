@@ -1,4 +1,4 @@
-//! Shifting a recording that lies over the shown one by its curve.
+//! Shifting an overlaid recording by its curve.
 
 use super::choices::PlotChoices;
 use super::curves::{Curve, Layer};
@@ -6,53 +6,53 @@ use egui::{Pos2, Rangef};
 use egui_plot::{PlotPoint, PlotTransform};
 use std::collections::BTreeMap;
 
-/// Points within which a curve can be taken hold of.
+/// Distance within which a curve can be grabbed, points.
 const GRASP: f32 = 6.0;
-/// Points from the likeliest shift within which it is taken.
+/// Distance from the best-matching shift within which it snaps, points.
 const SNAP: f32 = 8.0;
-/// Points that a pointer moves before it counts as a drag.
+/// Distance that a pointer moves before it counts as a drag, points.
 const DRAG: f32 = 3.0;
 
-/// A recording that is held by its curve.
+/// Recording that is dragged by its curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// Which of the loaded ones.
+    /// Index into the loaded recordings.
     pub recording: usize,
-    /// Its shift before, s.
+    /// Offset before the drag, s.
     before_s: f64,
-    /// The time under the pointer when it was taken hold of, s.
+    /// Time under the pointer at the start of the drag, s.
     grabbed_s: f64,
-    /// The pointer has moved.
+    /// True once the pointer has moved.
     pub moved: bool,
-    /// It lies where it is most like the shown one.
+    /// True if the offset has snapped to the best match.
     pub snapped: bool,
-    /// The user has taken it back and still holds the button.
+    /// True if the user has undone the drag and still holds the button.
     given_up: bool,
 }
 
-/// What the pointer does with a curve.
+/// Interaction of the pointer with a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grasp {
-    /// It is over one, by its place among those laid over.
+    /// Hovers over the overlaid recording of this index.
     Over(usize),
-    /// It takes hold of one, at a time.
+    /// Grabs the overlaid recording of this index at a time, s.
     Takes(usize, f64),
-    /// It moves what is held.
+    /// Moves the dragged recording.
     Moves {
-        /// To this time, s.
+        /// Time under the pointer, s.
         to_s: f64,
-        /// A point is so many seconds.
+        /// Seconds per screen point.
         s_per_point: f64,
-        /// Nothing attracts it.
+        /// True if snapping is off.
         freely: bool,
     },
 }
 
-/// Shifts at which recordings are most like each other, by shown and moved recording; `None`: they are not alike.
+/// Best-matching shifts by shown and moved recording, s; `None` if the recordings are not alike.
 pub type Likeliest = BTreeMap<(usize, usize), Option<f64>>;
 
 impl PlotChoices {
-    /// Does what the pointer asks for; the recording that was just taken hold of.
+    /// Applies the pointer's interaction. Returns the recording that was just grabbed.
     pub fn grasp(&mut self, grasp: Grasp, current: usize, clockless: bool) -> Option<usize> {
         match grasp {
             Grasp::Over(_) => None,
@@ -80,7 +80,7 @@ impl PlotChoices {
         }
     }
 
-    /// What is held goes back to where it was; the button may still be down.
+    /// Moves the dragged recording back to its previous offset; the button may still be down.
     pub fn take_back(&mut self) {
         if let Some(held) = &mut self.held {
             held.given_up = true;
@@ -89,7 +89,7 @@ impl PlotChoices {
         }
     }
 
-    /// The button was let go: true where the curve was only clicked on.
+    /// Ends the drag. Returns true if the curve was only clicked.
     pub fn let_go(&mut self) -> bool {
         self.held.take().is_some_and(|held| !held.moved && !held.given_up)
     }
@@ -101,7 +101,7 @@ impl PlotChoices {
     }
 }
 
-/// A wished shift, or the likeliest where that is near enough.
+/// Desired shift, or the best match where it is within reach, s; true if it snapped.
 fn snapped(wished_s: f64, likeliest_s: Option<f64>, reach_s: f64) -> (f64, bool) {
     match likeliest_s {
         Some(likeliest_s) if (wished_s - likeliest_s).abs() <= reach_s => (likeliest_s, true),
@@ -109,7 +109,7 @@ fn snapped(wished_s: f64, likeliest_s: Option<f64>, reach_s: f64) -> (f64, bool)
     }
 }
 
-/// The place of the other recording whose curve lies under the pointer.
+/// Index of the overlaid recording whose curve is under the pointer.
 pub fn under<'a>(
     curves: impl Iterator<Item = (&'a Curve, &'a [PlotPoint])>,
     transform: &PlotTransform,
@@ -121,7 +121,7 @@ pub fn under<'a>(
     let mut best: Option<(f32, usize)> = None;
     for (curve, points) in curves {
         let Layer::Other(place) = curve.layer else { continue };
-        // One point more on either side: lines between them pass here, too.
+        // One more point on either side: their lines cross this range, too.
         let first = points.partition_point(|p| p.x < time(near.min)).saturating_sub(1);
         let end = (points.partition_point(|p| p.x <= time(near.max)) + 1).min(points.len());
         for pair in points.get(first..end).unwrap_or_default().windows(2) {
@@ -134,7 +134,7 @@ pub fn under<'a>(
     best.map(|(_, place)| place)
 }
 
-/// From a point to a piece of a line, points; without end where the piece has none.
+/// Distance of a point from a line segment, points; infinite where the segment is not finite.
 fn to_line(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     let along = to - from;
     let share = if along.length_sq() > 0.0 { (point - from).dot(along) / along.length_sq() } else { 0.0 };
@@ -156,7 +156,7 @@ mod tests {
         choices
     }
 
-    /// Where the recording then lies, ms.
+    /// Offset of the recording after the move, ms.
     fn moved(choices: &mut PlotChoices, to_s: f64, freely: bool) -> f64 {
         choices.grasp(Grasp::Moves { to_s, s_per_point: 0.01, freely }, 0, false);
         (1e3 * choices.overlaid[0].offset_s).round()

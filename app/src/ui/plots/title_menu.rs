@@ -1,4 +1,4 @@
-//! The title of a plot, with the menu of what is made of its curves.
+//! The title of a plot, with the menu of its transforms.
 
 use super::choices::{GroupChoice, name};
 use super::row::RowInput;
@@ -7,12 +7,12 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Sense, Stroke, Ui, vec2};
 use estimator::signal::transform::Transform;
 
-/// Cut-off of a low-pass that was just chosen, as a share of the sampling rate.
+/// Default cut-off of a low-pass, as a share of the sampling rate.
 const USUAL_CUTOFF: f64 = 0.02;
 /// Highest cut-off as a share of the sampling rate.
 const HIGHEST_CUTOFF: f64 = 0.45;
 
-/// The title; a click opens the menu.
+/// Draws the title; a click opens the menu.
 pub fn title_menu(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
     let p = palette(ui);
     let title = RichText::new(&input.group.title).font(egui::FontId::new(13.0, theme::semibold()));
@@ -29,7 +29,7 @@ pub fn title_menu(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
         ui.label(RichText::new(words).size(11.5).color(p.accent));
     }
     let hint = format!("{}: what is made of these curves, and what the models leave of them", input.group.title);
-    // The chips above have the same word on them.
+    // The chips above have the same label.
     let spoken = format!("{} menu", input.group.title);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
     response.on_hover_text(hint);
@@ -45,7 +45,7 @@ fn short(transform: Transform) -> &'static str {
     }
 }
 
-/// A small triangle: the title can be opened. Drawn: no font needs to have it.
+/// Draws a small triangle to show that the title opens a menu. It is drawn, so no font needs the glyph.
 fn arrow(ui: &mut Ui) {
     let (rect, _) = ui.allocate_exact_size(vec2(7.0, 12.0), Sense::hover());
     let (c, ink) = (rect.center(), palette(ui).faint);
@@ -83,7 +83,7 @@ fn menu(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
             ui.horizontal(|ui| {
                 ui.add_space(space::XL);
                 ui.label(theme::caption(ui, "up to"));
-                // Menus take the frames of their buttons away; a number that can be changed looks like one.
+                // Menus remove the frames of their buttons; an editable number needs one.
                 let p = palette(ui);
                 let field = &mut ui.visuals_mut().widgets.inactive;
                 (field.weak_bg_fill, field.bg_stroke) = (p.raised, Stroke::new(1.0, p.border));
@@ -105,14 +105,14 @@ fn menu(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
         .on_disabled_hover_text(hint);
 }
 
-/// Samples a second, or one a sample.
+/// Samples per second, or 1 per sample without a clock.
 fn rate(input: &RowInput<'_>) -> f64 {
     let (first, last) = input.prepared.span();
     let steps = input.prepared.times.len().saturating_sub(1).max(1) as f64;
     (steps / (last - first)).max(1e-9)
 }
 
-/// A round number near the usual share of the rate.
+/// Rounded cut-off near the default share of the rate.
 fn usual_cutoff(rate: f64) -> f64 {
     let rough = USUAL_CUTOFF * rate;
     let decade = 10.0_f64.powf(rough.log10().floor());

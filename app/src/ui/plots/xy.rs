@@ -12,33 +12,33 @@ use estimator::segment::Segmentation;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Most points of a curve: a pixel is met several times over.
+/// Maximum number of points of a curve, several per pixel.
 const MOST_POINTS: usize = 8_000;
-/// Most samples that are looked at for them; of more, every second, third … is. The first number while the view changes with every
-/// picture, the second once it stays.
+/// Maximum number of samples read for them; longer recordings are read at a stride. The first number applies while the
+/// view changes with every frame, the second once it rests.
 const MOST_SAMPLES: [usize; 2] = [120_000, 600_000];
-/// Shades that time is told by.
+/// Number of shades that encode time.
 const SHADES: usize = 48;
 
-/// What an XY plot shows.
+/// Input of an XY plot.
 pub struct XyInput<'a> {
     /// The shown recording.
     pub prepared: &'a Arc<Prepared>,
-    /// To the right.
+    /// Values of the horizontal axis.
     pub x: &'a Arc<Levels>,
-    /// Its unit.
+    /// Unit of the horizontal axis.
     pub x_unit: &'a str,
-    /// Upwards.
+    /// Values of the vertical axis.
     pub y: &'a Arc<Levels>,
-    /// Its unit.
+    /// Unit of the vertical axis.
     pub y_unit: &'a str,
-    /// What colour tells.
+    /// Quantity that colour encodes.
     pub color: XyColor,
-    /// The states.
+    /// States of the recording.
     pub segmentation: Option<&'a Segmentation>,
-    /// The part of the recording that is drawn in colour.
+    /// Time range drawn in colour, s.
     pub view_s: (f64, f64),
-    /// The cursor.
+    /// Time of the cursor, s.
     pub cursor_s: f64,
 }
 
@@ -59,7 +59,7 @@ struct View {
     shown_s: (f64, f64),
     samples: Vec<usize>,
     points: Vec<PlotPoint>,
-    /// Nothing more can be seen by looking longer.
+    /// True if further refinement would show nothing more.
     is_settled: bool,
 }
 
@@ -68,7 +68,7 @@ fn same(a: &(Arc<Levels>, Arc<Levels>), b: &(Arc<Levels>, Arc<Levels>)) -> bool 
 }
 
 impl XyCache {
-    /// True when the next picture will show more.
+    /// Updates the cache. Returns true if the next frame will show more.
     fn update(&mut self, input: &XyInput<'_>) -> bool {
         let of = (Arc::clone(input.x), Arc::clone(input.y));
         let recording = &input.prepared.recording;
@@ -95,7 +95,7 @@ impl XyCache {
     }
 }
 
-/// The samples that a curve through the plane needs: of every stretch those farthest to each side.
+/// Samples that a curve in the plane needs: the extremes of every segment in each direction.
 fn thin(x: &Samples<'_>, y: &Samples<'_>, range: Range<usize>, most: usize) -> Vec<usize> {
     let range = range.start.min(x.len())..range.end.min(x.len()).min(y.len());
     let is_number = |i: &usize| x.value(*i).is_finite() && y.value(*i).is_finite();
@@ -124,7 +124,7 @@ fn thin(x: &Samples<'_>, y: &Samples<'_>, range: Range<usize>, most: usize) -> V
     kept
 }
 
-/// Draws the plot `size` large; where the user has put the cursor, s.
+/// Draws the plot at `size`. Returns the time to which the user moved the cursor, s.
 pub fn xy_plot(ui: &mut Ui, cache: &mut XyCache, input: &XyInput<'_>, size: Vec2) -> Option<f64> {
     if cache.update(input) {
         ui.ctx().request_repaint();
@@ -164,19 +164,19 @@ pub fn xy_plot(ui: &mut Ui, cache: &mut XyCache, input: &XyInput<'_>, size: Vec2
         .and_then(|i| input.prepared.times.get(i).copied())
 }
 
-/// The drawn sample nearest to a place on the screen.
+/// Drawn sample nearest to a screen position.
 fn nearest(transform: &PlotTransform, view: &View, at: Pos2) -> Option<usize> {
     let far = |point: &PlotPoint| transform.position_from_point(point).distance_sq(at);
     let distances = view.points.iter().map(far).zip(&view.samples);
     distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, sample)| *sample)
 }
 
-/// True when a shape drawn with these units on both axes would be a shape in space.
+/// True if the unit is a length, so that equal axes show a true shape.
 fn is_length(unit: &str) -> bool {
     matches!(unit, "mm" | "m")
 }
 
-/// Everything with a little air, for an `area` of points; with `equal` axes a circle is one.
+/// Bounds of all points with a margin, for an `area` in points; `equal` axes show a circle as a circle.
 fn bounds(points: &[PlotPoint], equal: bool, area: Vec2) -> PlotBounds {
     let range = |of: fn(&PlotPoint) -> f64| {
         let (low, high) = points.iter().map(of).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
@@ -199,7 +199,7 @@ fn bounds(points: &[PlotPoint], equal: bool, area: Vec2) -> PlotBounds {
     PlotBounds::from_min_max([x.0, y.0], [x.1, y.1])
 }
 
-/// Stretches of the curve in one colour each; neighbours share a point.
+/// Runs of the curve in one colour each; neighbours share a point.
 fn runs(input: &XyInput<'_>, view: &View, dark: bool) -> Vec<(Range<usize>, Color32)> {
     let times = &input.prepared.times;
     let states = input.segmentation.map_or(&[][..], |s| s.states.as_slice());
@@ -258,7 +258,7 @@ mod tests {
         let n = 400_000;
         let channel = |name: &str, values: Vec<f64>| Channel { name: name.into(), unit: "m".into(), values };
         let mut x: Vec<f64> = (0..n).map(|i| (f64::from(i) * 1e-3).cos()).collect();
-        // One sample that every fourth does not meet.
+        // A sample that a stride of four skips.
         x[200_001] = 3.0;
         let y = (0..n).map(|i| (f64::from(i) * 1e-3).sin()).collect();
         let recording = Recording { channels: vec![channel("x_m", x), channel("y_m", y)], ..Recording::default() };

@@ -18,19 +18,19 @@ fn surface_id() -> egui::Id {
     egui::Id::unique("touchstone surface format")
 }
 
-/// Tells the panels what the window is drawn to. Without it pictures are replaced by a sentence.
+/// Stores the window's target format for the panels. Without it, pictures are replaced by a sentence.
 pub fn announce(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
     ctx.data_mut(|data| data.insert_temp(surface_id(), Surface(state.target_format)));
 }
 
-/// Lets what draws scenes be built on a thread of its own, after the window's first picture, which need not wait for it; until it is
-/// there scenes are left out.
+/// Builds the scene renderer on a thread of its own after the window's first frame, which need not wait for it. Scenes
+/// are omitted until it is ready.
 pub fn warm_up(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
     let warming = Warming { ctx: ctx.clone(), stage: Mutex::new(Stage::FirstPicture) };
     state.renderer.write().callback_resources.insert(warming);
 }
 
-/// How far what draws scenes is.
+/// Progress of the renderer's construction.
 struct Warming {
     ctx: egui::Context,
     stage: Mutex<Stage>,
@@ -42,7 +42,8 @@ enum Stage {
     Building(Receiver<Resources>),
 }
 
-/// Draws a scene into `rect`; false when there is no graphics device. `view` tells apart several pictures in one window.
+/// Draws a scene into `rect`; false if there is no graphics device. `view` distinguishes several pictures in one
+/// window.
 pub fn picture(
     ui: &egui::Ui,
     rect: egui::Rect,
@@ -73,7 +74,7 @@ struct Picture {
     options: ViewOptions,
 }
 
-/// Lives in egui's renderer as long as the window.
+/// Renderer resources, stored in egui's renderer as long as the window lives.
 struct Resources {
     renderer: Renderer,
     blit: Blit,
@@ -87,7 +88,7 @@ struct ViewResources {
 }
 
 impl Warming {
-    /// What was built, once; `None` until then, and where nothing can be.
+    /// Takes the built resources once; `None` until they are ready, and where they cannot be built.
     fn take(&self, device: &wgpu::Device, surface: wgpu::TextureFormat) -> Option<Resources> {
         let mut stage = self.stage.lock().ok()?;
         match &*stage {
@@ -109,9 +110,9 @@ impl Warming {
         let ctx = self.ctx.clone();
         let work = move || {
             match Resources::tried(&device, surface) {
-                // Nobody listens any more in a window that was closed at once.
+                // Nobody listens any more if the window was closed at once.
                 Some(made) => drop(sender.send(made)),
-                // Panels say so in the picture's place.
+                // Panels show a message in the picture's place.
                 None => ctx.data_mut(|data| data.remove::<Surface>(surface_id())),
             }
             ctx.request_repaint();
@@ -172,7 +173,7 @@ impl CallbackTrait for Picture {
         if !resources.contains::<Resources>() {
             let made = match resources.get::<Warming>() {
                 Some(warming) => warming.take(device, self.surface),
-                // Without a window nothing has to be there at once.
+                // Without a window, waiting is allowed.
                 None => Some(Resources::new(device, self.surface)),
             };
             let Some(made) = made else { return Vec::new() };

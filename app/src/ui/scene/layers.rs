@@ -1,22 +1,22 @@
-//! What the 3-D view of a recording shows beside the hand: switches, remembered by the session.
+//! Layers of the 3-D view of a recording beside the hand: switches, stored in the session.
 
-/// The switches over the picture.
+/// Switches above the picture.
 #[allow(clippy::struct_excessive_bools)] // independent switches, shown as such
 #[derive(Clone, Copy, Debug)]
 pub struct SceneLayers {
-    /// The path of the fingers or the tool.
+    /// Path of the fingers or the tool.
     pub path: bool,
     /// Force vectors along the path.
     pub forces_on_path: bool,
-    /// What weight and friction do not explain of the force, along the path.
+    /// Residual force along the path, which weight and friction do not explain.
     pub unexplained: bool,
-    /// Found constraints.
+    /// Detected constraints.
     pub constraints: bool,
     /// Marks at contacts.
     pub contacts: bool,
     /// The hand and the forces of the replay, over the measured ones.
     pub replay: bool,
-    /// What the marks mean, with their numbers.
+    /// Legend of the marks, with their values.
     pub legend: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the marks in the picture mean, with the numbers behind them: a strip below it.
+//! Legend of the marks in the picture, with their values: a strip below it.
 
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
@@ -12,21 +12,21 @@ use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke,
 use estimator::estimate::{Constraint, ConstraintKind, Phase, StrokePhase};
 use render::ColorRole;
 
-/// Height of a line and size of its words, points; a mark with and without its distance from them, and what is between entries.
+/// Height of a line and font size, points; space of a mark with and without its gap, and the gap between entries.
 const LINE: f32 = 17.0;
 const WORDS: f32 = 11.5;
 const SIGN: f32 = 14.0;
 const MARK: f32 = 20.0;
 const APART: f32 = space::L;
 
-/// How a mark looks.
+/// Symbol of a legend entry.
 #[derive(Clone, Copy, PartialEq)]
 enum Mark {
     Line,
     Dashes,
     Arrow,
     Ring,
-    /// Nothing in the picture: it is only said.
+    /// No symbol in the picture: text only.
     Words,
 }
 
@@ -34,7 +34,7 @@ struct Row {
     mark: Mark,
     color: ColorRole,
     text: String,
-    /// What else it says at other times: the widest decides about its room, so that nothing moves while the cursor does.
+    /// Texts at other times: the widest sets the width, so that nothing moves with the cursor.
     else_says: Vec<String>,
 }
 
@@ -51,14 +51,14 @@ impl Row {
     }
 }
 
-/// The legend, laid out for a strip below the picture: it never covers what is shown.
+/// Legend, laid out for a strip below the picture: it never covers the scene.
 pub struct Legend {
-    /// Entries of each line, with their widths, points.
+    /// Entries of each line with their widths, points.
     lines: Vec<Vec<(f32, Row)>>,
 }
 
 impl Legend {
-    /// In as many lines as it takes. `width`: of the strip, points.
+    /// Lays the entries out in as many lines as necessary for a strip `width` points wide.
     pub fn new(ui: &Ui, width: f32, session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> Self {
         let room = width - 2.0 * space::M;
         let (mut lines, mut taken) = (Vec::<Vec<(f32, Row)>>::new(), f32::INFINITY);
@@ -152,7 +152,7 @@ fn paths(session: &Session, prepared: &Prepared) -> Vec<Row> {
     vec![Row::new(Mark::Line, ColorRole::Measured, text)]
 }
 
-/// How long the vectors along the path are.
+/// Scale of the vectors along the path, as text.
 fn scale(prepared: &Prepared) -> String {
     format!("1 N is {} mm", significant(f64::from(force_scale(prepared)) * 1e3, 2))
 }
@@ -234,7 +234,7 @@ fn phase_at(phases: &[StrokePhase], cursor_s: f64) -> Option<&StrokePhase> {
     phases.iter().find(|phase| (phase.t0..phase.t1).contains(&cursor_s))
 }
 
-/// What the sheet does at this moment (thesis, figure 5.14).
+/// Action of the membrane at this moment, as text (thesis, figure 5.14).
 fn in_words(phase: &StrokePhase) -> String {
     let name = match phase.phase {
         Phase::Free => "Needle outside of the sheet",

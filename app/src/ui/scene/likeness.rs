@@ -1,21 +1,22 @@
-//! How like the real thing the replay is, in numbers (thesis, figures 5.18 to 5.22): its forces beside the measured ones, and where
-//! the virtual object was while the measured fingers held it.
+//! Agreement of the replay with the recording, in numbers (thesis, figures 5.18 to 5.22). It compares the forces, and
+//! the position of the virtual object while the measured fingers held it.
 
 use crate::ui::jobs::Replayed;
 use crate::ui::prepare::Prepared;
 use haptics::Vec2;
 use haptics::world::World;
 
-/// Differences of one replay from its recording, root mean square.
+/// RMS differences between one replay and its recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Likeness {
-    /// Between the predicted and the measured force of both fingers together, N; absent without forces.
+    /// Difference between predicted and measured force over both fingers, N; absent without forces.
     pub force_n: Option<f64>,
-    /// The measured force itself, N.
+    /// RMS of the measured force itself, N.
     pub of_force_n: f64,
-    /// Between the grasp and the virtual object that is held, less its mean (nobody holds a thing by its very middle), m.
+    /// Difference between the grasp and the held virtual object, minus its mean (the grasp is rarely at the object's
+    /// centre), m.
     pub place_m: Option<f64>,
-    /// How far the grasp went meanwhile, m.
+    /// RMS deviation of the grasp from its mean position meanwhile, m.
     pub of_way_m: f64,
 }
 
@@ -37,7 +38,7 @@ fn force(replay: &Replayed, prepared: &Prepared) -> (Option<f64>, f64) {
         values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64
     };
     let of: f64 = rms.iter().map(|(name, _)| square(name)).sum();
-    // Torques have another unit and a picture of their own.
+    // Torques have another unit and their own picture.
     let forces = !rms.is_empty() && rms.iter().all(|(name, _)| name.ends_with("_N"));
     (forces.then(|| all.sqrt()), of.sqrt())
 }

@@ -1,4 +1,4 @@
-//! Found constraints as marks in the picture.
+//! Detected constraints as marks in the picture.
 
 use super::overlay::bounds;
 use crate::ui::prepare::Prepared;
@@ -10,22 +10,23 @@ use render::ConstraintMarker;
 
 /// Half axes of an ellipse that holds 95 % of a normal distribution in the plane, in standard errors: √χ²₂(0.95).
 const ELLIPSE_95: f64 = 2.4477;
-/// An ellipse whose longer half axis is less than this share of the radius is drawn larger, by a round number.
+/// Minimum longer half-axis of an error ellipse, as a share of the radius; smaller ones are magnified by a round
+/// factor.
 const SEEN: f64 = 0.16;
-/// Places between two control points of a guide.
+/// Number of positions between two control points of a guide.
 const PIECES: usize = 12;
 
 /// A constraint of the shown recording, with its mark.
 pub struct Marked<'a> {
-    /// What was found.
+    /// Detected constraint.
     pub constraint: &'a Constraint,
-    /// How it is drawn.
+    /// Mark of the constraint; `None` if it is not drawn.
     pub marker: Option<ConstraintMarker>,
-    /// How much larger than true its error is drawn.
+    /// Magnification of its drawn error.
     pub magnified: f64,
 }
 
-/// The constraints of the fit that belong to a recording.
+/// Constraints of the fit that belong to a recording.
 pub fn of<'a>(session: &'a Session, prepared: &Prepared) -> Vec<Marked<'a>> {
     let Some(analysis) = &session.analysis else { return Vec::new() };
     let of_this = |c: &&Constraint| {
@@ -42,7 +43,7 @@ fn planar(v: &[f64]) -> Option<Vec2> {
     (v.len() >= 2).then(|| Vec2::new(v[0], v[1]))
 }
 
-/// Standard error of a number of the constraint, m; 0 where none was given.
+/// Standard error of a value of the constraint, m; 0 where none is known.
 pub fn error_of(constraint: &Constraint, name: &str) -> f64 {
     constraint.std_error.get(name).copied().unwrap_or(0.0)
 }
@@ -70,15 +71,15 @@ fn revolute(constraint: &Constraint, prepared: &Prepared, magnified: &mut f64) -
     Some(ConstraintMarker::Revolute { center_m, radius_m, center_axes_m })
 }
 
-/// The largest of 1, 2, 5, 10, 20 … that is not above a factor; at least 1.
+/// Largest number of the series 1, 2, 5, 10, 20 … that does not exceed `most`; at least 1.
 fn round_factor(most: f64) -> f64 {
     let decade = 10_f64.powf(most.max(1.0).log10().floor());
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|f| *f <= most).unwrap_or(1.0)
 }
 
-/// Directions of the half axes of a centre's error, the longer one of length 1: how well a circle's centre is known in each
-/// direction follows from the arc that was covered, whatever the noise (normal equations of centre and radius, with the radius
-/// eliminated).
+/// Directions of the half-axes of the centre's error ellipse, the longer one of length 1. The accuracy of a circle's
+/// centre in each direction follows from the covered arc, whatever the noise (normal equations of centre and radius,
+/// with the radius eliminated).
 fn error_axes(points: &[Vec2], center: Vec2) -> [Vec2; 2] {
     let outwards = || points.iter().filter_map(|point| (point - center).try_normalize(1e-12));
     let n = outwards().count().max(1) as f64;
@@ -86,7 +87,7 @@ fn error_axes(points: &[Vec2], center: Vec2) -> [Vec2; 2] {
     let [xx, xy, yy] = outwards()
         .map(|out| out - mean)
         .fold([0.0; 3], |[xx, xy, yy], d| [xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y]);
-    // The direction that the arc says most about; across it the error is largest.
+    // The direction that the arc determines best; the error is largest perpendicular to it.
     let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
     let (middle, spread) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     let share = ((middle - spread).max(0.0) / (middle + spread)).sqrt();

@@ -1,5 +1,5 @@
-//! A recording without a place in space: one coordinate, as a carriage on a rail or as a crank on its shaft. Their sizes are the picture's:
-//! the recording knows none. The rail is as long as the way that was recorded.
+//! A recording of one coordinate without a position in space, shown as a carriage on a rail or as a crank on its shaft.
+//! The sizes are chosen for the picture, since the recording has none. The rail is as long as the recorded travel.
 
 use crate::ui::format;
 use crate::ui::plots::{decimals, marks};
@@ -19,27 +19,27 @@ const CARRIAGE_M: [f64; 2] = [0.014, 0.010];
 const ABOVE_TABLE_M: f64 = 0.018;
 /// Length of the arrow of the largest force, m.
 const ARROW_M: f64 = 0.022;
-/// About so many steps between the numbers along the rail.
+/// Approximate number of steps between the numbers along the rail.
 const NUMBERS: f64 = 5.0;
 
 /// One coordinate at the cursor.
 pub struct Mechanism {
-    /// What carries it in the picture.
+    /// World with the carriage or crank of the picture.
     pub world: Arc<World>,
-    /// With the coordinate in it.
+    /// State at the coordinate.
     pub state: State,
-    /// With the force in it.
+    /// View options with the force arrow.
     pub options: ViewOptions,
-    /// All of it.
+    /// Camera that shows everything.
     pub camera: Camera,
-    /// The force in words.
+    /// Force as text.
     force: Option<String>,
-    /// Numbers along the rail: where, and what.
+    /// Numbers along the rail: position and text.
     numbers: Vec<(Vec2, String)>,
 }
 
 impl Mechanism {
-    /// `None` where the recording has no coordinate.
+    /// Mechanism at the cursor; `None` if the recording has no coordinate.
     pub fn of(prepared: &Prepared, cursor_s: f64) -> Option<Self> {
         let recording = &prepared.recording;
         let sample = prepared.sample_at(cursor_s);
@@ -108,7 +108,7 @@ impl Mechanism {
         }
     }
 
-    /// Numbers along the rail, and the force; over the picture, drawn by `camera` at `size` pixels.
+    /// Draws the numbers along the rail and the force over the picture, which `camera` shows at `size` pixels.
     pub fn write_over(&self, ui: &Ui, rect: Rect, camera: &Camera, size: [u32; 2]) {
         let p = palette(ui);
         let painter = ui.painter().with_clip_rect(rect);
@@ -117,7 +117,7 @@ impl Mechanism {
             let pixel = camera.pixel_of(*at, size) / ui.pixels_per_point();
             let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(11.5), p.secondary);
             let at = rect.min + egui::vec2(pixel.x - 0.5 * galley.size().x, pixel.y);
-            // Where they stand close, every second or third is enough.
+            // Numbers close together are thinned: every second or third is enough.
             if at.x > last + space::S && rect.contains_rect(Rect::from_min_size(at, galley.size())) {
                 last = at.x + galley.size().x;
                 painter.galley(at, galley, p.secondary);
@@ -134,7 +134,7 @@ fn most(values: &[f64]) -> f64 {
     values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |most, v| most.max(v.abs()))
 }
 
-/// Nobody holds it; the force is an arrow `along` from a point.
+/// View options without a hand; the force is an arrow `along` from a point.
 fn options(force: Option<(f64, f64)>, at_m: Vec2, along: Vec2) -> ViewOptions {
     let arrow = force.filter(|(now, most)| now.is_finite() && *most > 0.0).map(|(now, most)| ForceVector {
         at_m,

@@ -1,4 +1,5 @@
-//! What the 3-D view of a recording shows: the hand at the cursor, the world with its bodies, path, forces, constraints.
+//! Content of the 3-D view of a recording: the hand at the cursor, the world with its bodies, path, forces,
+//! constraints.
 
 use super::{markers, vectors};
 use crate::ui::prepare::Prepared;
@@ -8,7 +9,7 @@ use haptics::world::{State, World};
 use render::{Camera, ColorRole, ConstraintMarker, FingerStyle, Trajectory, ViewOptions};
 use std::sync::Arc;
 
-/// The world that stands behind a recording: the fitted one, else an empty table with the recording's hand.
+/// World of a recording: the fitted one, or an empty table with the recording's hand.
 pub fn scene_world(session: &Session, prepared: &Prepared) -> Arc<World> {
     if let Some(analysis) = &session.analysis
         && prepared.tips.is_some()
@@ -65,11 +66,11 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
     (state, options)
 }
 
-/// The hand as it would be on the virtual handle; nothing where the fingers do not turn a crank.
+/// Hand on the virtual handle; `None` where the fingers do not turn a crank.
 fn virtual_hand(state: &State, world: &World) -> Option<State> {
     let grasp = 0.5 * (state.input.tip_in_world[0] + state.input.tip_in_world[1]);
     let apart = state.handle_in_world(world)? - grasp;
-    // Fingers that are elsewhere do not hold it.
+    // Fingers elsewhere do not hold it.
     let holds = apart.norm() < world.crank.as_ref()?.handle_width_m;
     holds.then(|| {
         let mut ghost = state.clone();
@@ -80,7 +81,7 @@ fn virtual_hand(state: &State, world: &World) -> Option<State> {
     })
 }
 
-/// The camera that shows a recording whole, with a centre of rotation that is not far away.
+/// Camera that shows the whole recording, with a nearby centre of rotation.
 pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
     match bounds(prepared) {
         Some((mut low, mut high)) if prepared.tool.is_some() => {
@@ -92,7 +93,7 @@ pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
                     (low, high) = (low.inf(&center_m), high.sup(&center_m));
                 }
             }
-            // The switches lie over the upper edge.
+            // The switches cover the upper edge.
             high.y += 0.16 * (high - low).amax();
             let [low, high] = [low, high].map(|v| [v.x as f32, v.y as f32]);
             Camera { pitch_rad: 0.0, ..Camera::hand() }.framing(low.into(), high.into())
@@ -101,7 +102,7 @@ pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
     }
 }
 
-/// The rectangle around the path, m.
+/// Bounding rectangle of the path, m.
 pub fn bounds(prepared: &Prepared) -> Option<(Vec2, Vec2)> {
     let points = prepared.path_samples.iter().filter_map(|i| prepared.point_at(*i));
     points.fold(None, |so_far, p| {
@@ -110,7 +111,7 @@ pub fn bounds(prepared: &Prepared) -> Option<(Vec2, Vec2)> {
     })
 }
 
-/// Arrows of the usual force are a seventh of the path's extent.
+/// Scale of force arrows: the typical force is a seventh of the path's extent.
 pub fn force_scale(prepared: &Prepared) -> f32 {
     let extent = bounds(prepared).map_or(0.1, |(low, high)| (high - low).amax()).max(0.01);
     let mut sizes: Vec<f64> =
@@ -126,7 +127,7 @@ pub fn window(session: &Session, prepared: &Prepared) -> Vec<usize> {
     prepared.path_samples.iter().filter(visible).copied().collect()
 }
 
-/// Each finger has a path of its own; one that turns a crank goes where the other goes.
+/// True if each finger has a path of its own; fingers on a crank share one.
 pub fn follows_fingers(session: &Session, prepared: &Prepared) -> bool {
     let turns = session.analysis.as_ref().is_some_and(|a| a.world.crank.is_some());
     prepared.tips.is_some() && !turns

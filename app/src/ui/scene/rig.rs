@@ -1,10 +1,11 @@
-//! The camera as a hand on rails: it is told where to go and gets there in a moment, without a jerk.
+//! Camera that eases to its goal within a moment, without a jerk.
 
 use render::Camera;
 
-/// Time after which a third of the way is left, s: quick enough to feel direct, slow enough to be followed by the eye.
+/// Time constant of the motion, s: a third of the distance remains after it. Short enough to feel direct, long enough
+/// for the eye to follow.
 const LAG_S: f32 = 0.07;
-/// The share of a movement that is not worth a further picture.
+/// Share of a movement below which no further frame is drawn.
 const ARRIVED: f32 = 2e-3;
 
 /// A camera that eases to its goal.
@@ -13,42 +14,42 @@ pub struct Rig {
     shown: Camera,
     goal: Camera,
     home: Camera,
-    /// The mouse button that turns it.
+    /// Mouse button that rotates it.
     pub turned_by: egui::PointerButton,
 }
 
 impl Rig {
-    /// At rest at `home`.
+    /// Camera at rest at `home`.
     pub fn new(home: Camera) -> Self {
         Self { shown: home, goal: home, home, turned_by: egui::PointerButton::Secondary }
     }
 
-    /// What the picture is drawn with now.
+    /// Camera of the current frame.
     pub fn shown(&self) -> Camera {
         self.shown
     }
 
-    /// Where it goes.
+    /// Goal of the motion.
     pub fn goal(&mut self) -> &mut Camera {
         &mut self.goal
     }
 
-    /// Where it returns to.
+    /// True if the goal is the home position.
     pub fn is_home(&self) -> bool {
         self.goal == self.home
     }
 
-    /// Goes back.
+    /// Starts the return to the home position.
     pub fn go_home(&mut self) {
         self.goal = self.home;
     }
 
-    /// Another thing is shown: without a flight.
+    /// Jumps to the home position of another subject.
     pub fn cut_to(&mut self, home: Camera) {
         *self = Self::new(home);
     }
 
-    /// Home has changed; a camera that is there goes along, one that was moved stays.
+    /// Moves the home position; a camera at home follows, one that was moved stays.
     pub fn move_home(&mut self, home: Camera) {
         if self.is_home() {
             self.goal = home;
@@ -56,7 +57,7 @@ impl Rig {
         self.home = home;
     }
 
-    /// Lets `seconds` pass; true while it moves.
+    /// Advances by `seconds`; true while it moves.
     pub fn advance(&mut self, seconds: f32) -> bool {
         if self.shown == self.goal {
             return false;

@@ -1,5 +1,5 @@
-//! Force vectors along the path: what the hand exerted (thesis, figure 5.10), and what of it only a constraint explains
-//! (figure 5.12).
+//! Force vectors along the path: the force of the hand (thesis, figure 5.10), and the part of it that only a constraint
+//! explains (figure 5.12).
 
 use super::overlay::window;
 use crate::ui::prepare::Prepared;
@@ -7,10 +7,10 @@ use crate::ui::session::Session;
 use haptics::Vec2;
 use render::{ColorRole, ConstraintMarker, ForceVector};
 
-/// Force vectors drawn along a path.
+/// Number of force vectors drawn along a path.
 const VECTORS: usize = 48;
 
-/// The net force of the hand, every so often.
+/// Net force of the hand, at even intervals.
 pub fn net(session: &Session, prepared: &Prepared) -> Vec<ForceVector> {
     let vector = |i: usize| {
         Some(ForceVector { at_m: prepared.point_at(i)?, force_n: prepared.force_at(i)?, role: ColorRole::Measured })
@@ -18,8 +18,8 @@ pub fn net(session: &Session, prepared: &Prepared) -> Vec<ForceVector> {
     thinned(session, prepared).into_iter().filter_map(vector).collect()
 }
 
-/// What a model of weight and friction does not explain of it. Where a constraint is known: its part across the motion, less
-/// the weight's (thesis, eq. 5.1). Else what the replay in the fitted world leaves.
+/// Residual of the net force after weight and friction. With a known constraint it is the part perpendicular to the
+/// motion, minus that of the weight (thesis, eq. 5.1); otherwise it is the residual of the replay in the fitted world.
 pub fn unexplained(session: &Session, prepared: &Prepared, marker: Option<&ConstraintMarker>) -> Vec<ForceVector> {
     let weight_n = session.analysis.as_ref().and_then(|a| a.fit.value("crank", "weight_N")).unwrap_or(0.0);
     let vector = |i: usize| {
@@ -39,7 +39,7 @@ fn thinned(session: &Session, prepared: &Prepared) -> Vec<usize> {
     samples.into_iter().step_by(every).collect()
 }
 
-/// Unit vector across the motion that a constraint allows.
+/// Unit vector perpendicular to the motion that a constraint allows.
 fn normal_at(marker: &ConstraintMarker, at: Vec2) -> Option<Vec2> {
     let across = |v: Vec2| Vec2::new(-v.y, v.x);
     let direction = match marker {
@@ -55,14 +55,14 @@ fn normal_at(marker: &ConstraintMarker, at: Vec2) -> Option<Vec2> {
     direction.try_normalize(1e-12)
 }
 
-/// The force of the replay at a sample: both fingers together, or the tool.
+/// Simulated force at a sample: both fingers together, or the tool.
 fn predicted(session: &Session, sample: usize) -> Option<Vec2> {
     let fingers = tips(session, sample);
     let one = || Some(Vec2::new(channel(session, "fx_N", sample)?, channel(session, "fy_N", sample)?));
     fingers.map(|[a, b]| a + b).or_else(one)
 }
 
-/// The replay's force of each finger at a sample, N.
+/// Simulated force of each finger at a sample, N.
 pub fn tips(session: &Session, sample: usize) -> Option<[Vec2; 2]> {
     let of = |x: &str, y: &str| Some(Vec2::new(channel(session, x, sample)?, channel(session, y, sample)?));
     Some([of("fx1_N", "fy1_N")?, of("fx2_N", "fy2_N")?])

@@ -9,30 +9,30 @@ use haptics::world::{State, World};
 use render::{Camera, ViewOptions};
 use std::sync::Arc;
 
-/// Radians of orbit a point of drag.
+/// Orbit per point of drag, rad.
 const ORBIT_RAD: f32 = 0.006;
-/// Turning by a held key, rad/s, and magnification in a second.
+/// Rotation rate of a held key, rad/s, and its magnification rate, 1/s.
 const KEY_RAD_S: f32 = 1.2;
 const KEY_ZOOM: f32 = 2.6;
 
-/// What a screen reader says of the picture.
+/// Description of the picture for a screen reader.
 const SPOKEN: &str = "Scene in space. W, A, S and D turn it, Q and E magnify, 0 brings it back.";
 
-/// What happened in the view.
+/// Result of the view.
 pub struct SceneResponse {
-    /// The whole picture.
+    /// Response of the whole picture.
     pub response: Response,
-    /// Where it is, points.
+    /// Rectangle of the picture, points.
     pub rect: Rect,
     /// Its size, pixels.
     pub size: [u32; 2],
-    /// The camera that the picture was drawn with.
+    /// Camera of the drawn picture.
     pub camera: Camera,
     /// True while the camera is being moved.
     pub camera_moves: bool,
 }
 
-/// Where the world's plane is in the window.
+/// Projection of the world's plane into the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     rect: Rect,
@@ -42,7 +42,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// A point of the plane, in points of the window.
+    /// Position of a point of the plane in the window, points.
     pub fn at(&self, point_in_world: haptics::Vec2) -> egui::Pos2 {
         let pixel = self.camera.pixel_of(point_in_world, self.size);
         self.rect.min + egui::vec2(pixel.x, pixel.y) / self.pixels_per_point
@@ -50,30 +50,30 @@ impl Place {
 }
 
 impl SceneResponse {
-    /// Where the picture shows the plane.
+    /// Projection of the plane in this picture.
     pub fn place(&self, ui: &egui::Ui) -> Place {
         let pixels_per_point = ui.pixels_per_point();
         Place { rect: self.rect, size: self.size, camera: self.camera, pixels_per_point }
     }
 
-    /// The point of the world's plane under a position of the pointer.
+    /// Point of the world's plane under a pointer position.
     pub fn point_in_world(&self, ui: &egui::Ui, position: egui::Pos2) -> Option<haptics::Vec2> {
         let offset = (position - self.rect.min) * ui.pixels_per_point();
         self.camera.point_in_plane([offset.x, offset.y].into(), self.size)
     }
 }
 
-/// Whether the plain wheel magnifies, or only together with Ctrl.
+/// Role of the wheel without Ctrl.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Wheel {
     /// The wheel magnifies.
     Zooms,
-    /// The wheel is used otherwise; with Ctrl it magnifies.
+    /// The wheel zooms with Ctrl only; without it, it has another use.
     ZoomsWithCtrl,
 }
 
-/// Draws the scene into all the room there is. Right drag turns, middle drag moves, wheel magnifies; so do the keys W A S D, Q and E
-/// while the pointer is over the picture or it has the focus.
+/// Draws the scene into the available space. Right drag orbits, middle drag pans, the wheel zooms. The keys W A S D, Q
+/// and E do so, too, while the pointer is over the picture or it has the focus.
 pub fn scene_view(
     ui: &mut egui::Ui,
     view: &'static str,
@@ -132,10 +132,10 @@ fn steer(ui: &egui::Ui, response: &Response, rig: &mut Rig, wheel: Wheel, size: 
     moves
 }
 
-/// Held keys turn and magnify evenly.
+/// Rotates and zooms at a constant rate while keys are held.
 fn by_keys(ui: &egui::Ui, camera: &mut Camera) {
     let (held, seconds) = ui.input(|i| {
-        // With Ctrl or Alt they mean something else.
+        // With Ctrl or Alt the keys have another meaning.
         let plain = !i.modifiers.any() || i.modifiers.shift_only();
         let held = |key| f32::from(u8::from(plain && i.key_down(key)));
         let pairs = [(Key::D, Key::A), (Key::W, Key::S), (Key::E, Key::Q)];
@@ -149,7 +149,7 @@ fn by_keys(ui: &egui::Ui, camera: &mut Camera) {
     }
 }
 
-/// A picture is square; the card around it is not.
+/// Rounds the corners of the square picture to match its card.
 fn round_corners(ui: &egui::Ui, rect: Rect) {
     let p = palette(ui);
     let painter = ui.painter().with_clip_rect(rect.expand(1.0));

@@ -1,15 +1,15 @@
-//! Which world is touched.
+//! Choice of the world in the trainer.
 
 use super::Trainer;
 use haptics::world::{World, presets};
 
-/// Which world is touched.
+/// World in the trainer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WorldChoice {
-    /// Two blocks to be unstacked and restacked.
+    /// Two blocks to unstack and restack.
     #[default]
     Blocks,
-    /// A crank to be turned.
+    /// A crank to turn.
     Crank,
     /// A needle on a paper cup.
     Needle,
@@ -19,37 +19,37 @@ pub enum WorldChoice {
     Switch,
     /// A bare table.
     Table,
-    /// The world that was measured from the log.
+    /// The world calibrated from the log.
     Calibrated,
     /// A world from a file.
     File,
-    /// The model that was diagnosed.
+    /// The base model of a diagnosis.
     Before,
-    /// The same with what was found.
+    /// The extended model of a diagnosis.
     After,
 }
 
-/// Two worlds that differ in their laws alone, to be felt by turns.
+/// Two worlds that differ in their laws alone, to be felt alternately.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
-    /// The model that was diagnosed.
+    /// World of the base model.
     pub before: World,
-    /// The same with what was found.
+    /// World of the extended model.
     pub after: World,
 }
 
 impl WorldChoice {
-    /// One of two worlds that differ in their laws alone.
+    /// True for the base and the extended world, which differ in their laws alone.
     fn is_compared(self) -> bool {
         matches!(self, Self::Before | Self::After)
     }
 
-    /// True when everything can stay where it is on the way to another choice.
+    /// True if the state can be kept on a change to another choice.
     pub(super) fn goes_on_to(self, other: Self) -> bool {
         self != other && self.is_compared() && other.is_compared()
     }
 
-    /// The built-in world that this one is, if it is one.
+    /// Choice of a built-in world; `None` for others.
     pub fn of(world: &World) -> Option<Self> {
         let built_in = [Self::Blocks, Self::Crank, Self::Needle, Self::Barrel, Self::Switch, Self::Table];
         let nothing_else = Trainer::default();
@@ -58,12 +58,12 @@ impl WorldChoice {
 }
 
 impl Trainer {
-    /// The world that is touched, or would be.
+    /// World in the running trainer, or the one that a start would use.
     pub fn standing_world(&self) -> World {
         self.scene().map_or_else(|| self.world_of(self.choice), |(_, world)| (**world).clone())
     }
 
-    /// The world of a choice; the blocks where the choice has none.
+    /// World of a choice; the blocks if it is not available.
     pub(super) fn world_of(&self, choice: WorldChoice) -> World {
         match choice {
             WorldChoice::Blocks => presets::stacking(),

@@ -1,4 +1,4 @@
-//! A slow line between the operator and the world: what it is, and what is seen over it.
+//! Link latency between the operator and the world: its settings, and the view of the operator over the link.
 
 use super::{Operator, Trainer};
 use crate::ui::session::sentence;
@@ -9,13 +9,14 @@ use haptics::teleop::{self, Delay, Ends, View};
 use haptics::world::State;
 
 impl Trainer {
-    /// The line between the operator and the world.
+    /// Link between the operator and the world.
     pub fn delay(&self) -> Delay {
         self.delay
     }
 
-    /// Puts another line between the operator and the world, or none. A running servo is started anew; the world stays as it is,
-    /// and the scripted operator starts over. Impossible lines are refused in a sentence, and the one before stays.
+    /// Sets the link between the operator and the world, or removes it. A running servo restarts; the world keeps its
+    /// state, and the scripted operator starts over. An invalid link is rejected with a sentence, and the previous one
+    /// stays.
     pub fn set_delay(&mut self, delay: Delay) -> Result<(), String> {
         delay.check().map_err(|error| sentence(&error.to_string()))?;
         if delay == self.delay {
@@ -32,7 +33,7 @@ impl Trainer {
         }
     }
 
-    /// Puts the line before a device, where there is one.
+    /// Puts the link before a device, if there is one.
     pub(super) fn connect(&mut self, device: Box<dyn Device>, swap: &Swap) -> Result<Box<dyn Device>, String> {
         (self.view, self.knocked) = (None, 0);
         if self.delay.is_none() {
@@ -45,7 +46,7 @@ impl Trainer {
             state: &swap.state,
             guess: Some(&guess),
             limits: ServoConfig::default().limits,
-            // For the slowest rate: a damper that is enough there is enough at every faster one.
+            // For the slowest rate: a damper that is sufficient there is sufficient at every faster one.
             period_s: 1.0 / SAFE_HZ,
             seed,
         };
@@ -54,12 +55,12 @@ impl Trainer {
         Ok(device)
     }
 
-    /// What the operator sees over the line; `None` without one.
+    /// View of the operator over the link; `None` without a link.
     pub fn view(&self) -> Option<&View> {
         self.view.as_ref().map(teleop::ViewSource::last)
     }
 
-    /// Takes in what the operator can know by now: forces and impacts of every tick, or over a line what is seen over it.
+    /// Updates the operator's knowledge: forces and impacts of every tick, or the delayed view over a link.
     pub(super) fn look(&mut self, frame_s: f64) {
         let Some(view) = &mut self.view else {
             self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
@@ -73,19 +74,19 @@ impl Trainer {
         self.history.extend(seen.as_slice());
     }
 
-    /// An impact that was not seen yet, as a tick.
+    /// Tick of an impact that was not yet shown.
     fn take_knock(&mut self) -> Option<TickRecord> {
         let knock = self.view().map(|view| view.knock).filter(|knock| knock.number != self.knocked)?;
         self.knocked = knock.number;
         Some(TickRecord { impact_m_s: knock.speed_m_s, impact_in_world: knock.at_in_world, ..TickRecord::default() })
     }
 
-    /// What is under the operator's hand as far as the operator can know: the world itself, the model of it, or the late picture.
+    /// State of the world as the operator knows it: the world itself, its model, or the delayed view.
     pub fn seen(&self) -> Option<&State> {
         self.view().map(|view| &view.here).or(self.newest.as_ref().map(|newest| &newest.state))
     }
 
-    /// The newest tick as the operator knows it.
+    /// Newest tick as the operator knows it.
     pub fn seen_tick(&self) -> Option<TickRecord> {
         let tick = self.newest.as_ref()?.tick;
         let Some(View { here, .. }) = self.view() else { return Some(tick) };

@@ -1,4 +1,4 @@
-//! The servo on its thread, or the same loop stepped by hand for tests and pictures.
+//! The servo on its thread, or the same loop stepped manually for tests and screenshots.
 
 use haptics::Vec2;
 use haptics::device::Device;
@@ -7,15 +7,15 @@ use haptics::servo::safety::Limits;
 use haptics::servo::tap::{TapFiller, TapSource, tap};
 use haptics::servo::{Loop, Privileges, Servo, ServoConfig, Snapshot, Swap, TickRecord};
 
-/// Where ticks come from.
+/// Source of the ticks.
 pub enum Engine {
     /// The real-time thread.
     Thread(Box<Servo>),
-    /// The same loop, stepped when told to.
+    /// The same loop, stepped on demand.
     Inline(Box<Inline>),
 }
 
-/// Ticks that wait for a recorder beside a manual loop, which waits for it in turn.
+/// Capacity of the tap beside a manual loop, ticks; the loop waits for the recorder.
 const TAP_TICKS: usize = 4096;
 
 /// The servo's loop without a thread.
@@ -36,10 +36,11 @@ impl Engine {
         servo.map(|s| Self::Thread(Box::new(s))).map_err(|e| crate::ui::session::sentence(&e.to_string()))
     }
 
-    /// Makes a loop that waits to be stepped.
+    /// Creates a loop that is stepped on demand.
     pub fn inline(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Self {
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
-        // Without a clock of its own there is nothing to measure: always the nominal rate, so that runs can be repeated.
+        // Without a clock of its own there is nothing to measure: always the nominal rate, so that runs are
+        // reproducible.
         let rate = RateReport { rate_hz: config.rate.nominal_hz(), ..RateReport::default() };
         let snapshot = Snapshot::starting(&swap, rate);
         let body = Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m);
@@ -63,7 +64,7 @@ impl Engine {
         }
     }
 
-    /// Where a recorder gets every tick.
+    /// Tap through which a recorder gets every tick.
     pub fn tap(&self) -> &TapSource {
         match self {
             Self::Thread(servo) => servo.tap(),
@@ -71,7 +72,7 @@ impl Engine {
         }
     }
 
-    /// Puts another world in; false when it could not be taken.
+    /// Swaps the world; false if the swap was not accepted.
     pub fn swap(&mut self, next: Box<Swap>) -> bool {
         match self {
             Self::Thread(servo) => servo.swap(next).is_ok(),
@@ -83,7 +84,7 @@ impl Engine {
         }
     }
 
-    /// Pushes with a small force instead of the world's, N on the operator's fingers; `None` ends it.
+    /// Renders a small test force in place of the world's, N on the operator's fingers; `None` ends it.
     pub fn test_force(&mut self, wanted_n: Option<[Vec2; 2]>) {
         match self {
             Self::Thread(servo) => servo.test_force(wanted_n),
@@ -91,7 +92,7 @@ impl Engine {
         }
     }
 
-    /// Holds the world still, or lets it go on; the force goes, and comes back softly.
+    /// Pauses or resumes the world; the force drops to zero and returns gradually.
     pub fn hold(&mut self, held: bool) {
         match self {
             Self::Thread(servo) => servo.hold(held),
@@ -99,14 +100,14 @@ impl Engine {
         }
     }
 
-    /// Steps a manual loop; the thread needs no help.
+    /// Steps a manual loop by `seconds`; the thread needs no help.
     pub fn advance(&mut self, seconds: f64) {
         if let Self::Inline(inline) = self {
             inline.advance(seconds);
         }
     }
 
-    /// What the system granted; `None` without a thread.
+    /// Privileges granted by the system; `None` without a thread.
     pub fn privileges(&self) -> Option<Privileges> {
         match self {
             Self::Thread(servo) => Some(servo.privileges()),
@@ -131,13 +132,13 @@ impl Inline {
             self.owed_s -= period_s;
             let tick = self.body.tick(period_s);
             if self.body.is_held() {
-                // It has no time: nothing of it is recorded.
+                // The world is paused: nothing is recorded.
                 self.snapshot.tick = tick;
                 continue;
             }
             self.ticks.push(tick);
             while self.tap_in.must_wait() {
-                // Many times real time, without a device: there is nobody who could feel it.
+                // Many times real time, without a device: nobody can feel it.
                 std::thread::sleep(std::time::Duration::from_millis(1));
             }
             self.tap_in.offer(tick);

@@ -1,4 +1,4 @@
-//! Which device moves the fingers, and how it is made.
+//! Devices that move the fingers, and their construction.
 
 use super::{Pinch, Remote};
 use haptics::Vec2;
@@ -11,17 +11,17 @@ use haptics::recording::Recording;
 use haptics::world::{State, World};
 use std::sync::Arc;
 
-/// A device that a person, a log or another machine moves the fingers with.
+/// Device by which a person, a log or another machine moves the fingers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum HandDevice {
     /// Both fingers with one pointer.
     #[default]
     Mouse,
-    /// One finger a touch.
+    /// One finger per touch.
     Touch,
-    /// Keys that are held.
+    /// Held keys.
     Keyboard,
-    /// The log that is open in Calibrate.
+    /// The log opened in Calibrate.
     Replay,
     /// Two boards, by the names of their ports: left, right.
     Haply(String, String),
@@ -32,19 +32,19 @@ pub enum HandDevice {
     Gamepad,
 }
 
-/// What a device needs to know that is not in the world.
+/// Device settings that are not part of the world.
 #[derive(Default)]
 pub struct HandSettings {
     /// The log to replay.
     pub log: Option<Arc<Recording>>,
-    /// What is known of the remote device.
+    /// Settings of the remote device.
     pub remote: Remote,
 }
 
-/// The window's end of the running device.
+/// Window side of the running device.
 #[derive(Default)]
 pub enum Steering {
-    /// Nothing that the window could steer.
+    /// Nothing to steer.
     #[default]
     None,
     /// The pointer's goal.
@@ -57,16 +57,16 @@ pub enum Steering {
     Haply([Tally; 2]),
     /// Packet counters.
     Udp(UdpMonitor),
-    /// The thread that reads the pad, as long as it is held here.
+    /// Thread that reads the gamepad; it runs as long as this value lives.
     #[cfg(feature = "gamepad")]
     Gamepad(haptics::device::gamepad::GamepadThread),
 }
 
-/// A device, and the window's end of it.
+/// Device with its window side.
 pub type Made = (Box<dyn Device>, Steering);
 
 impl HandDevice {
-    /// Makes the device, its fingers where the state has them. The error is one sentence.
+    /// Creates the device, with its fingers at the positions of `state`. The error is one sentence.
     pub fn make(&self, world: &World, state: &mut State, settings: &HandSettings) -> Result<Made, String> {
         let tips = state.input.tip_in_world;
         let workspace = world.hand.workspace;
@@ -111,7 +111,7 @@ impl HandDevice {
         }
     }
 
-    /// Its name on the page and beside the trainer.
+    /// Name on the page and beside the trainer.
     pub fn title(&self) -> String {
         match self {
             Self::Mouse => "Mouse".to_owned(),
@@ -125,7 +125,7 @@ impl HandDevice {
         }
     }
 
-    /// One sentence for those who have never seen it.
+    /// One-sentence description for newcomers.
     pub fn sentence(&self) -> &'static str {
         match self {
             Self::Mouse => "One pointer moves both fingers, the button pinches; the force is shown, not felt.",
@@ -149,7 +149,7 @@ fn mouse_start(tips: [Vec2; 2]) -> MouseTarget {
 }
 
 impl Steering {
-    /// Hands the pointer's goal on, where there is a pointer.
+    /// Forwards the pointer's goal, if there is a pointer.
     pub fn follow(&mut self, pinch: &mut Pinch, tick: &haptics::servo::TickRecord, frame_s: f64) {
         if let Self::Mouse(handle) = self {
             handle.set(pinch.follow(tick, frame_s));
@@ -157,8 +157,8 @@ impl Steering {
     }
 }
 
-/// What the page says about a device in plain words; `waves`: it is behind a line with wave variables, and what the servo feels
-/// as its damping is that of the line.
+/// Description of a device in plain words, as label and sentence. With `waves` it is behind a link with wave variables,
+/// and the damping seen by the servo is that of the link.
 pub fn spec_sentences(spec: &DeviceSpec, waves: bool) -> Vec<(&'static str, String)> {
     use crate::ui::format::number;
     let unit = |value: f64, decimals: usize, unit: &str, none: &str| {

@@ -1,11 +1,11 @@
-//! What there is to be heard in a state: how fast something slips along a fingertip.
+//! Audible quantities of a state: slip speed along a fingertip.
 
 use haptics::world::{Contact, State, Surface};
 
-/// Lighter contacts make no sound, N.
+/// Minimum normal force of an audible contact, N.
 const LEAST_N: f64 = 0.02;
 
-/// The fastest slip of a finger along what it touches, m/s; 0 where nothing slips.
+/// Fastest slip of a finger along a contact, m/s; 0 without slip.
 pub fn slip_m_s(state: &State) -> f64 {
     let speed = |contact: &Contact| -> f64 {
         let ((Surface::Finger(finger), other) | (other, Surface::Finger(finger))) = (contact.on, contact.by) else {

@@ -1,11 +1,11 @@
-//! Forces of the last seconds, for the running curve.
+//! Forces of the last seconds, for the live curve.
 
 use haptics::servo::TickRecord;
 use std::collections::VecDeque;
 
-/// Seconds that are kept.
+/// Length of the history, s.
 pub const LENGTH_S: f64 = 8.0;
-/// One moment every so often, s.
+/// Interval between moments, s.
 const EVERY_S: f64 = 0.01;
 
 /// The forces of one moment.
@@ -26,7 +26,7 @@ pub struct History {
 }
 
 impl History {
-    /// Adds ticks; a clock that was set back (a new world) starts over.
+    /// Adds ticks; a clock that was reset (a new world) starts over.
     pub fn extend(&mut self, ticks: &[TickRecord]) {
         for tick in ticks {
             match self.moments.back() {
@@ -45,7 +45,7 @@ impl History {
         }
     }
 
-    /// Oldest first.
+    /// Moments, oldest first.
     pub fn moments(&self) -> impl Iterator<Item = &Moment> {
         self.moments.iter()
     }

@@ -1,69 +1,69 @@
-//! The world held still: the window lost the focus, or the device does not answer any more. Its clock stands, so no time counts, and the
-//! force on the fingers goes; when it goes on the force comes up slowly.
+//! Pause of the world, because the window lost the focus or the device stopped responding. Its clock stops, so no time
+//! counts, and the force on the fingers drops to zero. On resume the force rises slowly.
 
 use super::{Operator, Steering, Trainer};
 use crate::ui::trainer::HandDevice;
 use std::time::Instant;
 
-/// The key of the sidecar under which a recording says that it was held: how often, and for how long.
+/// Sidecar key under which a recording states its pauses: number and total duration.
 pub const PAUSED: &str = "paused";
-/// A device that is silent for so long is lost, s; one that answers within this time is back, s.
+/// Silence after which a device counts as lost, s; sample age below which it is back, s.
 const LOST_S: f64 = 0.5;
 const BACK_S: f64 = 0.1;
 
-/// Why the world stands still.
+/// Reason for the pause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// Another window has the keyboard and the mouse.
     Focus,
-    /// The device does not answer.
+    /// The device does not respond.
     Device,
 }
 
-/// What the trainer keeps about it.
+/// State of the pause in the trainer.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hold {
     since: Option<(Cause, Instant)>,
-    /// Of the running recording: how often and how long, s.
+    /// Number of pauses in the running recording, and their total duration, s.
     times: u32,
     seconds: f64,
     listening: Listening,
 }
 
-/// Whether a device of its own has answered, and still does.
+/// Responsiveness of the device: it has answered, and still does.
 #[derive(Clone, Copy, Debug, Default)]
 struct Listening {
-    /// For how long it was listened to, and how old its newest sample is, s.
+    /// Monitoring time, s, and age of the newest sample, s.
     for_s: f64,
     age_s: f64,
     answered: bool,
 }
 
 impl Listening {
-    /// A picture later; true when a device that has answered before is silent for too long.
+    /// Advances by a frame. Returns true if a device that has answered before is silent for too long.
     fn hear(&mut self, age_s: f64, frame_s: f64) -> bool {
         self.for_s += frame_s;
         self.age_s = age_s;
-        // What never answered is as old as the listening.
+        // Without any answer the sample age equals the monitoring time.
         self.answered |= self.for_s > BACK_S && age_s < 0.5 * self.for_s;
         self.answered && age_s > LOST_S
     }
 }
 
 impl Hold {
-    /// Another recording begins.
+    /// Resets the counters for another recording.
     pub(super) fn count_anew(&mut self) {
         (self.times, self.seconds) = (0, 0.0);
     }
 }
 
 impl Trainer {
-    /// Why the world stands still, if it does.
+    /// Reason for the pause; `None` while the world runs.
     pub fn held(&self) -> Option<Cause> {
         self.hold.since.map(|(cause, _)| cause)
     }
 
-    /// What is said about it, and what to do.
+    /// Message about the pause, and advice.
     pub fn held_words(&self) -> Option<(&'static str, &'static str)> {
         const GO_ON: &str = "Click here or press Space to go on.";
         Some(match self.held()? {
@@ -73,14 +73,14 @@ impl Trainer {
         })
     }
 
-    /// The window has lost the focus: a person's hand is not at the task any more.
+    /// Pauses because the window has lost the focus: the hand has left the task.
     pub fn lose_focus(&mut self) {
         if self.is_a_persons() {
             self.stand_still(Cause::Focus);
         }
     }
 
-    /// Goes on. A pinch that a button held is kept, until it is opened by the key or a button.
+    /// Resumes. A pinch held by a button is kept until the key or a button opens it.
     pub fn go_on(&mut self) {
         let Some((cause, since)) = self.hold.since else { return };
         if cause == Cause::Device && !self.device_is_back() {
@@ -95,7 +95,7 @@ impl Trainer {
         self.state_pauses();
     }
 
-    /// Whether a person moves the fingers, now.
+    /// True if a person moves the fingers now.
     fn is_a_persons(&self) -> bool {
         self.engine.is_some() && self.operator == Operator::You && self.hand != HandDevice::Replay
     }
@@ -112,7 +112,7 @@ impl Trainer {
         self.state_pauses();
     }
 
-    /// A recording says that it was held: who reads it need not guess why the hand jumped.
+    /// Stores the pauses in the recording, as an explanation for jumps of the hand.
     fn state_pauses(&mut self) {
         let (times, seconds) = (self.hold.times, (10.0 * self.hold.seconds).round() / 10.0);
         self.state_at_end(PAUSED, serde_json::json!({ "times": times, "seconds": seconds }));
@@ -122,7 +122,7 @@ impl Trainer {
         self.hold.listening.age_s < BACK_S
     }
 
-    /// Once a frame: sees when a device of its own falls silent.
+    /// Runs once per frame: pauses the world if a force-feedback device stops responding.
     pub(super) fn listen(&mut self, frame_s: f64) {
         let age_s = self.newest.as_ref().map_or(0.0, |snapshot| snapshot.timing.sample_age_s);
         let is_lost = self.hold.listening.hear(age_s, frame_s);
@@ -132,7 +132,7 @@ impl Trainer {
         }
     }
 
-    /// The engine ends or begins: nothing is held any more.
+    /// Clears the pause when the engine ends or starts.
     pub(super) fn hold_nothing(&mut self) {
         self.hold = Hold { times: self.hold.times, seconds: self.hold.seconds, ..Hold::default() };
     }
@@ -142,7 +142,7 @@ impl Trainer {
 mod tests {
     use super::*;
 
-    /// Hears a device of which the newest sample is so old in each picture; how many pictures say that it is lost.
+    /// Number of frames in which the device counts as lost, given the age of its newest sample in each frame.
     fn lost(ages_s: impl Iterator<Item = f64>) -> usize {
         let mut listening = Listening::default();
         ages_s.filter(|age_s| listening.hear(*age_s, 1.0 / 60.0)).count()

@@ -1,23 +1,23 @@
-//! Impacts of the last moment: a flash where something struck, the larger the faster.
+//! Recent impacts: a flash at each contact point, larger for faster impacts.
 
 use haptics::Vec2;
 use haptics::servo::TickRecord;
 
-/// How long a flash is seen, s.
+/// Duration of a flash, s.
 const LIFE_S: f64 = 0.3;
-/// Slower impacts are not shown, m/s.
+/// Minimum speed of a shown impact, m/s.
 const FAINTEST_M_S: f64 = 0.02;
-/// The speed whose flash is as large as it gets, m/s.
+/// Impact speed of a flash of maximum size, m/s.
 const FULL_M_S: f64 = 0.5;
-/// Impacts this near to a flash that has just begun belong to it, m.
+/// Distance within which an impact is merged into a flash that has just begun, m.
 const SAME_M: f64 = 0.004;
-/// At most so many at once.
+/// Maximum number of simultaneous flashes.
 const MOST: usize = 16;
 
 /// One flash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flash {
-    /// Where, m in the world.
+    /// Position, m in the world.
     pub at_in_world: Vec2,
     /// Speed of the impact, m/s.
     pub speed_m_s: f64,
@@ -25,25 +25,25 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// How strong, 0 … 1: by the root of the speed, so that a gentle touch is still seen.
+    /// Strength, 0 … 1: by the square root of the speed, so that a gentle touch is still visible.
     pub fn strength(&self) -> f64 {
         (self.speed_m_s / FULL_M_S).min(1.0).sqrt()
     }
 
-    /// How far it has faded, 0 … 1.
+    /// Fading, 0 … 1.
     pub fn faded(&self) -> f64 {
         (self.age_s / LIFE_S).min(1.0)
     }
 }
 
-/// The flashes that are seen now.
+/// Visible flashes.
 #[derive(Clone, Debug, Default)]
 pub struct Impacts {
     flashes: Vec<Flash>,
 }
 
 impl Impacts {
-    /// Takes in new ticks and lets the old flashes fade by a picture. Returns the fastest new impact, m/s.
+    /// Takes in new ticks and fades the old flashes by a frame. Returns the fastest new impact, m/s.
     pub fn update(&mut self, ticks: &[TickRecord], frame_s: f64) -> Option<f64> {
         for flash in &mut self.flashes {
             flash.age_s += frame_s;
@@ -68,7 +68,7 @@ impl Impacts {
         &self.flashes
     }
 
-    /// True while one is seen.
+    /// True while a flash is visible.
     pub fn any(&self) -> bool {
         !self.flashes.is_empty()
     }

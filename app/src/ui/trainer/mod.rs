@@ -41,7 +41,7 @@ use haptics::world::{State, World};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Who moves the fingers.
+/// Operator of the fingers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Operator {
     /// A person at a device, or a log.
@@ -51,91 +51,91 @@ pub enum Operator {
     Scripted,
 }
 
-/// How the servo is run.
+/// Clock of the servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
     /// On its own thread, in real time.
     #[default]
     RealTime,
-    /// Only when told to: tests and pictures.
+    /// Stepped on demand: tests and screenshots.
     Manual,
 }
 
-/// How the sensors of the virtual hand see what is recorded.
+/// Sensor model of the virtual hand in recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensors {
-    /// As good encoders and strain gauges do: to measure objects from.
+    /// Good encoders and strain gauges, to calibrate objects from.
     #[default]
     Usual,
-    /// As it is: to see again what happened.
+    /// Exact values, to review an attempt.
     Ideal,
 }
 
-/// Everything behind the trainer's panels.
+/// State and logic behind the trainer's panels.
 #[derive(Default)]
 pub struct Trainer {
-    /// How the servo is run.
+    /// Clock of the servo.
     pub clock: Clock,
-    /// Which world is touched.
+    /// World in the trainer.
     pub choice: WorldChoice,
-    /// Who moves the fingers.
+    /// Operator of the fingers.
     pub operator: Operator,
-    /// Which device moves them, unless the script does.
+    /// Device that moves the fingers, unless the script does.
     pub hand: HandDevice,
-    /// What devices need beside the world.
+    /// Device settings beside the world.
     pub settings: HandSettings,
-    /// The window's end of the running device.
+    /// Window side of the running device.
     pub steering: Steering,
-    /// How well the scripted operator does it, and what it does wrong.
+    /// Skill and mistakes of the scripted operator.
     pub script: Script,
     /// The force test.
     pub trial: Trial,
-    /// What the mouse does to the fingers.
+    /// Control of the fingers by the mouse.
     pub pinch: Pinch,
-    /// Impacts of the last moment.
+    /// Recent impacts.
     pub impacts: Impacts,
-    /// The fastest impact since the last picture, m/s: to be heard once.
+    /// Speed of the fastest impact since the last frame, m/s; its sound plays once.
     pub struck_m_s: Option<f64>,
     /// Forces of the last seconds.
     pub history: History,
-    /// What the hand has measured so far.
+    /// Live estimates of the objects.
     pub watch: Watch,
-    /// The calibrated world, when there is one.
+    /// Calibrated world, if there is one.
     pub calibrated: Option<World>,
-    /// The worlds before and after a diagnosis, when they are compared.
+    /// Base and extended world of a diagnosis, while they are compared.
     pub compare: Option<Compare>,
-    /// The world from a file, when there is one.
+    /// World from a file, if there is one.
     pub file: Option<World>,
     engine: Option<Engine>,
-    /// Most damping of the passivity controller, N s/m; `None`: off.
+    /// Maximum damping of the passivity controller, N s/m; `None` if it is off.
     control_n_s_m: Option<f64>,
     spec: Option<DeviceSpec>,
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
     newest: Option<Snapshot>,
-    /// How the sensors see what is recorded.
+    /// Sensor model of recordings.
     pub sensors: Sensors,
-    /// What recordings state of themselves.
+    /// Metadata for the sidecar of recordings.
     pub stated: Meta,
-    /// Where recordings go; absent: the user's folder for data.
+    /// Folder of recordings; `None` for the user's data folder.
     pub recordings_folder: Option<PathBuf>,
     recorder: Option<Recorder>,
     ended: Vec<Stopping>,
     scratch: Vec<TickRecord>,
     recordings_made: usize,
     performances: u64,
-    /// When each act of a told performance begins, s.
+    /// Start time of each act of a scripted performance, s.
     pub acts_begin_s: Vec<f64>,
     delay: Delay,
     hold: hold::Hold,
-    /// What the operator sees over a slow line.
+    /// View of the operator over a link with latency.
     view: Option<ViewSource>,
-    /// Number of the newest impact that was seen over it.
+    /// Number of the newest impact shown in that view.
     knocked: u64,
 }
 
 impl Trainer {
-    /// Starts the servo unless it runs; goes on where it was stopped.
+    /// Starts the servo unless it runs; continues from the paused state.
     pub fn ensure_running(&mut self) -> Result<(), String> {
         if self.engine.is_some() {
             return Ok(());
@@ -160,7 +160,7 @@ impl Trainer {
     fn start(&mut self, mut swap: Box<Swap>) -> Result<(), String> {
         swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
         self.end_recording();
-        // The old device first: a port can be open only once.
+        // The old device is closed first: a port can be open only once.
         self.engine = None;
         self.hold_nothing();
         self.steering = Steering::None;
@@ -168,7 +168,7 @@ impl Trainer {
         let Swap { world, state, .. } = &mut *swap;
         let (device, problem) = match self.device(world, state) {
             Ok(device) => (device, None),
-            // The mouse is always there; what is wrong with the other device is said.
+            // The mouse always works; the problem with the other device is reported.
             Err(problem) => {
                 self.hand = HandDevice::Mouse;
                 (self.device(world, state)?, Some(problem))
@@ -201,21 +201,21 @@ impl Trainer {
                 self.performances += 1;
                 let operator = self.script.operator(world, state, self.performances);
                 self.acts_begin_s = operator.acts_begin_s().to_vec();
-                // Over a slow line people move and wait.
+                // With link latency people use a move-and-wait strategy.
                 Ok(Box::new(if self.delay.is_none() { operator } else { operator.waiting() }))
             }
         }
     }
 
-    /// Hands the fingers to another device; the world stays as it is. When that device cannot be used, the mouse takes over and
-    /// the error says why.
+    /// Changes the device of the fingers; the world keeps its state. If that device cannot be used, the mouse takes
+    /// over and the error gives the reason.
     pub fn take_up(&mut self, hand: HandDevice) -> Result<(), String> {
         (self.operator, self.hand) = (Operator::You, hand);
         self.pause();
         self.ensure_running()
     }
 
-    /// What the running device can do.
+    /// Specification of the running device.
     pub fn spec(&self) -> Option<&DeviceSpec> {
         self.engine.as_ref().and(self.spec.as_ref())
     }
@@ -229,14 +229,14 @@ impl Trainer {
         self.trial.abort();
     }
 
-    /// Takes another world while the servo runs, without a bump; the scripted operator starts over. Between two worlds that differ in
-    /// their laws alone everything stays where it is and goes on, also the scripted operator.
+    /// Changes the world while the servo runs, without a jump in force; the scripted operator starts over. Between two
+    /// worlds that differ in their laws alone the state is kept, and the scripted operator continues.
     pub fn choose(&mut self, choice: WorldChoice) -> Result<(), String> {
         let goes_on = self.choice.goes_on_to(choice);
         self.choice = choice;
         let world = self.world_of(choice);
         let swap = if goes_on { Swap::going_on(world) } else { Swap::new(world) };
-        // A line's far end and near end know one world.
+        // Both ends of a link need the same world.
         let running = self.engine.is_some() && self.view.is_none() && (goes_on || self.operator == Operator::You);
         if !running {
             return self.restart();
@@ -256,7 +256,7 @@ impl Trainer {
         }
     }
 
-    /// Takes another operator; the world starts over.
+    /// Changes the operator; the world starts over.
     pub fn hand_to(&mut self, operator: Operator) -> Result<(), String> {
         self.operator = operator;
         self.restart()
@@ -295,14 +295,14 @@ impl Trainer {
         self.follow_recording();
     }
 
-    /// Runs a manual clock on without looking at what comes of it: the next [`Self::update`] does.
+    /// Advances a manual clock without processing the ticks: the next [`Self::update`] does.
     pub fn run_unseen(&mut self, seconds: f64) {
         if let Some(engine) = &mut self.engine {
             engine.advance(seconds);
         }
     }
 
-    /// Runs a manual clock on; the mouse's goal follows in steps of a picture.
+    /// Advances a manual clock; the mouse's goal follows in steps of a frame.
     pub fn advance(&mut self, seconds: f64) {
         const FRAME_S: f64 = 1.0 / 60.0;
         let mut left = seconds;
@@ -316,14 +316,14 @@ impl Trainer {
         }
     }
 
-    /// The newest state and the world it belongs to.
+    /// Newest state and its world.
     pub fn scene(&self) -> Option<(&Snapshot, &Arc<World>)> {
         let snapshot = self.newest.as_ref()?;
         let world = self.worlds.get(snapshot.generation as usize).or(self.worlds.last())?;
         (snapshot.state.bodies.len() == world.blocks.len()).then_some((snapshot, world))
     }
 
-    /// What the system granted to the servo thread.
+    /// Privileges granted to the servo thread.
     pub fn privileges(&self) -> Option<Privileges> {
         self.engine.as_ref()?.privileges()
     }
@@ -333,12 +333,12 @@ impl Trainer {
         self.engine.as_ref().map_or_else(ServoConfig::default, Engine::config)
     }
 
-    /// True once a script or a replay is done.
+    /// True once a script or a replay has ended.
     pub fn performance_over(&self) -> bool {
         self.engine.is_some() && self.newest.as_ref().is_some_and(|newest| newest.finished)
     }
 
-    /// True while pictures must follow each other quickly.
+    /// True while frames must follow each other quickly.
     pub fn is_moving(&self) -> bool {
         let Some(snapshot) = &self.newest else { return false };
         let fast = |v: &haptics::Vec2| v.norm() > 2e-4;

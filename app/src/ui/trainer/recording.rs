@@ -1,4 +1,4 @@
-//! Recording while training: starting it, following it, ending it. The ticks go to the disk past the window.
+//! Recording in the trainer: start, progress, end. The ticks go directly to the disk, not through the window.
 
 use super::{Engine, Sensors, Trainer};
 use crate::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, Stopping, folder};
@@ -6,7 +6,7 @@ use haptics::servo::recorder::SensorModel;
 use std::sync::Arc;
 
 impl Trainer {
-    /// Begins to write every tick to a file. Errors are one sentence; those of the disk come later, from
+    /// Starts to write every tick to a file. Errors are one sentence; those of the disk come later, from
     /// [`Self::take_ended_recording`].
     pub fn start_recording(&mut self) -> Result<(), String> {
         if self.is_recording() {
@@ -35,24 +35,24 @@ impl Trainer {
         Ok(())
     }
 
-    /// States something at the end of the running recording.
+    /// Adds a sidecar entry at the end of the running recording.
     pub fn state_at_end(&mut self, key: &str, value: serde_json::Value) {
         if let Some(recorder) = &self.recorder {
             recorder.state(key, value);
         }
     }
 
-    /// True while every tick is kept.
+    /// True while every tick is recorded.
     pub fn is_recording(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// How far the running recording is.
+    /// Progress of the running recording.
     pub fn recording_status(&self) -> Option<Status> {
         self.recorder.as_ref().map(Recorder::status)
     }
 
-    /// Ends the recording; its file gets its end in the background.
+    /// Ends the recording; its file is finished in the background.
     pub fn stop_recording(&mut self) -> Option<Stopping> {
         let facts = self.servo_facts();
         let recorder = self.recorder.take()?;
@@ -67,18 +67,18 @@ impl Trainer {
         }
     }
 
-    /// A recording that ended without being asked to: with its world or its servo, or because of the disk. It is told once.
+    /// Recording that ended by itself: with its world or its servo, or because of the disk. It is returned once.
     pub fn take_ended_recording(&mut self) -> Option<Stopping> {
         self.ended.pop()
     }
 
-    /// Ends the recording because what is recorded ends.
+    /// Ends the recording because its world or servo ends.
     pub(super) fn end_recording(&mut self) {
         let ended = self.stop_recording();
         self.ended.extend(ended);
     }
 
-    /// Once a frame: tells the recording how the servo keeps its time, and sees when it has ended by itself.
+    /// Runs once per frame: passes the servo's timing to the recording, and detects its end.
     pub(super) fn follow_recording(&mut self) {
         let facts = self.servo_facts();
         match &self.recorder {

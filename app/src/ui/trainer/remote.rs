@@ -1,4 +1,4 @@
-//! What has to be known of a remote device before its port is opened: the fields of the Devices page, checked.
+//! Settings of a remote device before its port is opened: the validated fields of the Devices page.
 
 use haptics::device::channel::Waves;
 use haptics::device::udp::{Key, PORT, UdpConfig};
@@ -7,34 +7,34 @@ use haptics::world::World;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 
-/// The most that a round trip may take, ms.
+/// Maximum round-trip time, ms.
 const MOST_ROUND_TRIP_MS: f64 = 5000.0;
-/// The most damping that a device may state, N s/m.
+/// Maximum damping that a device may state, N s/m.
 const MOST_DAMPING_N_S_M: f64 = 1000.0;
 
-/// The fields, as they were typed. Empty ones mean the usual: this machine only, nothing stated.
+/// Fields as typed. Empty ones mean the default: this machine only, nothing stated.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remote {
     /// File with the shared key.
     pub key: String,
-    /// Address of this machine to listen at, with or without a port.
+    /// Local address to listen on, with or without a port.
     pub address: String,
     /// The device's own damping, N s/m.
     pub damping: String,
     /// Time from here to the device and back, ms.
     pub round_trip: String,
-    /// Wave variables in the packets in place of positions and forces.
+    /// True if the packets carry wave variables in place of positions and forces.
     pub waves: bool,
 }
 
 impl Remote {
-    /// The device's configuration; the error is one sentence about the field that is wrong.
+    /// Device configuration; the error is one sentence about the invalid field.
     pub fn config(&self, world: &World) -> Result<UdpConfig, String> {
         let path = self.key.trim();
         if path.is_empty() {
             return Err("A remote device needs a key: name a file with 64 hexadecimal digits.".to_owned());
         }
-        // What was typed is checked before the disk is asked.
+        // Typed values are checked before the key is read from the disk.
         let listen = listen(self.address.trim())?;
         let damping_n_s_m = figure(&self.damping, MOST_DAMPING_N_S_M, "damping", "N s/m, like 0.5")?;
         let round_trip_ms = figure(&self.round_trip, MOST_ROUND_TRIP_MS, "round trip", "ms, like 12")?;
@@ -43,12 +43,12 @@ impl Remote {
         config.listen = listen;
         config.spec.damping_n_s_m = damping_n_s_m;
         config.delay_s = 1e-3 * round_trip_ms;
-        // For the slowest rate: a damper that is enough there is enough at every faster one.
+        // For the slowest rate: a damper that is sufficient there is sufficient at every faster one.
         config.waves = self.waves.then(|| Waves::new(&config.spec, world, 1.0 / SAFE_HZ));
         Ok(config)
     }
 
-    /// What is wrong with the fields beside the key, for a line below them; `None` when nothing is.
+    /// Problem of the fields other than the key, for a line below them; `None` if they are valid.
     pub fn problem(&self) -> Option<String> {
         let listen = listen(self.address.trim()).map(drop);
         let damping = figure(&self.damping, MOST_DAMPING_N_S_M, "damping", "N s/m, like 0.5").map(drop);
@@ -57,7 +57,7 @@ impl Remote {
     }
 }
 
-/// Where to listen: nothing is this machine at the usual port.
+/// Address to listen on; an empty text is this machine at the default port.
 pub fn listen(address: &str) -> Result<SocketAddr, String> {
     if address.is_empty() {
         return Ok(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)));
@@ -68,7 +68,7 @@ pub fn listen(address: &str) -> Result<SocketAddr, String> {
     })
 }
 
-/// A number of 0 to `most`; nothing is 0.
+/// Number from 0 to `most`; an empty text is 0.
 pub fn figure(text: &str, most: f64, what: &str, how: &str) -> Result<f64, String> {
     let text = text.trim();
     if text.is_empty() {

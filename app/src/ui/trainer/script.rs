@@ -1,18 +1,18 @@
-//! The scripted operator as it was chosen: a level of skill, and what it does wrong on purpose.
+//! The chosen scripted operator: a skill level, and deliberate mistakes.
 
 use crate::operator;
 use haptics::device::{Act, Mistake, ScriptedOperator, Skill};
 use haptics::world::{State, World};
 use std::sync::Arc;
 
-/// How well the scripted operator does it, and what it does wrong.
+/// Skill and mistakes of the scripted operator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
-    /// The level by its name in [`operator::LEVELS`].
+    /// Name of the level in [`operator::LEVELS`].
     pub level: &'static str,
-    /// The deliberate mistake; left out in worlds that give no occasion for it.
+    /// Deliberate mistake; ignored in worlds without an opportunity for it.
     pub mistake: Option<Mistake>,
-    /// What it is told to do, as an expert; nothing: the task of the world.
+    /// Acts that it performs as an expert; `None` for the task of the world.
     pub acts: Option<Arc<[Act]>>,
 }
 
@@ -23,7 +23,7 @@ impl Default for Script {
 }
 
 impl Script {
-    /// The mistake that will be made in this world.
+    /// Mistake that will be made in this world.
     pub fn mistake_in(&self, world: &World) -> Option<Mistake> {
         self.mistake.filter(|mistake| operator::mistakes_in(world).contains(mistake))
     }

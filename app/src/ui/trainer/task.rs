@@ -1,8 +1,8 @@
-//! What there is to do in a world, in one line.
+//! The task of a world, in one line.
 
 use haptics::world::{Shape, World};
 
-/// One sentence about the first of crank, sheet, switch, barrel and blocks that stands in the world.
+/// One sentence about the first of crank, membrane, switch, barrel and blocks in the world.
 pub fn task_hint(world: &World) -> &'static str {
     let has = |shape: Shape| world.blocks.iter().any(|block| block.shape == shape);
     if world.crank.is_some() {

@@ -9,7 +9,7 @@ fn manual() -> Trainer {
     trainer
 }
 
-/// Moves the pointer in a straight line, as a person would.
+/// Moves the pointer in a straight line, like a person.
 fn drag(trainer: &mut Trainer, from: Vec2, to: Vec2, seconds: f64) {
     let steps = (seconds * 60.0) as usize;
     for step in 1..=steps {
@@ -22,7 +22,7 @@ fn body(trainer: &Trainer, index: usize) -> Vec2 {
     trainer.scene().expect("running").0.state.bodies[index].center_m
 }
 
-/// Picks a block up where it stands and puts it down elsewhere.
+/// Picks up a block and puts it down elsewhere.
 fn carry(trainer: &mut Trainer, index: usize, to: Vec2) {
     let from = body(trainer, index);
     let up = Vec2::new(0.0, 0.024);
@@ -193,7 +193,8 @@ fn a_folder_that_takes_no_files_is_one_sentence_and_training_goes_on() {
     assert!(trainer.scene().expect("running").0.tick.time_s > before_s);
 }
 
-/// Carries a block over a slow line as people do: moves, waits, looks. Returns how far the block went and how far it should have.
+/// Carries a block over a link with latency like people: move, wait, look. Returns the block's travel and the intended
+/// travel, m.
 fn carry_slowly(trainer: &mut Trainer, by_m: f64, wait_s: f64) -> (f64, f64) {
     let from = body(trainer, 0);
     let up = Vec2::new(0.0, 0.022);

@@ -1,11 +1,11 @@
-//! The force test: a small push in one direction, soft, short, and ended by any doubt.
+//! The force test: a small push in one direction, gentle, short, and ended by any doubt.
 
 use haptics::Vec2;
 
-/// How long a test lasts, s: two to come up, three to feel it.
+/// Duration of a test, s: two to rise, three to feel it.
 const LENGTH_S: f64 = 5.0;
 
-/// Where to push.
+/// Direction of the push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// Upwards.
@@ -34,12 +34,12 @@ impl Direction {
     }
 }
 
-/// A force test as it is set up and as it runs.
+/// Settings and state of a force test.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Where to push.
+    /// Direction of the push.
     pub direction: Direction,
-    /// How hard, N a finger.
+    /// Magnitude, N per finger.
     pub newtons: f64,
     left_s: f64,
 }
@@ -51,12 +51,12 @@ impl Default for Trial {
 }
 
 impl Trial {
-    /// Begins.
+    /// Starts the test.
     pub fn start(&mut self) {
         self.left_s = LENGTH_S;
     }
 
-    /// Ends at once.
+    /// Ends the test at once.
     pub fn abort(&mut self) {
         self.left_s = 0.0;
     }
@@ -66,12 +66,12 @@ impl Trial {
         self.left_s > 0.0
     }
 
-    /// What is left of it, s.
+    /// Remaining time, s.
     pub fn left_s(&self) -> f64 {
         self.left_s
     }
 
-    /// A picture later: the force to ask for, N on both of the operator's fingers.
+    /// Advances by a frame. Returns the force to request, N on both of the operator's fingers.
     pub fn advance(&mut self, frame_s: f64) -> Option<[Vec2; 2]> {
         self.left_s = (self.left_s - frame_s).max(0.0);
         self.is_running().then(|| [self.direction.unit() * self.newtons; 2])

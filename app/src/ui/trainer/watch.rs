@@ -1,7 +1,9 @@
-//! The estimator beside the servo: a thread of its own takes the ticks that the window has fetched and says what the hand has measured.
+//! The estimator beside the servo: a thread of its own takes the ticks fetched by the window and reports estimates of
+//! the touched object.
 //!
-//! The servo knows nothing of it: ticks come from the ring that it fills anyway. The window never waits: what the thread cannot take is
-//! left out, and the estimator starts its windows anew after the hole. With a manual clock everything happens at once, on one thread.
+//! The servo is not involved: ticks come from the ring that it fills anyway. The window never waits. Ticks that the
+//! thread cannot take are dropped, and the estimator restarts its windows after the gap. With a manual clock everything
+//! happens at once, on one thread.
 
 use estimator::online::enough::Wanted;
 use estimator::online::{Online, Report, Settings};
@@ -13,20 +15,20 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Parcels of ticks that may wait for the thread.
+/// Maximum number of parcels that wait for the thread.
 const PARCELS: usize = 32;
-/// A report is made this often.
+/// Interval between reports.
 const TOLD_EVERY: Duration = Duration::from_millis(250);
-/// Draws the sensors' noise, as in a recording.
+/// Seed of the sensor noise, as in a recording.
 const SEED: u64 = 1;
-/// Ticks that the rate is told from.
+/// Number of ticks from which the rate is measured.
 const FOR_RATE: usize = 8;
-/// Another rate begins when the period differs by this share.
+/// Relative change of the period from which the rate counts as another one.
 const OTHER_RATE: f64 = 0.3;
 
 /// Ticks of one world.
 struct Parcel {
-    /// Counts the worlds: another number begins anew.
+    /// Counter of the worlds: another number restarts the estimator.
     world: u64,
     task: Task,
     gravity_m_s2: f64,
@@ -34,15 +36,15 @@ struct Parcel {
     ticks: Vec<TickRecord>,
 }
 
-/// What the window keeps.
+/// Window side of the estimator.
 pub struct Watch {
-    /// Whether ticks are looked at.
+    /// True if ticks are processed.
     pub on: bool,
-    /// Wanted accuracies are so many times as coarse as the usual ones.
+    /// Factor on the target accuracies; above 1 they are coarser than the default.
     pub coarser: f64,
     seen: Arc<Mutex<Option<Arc<Report>>>>,
     to: Option<SyncSender<Parcel>>,
-    /// For a manual clock.
+    /// Estimator of a manual clock.
     inline: Work,
     world: Option<(Arc<World>, u64)>,
     last_s: f64,
@@ -62,7 +64,7 @@ impl Default for Watch {
     }
 }
 
-/// What can be told of a world while it is touched.
+/// Task whose parameters can be estimated while a world is touched.
 pub fn task_of(world: &World) -> Option<Task> {
     if world.crank.is_some() {
         Some(Task::Crank)
@@ -76,7 +78,7 @@ pub fn task_of(world: &World) -> Option<Task> {
 }
 
 impl Watch {
-    /// Takes ticks of a world. `at_once`: without a thread.
+    /// Processes ticks of a world; with `at_once` without a thread.
     pub fn take(&mut self, ticks: &[TickRecord], world: &Arc<World>, at_once: bool) {
         let (Some(first), Some(last)) = (ticks.first(), ticks.last()) else { return };
         let number = self.world.as_ref().map_or(0, |(_, n)| *n);
@@ -106,7 +108,7 @@ impl Watch {
     }
 
     fn seen(&self) -> std::sync::MutexGuard<'_, Option<Arc<Report>>> {
-        // Replaced as a whole.
+        // The value is replaced as a whole.
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -118,7 +120,7 @@ impl Watch {
             let seen = Arc::clone(&self.seen);
             let begun = std::thread::Builder::new().name("estimator".to_owned()).spawn(move || run(&from, &seen));
             if begun.is_err() {
-                // Without a thread there are no estimates; training goes on.
+                // Without a thread there are no estimates; training continues.
                 self.on = false;
                 return;
             }
@@ -129,12 +131,12 @@ impl Watch {
         }
     }
 
-    /// What is known now; `None` before anything is.
+    /// Current estimates; `None` before the first.
     pub fn report(&self) -> Option<Arc<Report>> {
         self.seen().clone()
     }
 
-    /// Begins anew with the same world.
+    /// Restarts the estimation in the same world.
     pub fn forget(&mut self) {
         self.world = None;
         *self.seen() = None;
@@ -156,7 +158,7 @@ fn run(from: &Receiver<Parcel>, seen: &Mutex<Option<Arc<Report>>>) {
     }
 }
 
-/// The estimator with what it needs to see ticks as sensors do.
+/// The estimator, with the sensor model that it applies to the ticks.
 #[derive(Default)]
 struct Work {
     world: u64,

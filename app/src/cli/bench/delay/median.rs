@@ -1,4 +1,4 @@
-//! A median with an interval that assumes nothing about the distribution.
+//! Median with a distribution-free confidence interval.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +13,7 @@ pub(super) struct Median {
 }
 
 impl Median {
-    /// Of some values; `None` without any.
+    /// Median of some values; `None` without any.
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let count = values.len();
@@ -22,7 +22,7 @@ impl Median {
         Some(Self { middle, interval })
     }
 
-    /// For a table, with so many decimals.
+    /// Text for a table, with this number of decimals.
     pub fn text(&self, decimals: usize) -> String {
         match self.interval {
             Some([low, high]) => format!("{:.decimals$} ({low:.decimals$} to {high:.decimals$})", self.middle),
@@ -31,8 +31,8 @@ impl Median {
     }
 }
 
-/// How many of the sorted values can be left out at each end: the median lies beyond k of `count` with the chance that a fair coin
-/// shows so few heads.
+/// Number of sorted values to drop at each end. The median is outside of the k-th of `count` values with the
+/// probability that a fair coin shows so few heads.
 fn outside(count: usize) -> Option<usize> {
     let mut term = 0.5_f64.powi(i32::try_from(count).ok()?);
     let (mut tail, mut skipped) = (0.0, None);

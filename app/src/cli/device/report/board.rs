@@ -1,4 +1,4 @@
-//! What a test says of the boards behind serial ports.
+//! Test results of the boards behind serial ports.
 
 use super::Check;
 use crate::boards::{ADVICE, Answers};
@@ -6,7 +6,7 @@ use haptics::device::haply::Tally;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// One check a board, left and right.
+/// One check per board, left and right.
 pub fn checks(tallies: &[Tally; 2]) -> Vec<Check> {
     ["left", "right"].iter().zip(tallies).map(|(side, tally)| check(side, Answers::from(tally))).collect()
 }

@@ -1,4 +1,4 @@
-//! What a device can render, in words and as JSON.
+//! Rendering limits of a device, as text and JSON.
 
 use super::duration;
 use haptics::device::DeviceSpec;
@@ -21,8 +21,8 @@ pub struct Limits {
     passive_damping_n_s_m: f64,
 }
 
-/// What a device can render at a period and behind the delay that it states, s: computed from its figures, never typed in.
-/// Nothing where no force is felt.
+/// Rendering limits of a device at a period, s, and with its stated latency, s: computed from its specification, never
+/// typed in. `None` without force output.
 pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Option<Limits> {
     spec.force_feedback.then(|| Limits {
         rate_hz: 1.0 / period_s,
@@ -51,7 +51,7 @@ pub fn limit_sentence(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> String 
     )
 }
 
-/// What a line with waves lets the hand feel, as one sentence.
+/// Feel of a link with wave variables, as one sentence.
 pub(super) fn line_sentence(spec: &DeviceSpec, line_n_m: f64) -> String {
     format!(
         "waves with an impedance of {:.1} N s/m: stable behind the delay, and soft; nothing is felt stiffer than the line's own \

@@ -1,10 +1,10 @@
-//! What a test says of the soft push that was asked for.
+//! Test result of the requested push.
 
 use super::{Check, Measured};
 use haptics::servo::TickRecord;
 use haptics::servo::force_test::UP_N_S;
 
-/// The start ramp after the first positions, and the time until the servo hears of the push, s.
+/// Duration of the start ramp after the first positions, and of the push command's way to the servo, s.
 const START_S: f64 = 0.6;
 
 impl Measured<'_> {
@@ -13,7 +13,7 @@ impl Measured<'_> {
         &self.ticks[self.ticks.len() / 2..]
     }
 
-    /// Whether half of the push came up on both fingers; when not, why.
+    /// Checks that half of the push was reached on both fingers; otherwise gives the reason.
     pub(super) fn push(&self) -> Check {
         let (name, asked_n) = ("push", self.push_n);
         if !self.spec.force_feedback {
@@ -31,7 +31,7 @@ impl Measured<'_> {
         let (had_s, needed_s) = (fresh as f64 * self.timing.period_s, START_S + wanted_n / UP_N_S);
         let short = format!("The push of {asked_n:.2} N did not come up (largest {reached_n:.2} N)");
         if fresh == 0 {
-            // Not the push's fault: the check of the positions has failed, or says that they ended.
+            // Not caused by the push: the check of the positions has failed, or reports their end.
             return Check::new(name, false, format!("{short}: no fresh positions, no force."));
         }
         if had_s < needed_s {
@@ -55,7 +55,8 @@ mod tests {
     use haptics::servo::TickRecord;
     use haptics::servo::safety::SafetyFlags;
 
-    /// What is said of a push of 1 N in the second half of `ticks`, which reaches so much on each finger: ok, failed, words.
+    /// Result for a push of 1 N in the second half of `ticks`, with this force reached on each finger: ok, failed,
+    /// text.
     fn said(spec: &DeviceSpec, ticks: usize, reached_n: [f64; 2], stale: bool) -> (bool, bool, String) {
         let flags = SafetyFlags { stale, ..SafetyFlags::default() };
         let quiet = TickRecord { sent_force_n: [Vec2::new(3.0, 3.0); 2], ..TickRecord::default() };
