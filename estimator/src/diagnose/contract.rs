@@ -1,12 +1,7 @@
 //! Published answer of a diagnosis. These types *are* the JSON of `touchstone diagnose --json`.
 
-use crate::diagnose::answer::atlas::Atlas;
-use crate::diagnose::answer::time_series::Course;
-use crate::diagnose::data::coordinate::Along;
-use crate::diagnose::extension::hypothetical_worlds::Hypothesis;
-use crate::diagnose::validation::fitted_terms::Kept;
 use crate::segment::SystemState;
-use haptics::law::{Effect, Kind};
+use haptics::law::Kind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,12 +11,13 @@ pub fn parameter(name: &str, value: f64, std_error: f64, unit: &str) -> CausePar
 }
 
 /// The answer in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Something beyond the model is there, and it has a name.
     Causes,
     /// Nothing beyond the noise.
+    #[default]
     None,
     /// Two or more causes explain the recording equally well.
     Ambiguous,
@@ -287,30 +283,8 @@ pub struct Final {
     pub whiteness_p: f64,
 }
 
-/// Residual figures of one channel, without and with the causes found.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Figures {
-    /// Without the causes.
-    pub baseline: Baseline,
-    /// With it.
-    pub end: Final,
-    /// Its noise.
-    pub noise_floor: f64,
-}
-
-impl Figures {
-    /// Figures if nothing was compared: zero residual, white.
-    pub(crate) fn of_nothing() -> Self {
-        Self {
-            baseline: Baseline { whiteness_p: 1.0, ..Baseline::default() },
-            end: Final { whiteness_p: 1.0, ..Final::default() },
-            noise_floor: 0.0,
-        }
-    }
-}
-
 /// Everything that a diagnosis found.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Diagnosis {
     /// The answer in one word.
     pub verdict: Verdict,
@@ -348,58 +322,17 @@ pub struct Diagnosis {
     /// Questions of earlier recordings that later ones answered.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settled: Vec<Settled>,
-    /// The model's laws fitted without any cause.
-    #[serde(skip)]
-    pub plain: Vec<Effect>,
-    /// The model's laws refitted, and with what was found: what the extended world runs.
-    #[serde(skip)]
-    pub effects: Vec<Effect>,
-    /// Measured and modelled forces, row by row.
-    #[serde(skip)]
-    pub course: Course,
-    /// What was found, as values of columns: for other recordings.
-    #[serde(skip)]
-    pub(crate) kept: Vec<Kept>,
-    /// What every suspect alone would take of the force; empty unless it was asked for, and for tasks without one coordinate.
-    #[serde(skip)]
-    pub atlas: Atlas,
-    /// The coordinate of a mechanism, for other recordings; none where there is not one coordinate.
-    #[serde(skip)]
-    pub(crate) along: Option<Along>,
-    /// Whether all forces are per unit of inertia, as in a free motion of which nothing is known.
-    #[serde(skip)]
-    pub(crate) per_inertia: bool,
-    /// By how much forces were put back before anything else was asked, s.
-    #[serde(skip)]
-    pub(crate) late_s: f64,
-    /// By what part of a sample its forces are apart from its motion, which is taken out and not called a delay, s.
-    #[serde(skip)]
-    pub skew_s: f64,
-    /// The delay that is still left if there is one, significant or not, and its error, s.
-    #[serde(skip)]
-    pub(crate) rest_s: Option<[f64; 2]>,
-    /// The delay with which a plain model leaves least, where that is so large that no straight line in it finds it, s.
-    #[serde(skip)]
-    pub(crate) guess_s: Option<f64>,
-    /// Figures of the channel in which a delay shows, where those above may be of another one.
-    #[serde(skip)]
-    pub(crate) of_delay: Option<Figures>,
-    /// What is not excluded, as laws: to rehearse experiments.
-    #[serde(skip)]
-    pub(crate) hypotheses: Vec<Hypothesis>,
 }
 
 impl Diagnosis {
-    /// With the figures of the force by the name of their unit, too, where that is N m (the contract's suffix of a mechanism in torque).
-    #[must_use]
-    pub fn named_by_unit(mut self) -> Self {
+    /// Repeats the figures of a torque in N m under the names with that unit.
+    pub fn name_by_unit(&mut self) {
         if self.baseline.unit.as_deref() == Some("N m") {
             self.baseline.rms_nm = Some(self.baseline.rms_n);
             self.baseline.heldout_rms_nm = Some(self.baseline.heldout_rms_n);
             self.noise_floor_nm = Some(self.noise_floor_n);
             self.end.heldout_rms_nm = Some(self.end.heldout_rms_n);
         }
-        self
     }
 }
 

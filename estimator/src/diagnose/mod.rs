@@ -8,6 +8,7 @@ pub mod contract;
 pub(crate) mod data;
 pub(crate) mod experiment;
 pub(crate) mod extension;
+pub(crate) mod findings;
 pub(crate) mod free_run;
 pub(crate) mod hypotheses;
 pub(crate) mod options;
@@ -16,44 +17,47 @@ pub(crate) mod recording;
 pub(crate) mod selection;
 pub(crate) mod tasks;
 pub(crate) mod validation;
+pub(crate) mod worlds;
 
+use crate::diagnose::findings::Findings;
 use crate::estimate::EstimateError;
 use crate::log::NO_CLOCK;
 use crate::segment::task_of;
-pub use answer::time_series::Course;
+pub use answer::atlas;
+pub use answer::time_series::{Course, Instant};
 pub use contract::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
     PassedOver, Residual, Rollout, RolloutOf, Settled, Validation, Verdict,
 };
 pub use experiment::strokes::{Stroke, Strokes};
 pub use experiment::waypoints::{Insertions, Throw, Throws};
-pub use extension::hypothetical_worlds::{Suspect, suspects};
 pub use extension::sensor_fault::SensorFault;
-pub use extension::world::{Worlds, extended_world, worlds};
 use haptics::recording::{Recording, Task};
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::mechanism::named;
+pub use worlds::{Suspect, Worlds, extended_world, suspects, worlds};
 
 /// Diagnoses one or several recordings of the same object.
-pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let first = recordings
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
     let task = task_of(first, options.task)?;
     let mut found = of_task(task, recordings, options)?;
-    answer::resolved_questions::settle(recordings, &mut found, &|some| of_task(task, some, options));
+    found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
     let clockless = recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| w.kind == NO_CLOCK));
     found.warnings.extend(clockless.map(|w| w.text.clone()));
     found.warnings.dedup();
-    Ok(found.named_by_unit())
+    found.name_by_unit();
+    Ok(found)
 }
 
-fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     match task {
         Task::Crank => {
             let ask = |recordings: &[Recording]| tasks::crank::crank(recordings, options);
-            Ok(recording::time_delay::undo(recordings, ask(recordings)?, &ask))
+            Ok(tasks::delay_correction::undo(recordings, ask(recordings)?, &ask))
         }
         Task::Mechanism => tasks::mechanism::one_of_mechanisms(recordings, options),
         _ => pinched(task, recordings, options),
@@ -61,7 +65,7 @@ fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
 }
 
 /// Diagnosis of an object held between two fingers, after mirrored axes are corrected.
-fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let looked_at: Vec<_> = recordings.iter().map(recording::grip_axis_signs::upright).collect();
     // Recordings are copied only if an axis is mirrored, which is rare.
     let upright: Vec<Recording> = if looked_at.iter().any(Option::is_some) {
@@ -82,11 +86,11 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
         // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => {
             let ask = |recordings: &[Recording]| tasks::carried_block::blocks(recordings, options);
-            ask(recordings).map(|found| recording::time_delay::undo(recordings, found, &ask))
+            ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
         }
         Task::Needle => {
             let ask = |recordings: &[Recording]| tasks::needle::needle(recordings, options);
-            ask(recordings).map(|found| recording::time_delay::undo(recordings, found, &ask))
+            ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
         }
         _ => tasks::switch::switch(recordings, options),
     }?;
@@ -103,7 +107,7 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
 pub fn validate(
     recordings: &[Recording],
     options: &Options,
-    diagnosis: &Diagnosis,
+    diagnosis: &Findings,
 ) -> Result<Vec<Validation>, EstimateError> {
     let of = |recording: &Recording| {
         let task = task_of(recording, options.task)?;
@@ -121,14 +125,15 @@ pub fn validate(
             Task::BlockStack | Task::Barrel if tasks::sliding_block::is_slid(one) => {
                 return tasks::sliding_block::validate(one, options, diagnosis);
             }
-            Task::BlockStack | Task::Barrel if diagnosis.late_s != 0.0 => tasks::carried_block::channels(
-                &[recording::time_delay::put_back(recording, diagnosis.late_s)],
+            Task::BlockStack | Task::Barrel if diagnosis.delay.corrected_s != 0.0 => tasks::carried_block::channels(
+                &[recording::time_delay::put_back(recording, diagnosis.delay.corrected_s)],
                 options,
             )?,
             Task::BlockStack | Task::Barrel => tasks::carried_block::channels(one, options)?,
-            Task::Needle if diagnosis.late_s != 0.0 => {
-                tasks::needle::channels(&[recording::time_delay::put_back(recording, diagnosis.late_s)], options)?
-            }
+            Task::Needle if diagnosis.delay.corrected_s != 0.0 => tasks::needle::channels(
+                &[recording::time_delay::put_back(recording, diagnosis.delay.corrected_s)],
+                options,
+            )?,
             Task::Needle => tasks::needle::channels(one, options)?,
             Task::Switch => tasks::switch::channels(one, options)?,
         };

@@ -1,6 +1,5 @@
 //! Builds an answer in words from a comparison.
 
-use super::atlas::Atlas;
 use super::build::verdict;
 use super::excitation::unseen;
 use super::rejected::{passed_over, unsaid};
@@ -9,8 +8,10 @@ use super::time_series::course;
 use crate::diagnose::contract::{Alternative, Baseline, Cause, Diagnosis, Final, Gain, NextExperiment, Verdict};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::experiment::proposal::propose;
+use crate::diagnose::experiment::turned_track;
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
 use crate::diagnose::extension::model::{effects, plain};
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::along_coordinate::rollout;
 use crate::diagnose::free_run::windows::{AT_ONCE, NO_LAW};
 use crate::diagnose::hypotheses::equivalent::TWINS;
@@ -40,7 +41,7 @@ const OPEN: f64 = 6.0;
 pub(crate) const FORCE: &str = "force";
 
 /// The answer of one object's recordings.
-pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Diagnosis {
+pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Findings {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let unit = track.force_unit();
@@ -83,7 +84,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     }
     let not_excited = unseen(track, study, &causes, &alternatives);
     let passed_over = passed_over(study, &picks, UNEXPLAINED);
-    Diagnosis {
+    let diagnosis = Diagnosis {
         verdict,
         baseline: Baseline {
             model: model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+"),
@@ -94,30 +95,26 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             ..Baseline::default()
         },
         noise_floor_n: floor,
-        noise_floor_nm: None,
         residuals: residual_table::of_crank_or_mechanism(track, study, geometries, (unit, floor)),
         passed_over: unsaid(passed_over, &causes, &alternatives, &not_excited),
         not_excited,
-        validation: Vec::new(),
-        settled: Vec::new(),
-        plain: plain(track, model, study),
-        effects: effects(track, model, study),
-        atlas: Atlas::default(),
-        along: None,
-        late_s: 0.0,
-        skew_s: 0.0,
-        per_inertia: track.freely.is_some_and(|free| !free.is_known),
-        rest_s: rest_s(study, &picks),
-        guess_s: None,
-        of_delay: None,
-        hypotheses: hypotheses(track, model, study),
-        course: course(track, study),
-        kept: of_study(FORCE, study),
         causes,
         alternatives,
         next_experiment: next(track, model, study, &open_ones),
         end: Final { heldout_rms_n: end, whiteness_p: white, ..Final::default() },
         warnings,
+        ..Diagnosis::default()
+    };
+    Findings {
+        diagnosis,
+        plain: plain(track, model, study),
+        effects: effects(track, model, study),
+        course: course(track, study),
+        kept: of_study(FORCE, study),
+        per_inertia: track.freely.is_some_and(|free| !free.is_known),
+        delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
+        hypotheses: hypotheses(track, model, study),
+        ..Findings::default()
     }
 }
 
@@ -152,11 +149,7 @@ fn channel(track: &Track) -> &'static str {
 
 /// Next experiment, if a question is `open`.
 fn next(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
-    if track.freely.is_some() {
-        crate::diagnose::experiment::turned_track::next(open)
-    } else {
-        propose(track, model, study, open)
-    }
+    if track.freely.is_some() { turned_track::next(open) } else { propose(track, model, study, open) }
 }
 
 /// Order of the causes: faults first, causes of the force as they were found, and those of the path by their evidence.

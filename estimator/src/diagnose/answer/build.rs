@@ -1,14 +1,13 @@
 //! Builds one answer in words from comparisons of several channels.
 
 use super::along_coordinate::{p_value, rivals, unnamed};
-use super::atlas::Atlas;
 use super::rejected::{join, passed_over, unsaid};
 use super::residual_table::residuals;
-use super::time_series::Course;
 use crate::diagnose::contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Figures, Final, Gain, NextExperiment, NotExcited,
-    PassedOver, Residual, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, PassedOver,
+    Residual, Verdict,
 };
+use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::channel::{Forward, in_turn};
 use crate::diagnose::free_run::windows::{AT_ONCE, NO_LAW};
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -265,11 +264,7 @@ fn add(found: &mut Vec<(f64, Cause)>, score: f64, cause: Cause) -> bool {
 }
 
 /// The answer of several channels.
-pub fn answer(
-    parts: &[Part<'_>],
-    beside: Beside,
-    next: &dyn Fn(&[Alternative]) -> Option<NextExperiment>,
-) -> Diagnosis {
+pub fn answer(parts: &[Part<'_>], beside: Beside, next: &dyn Fn(&[Alternative]) -> Option<NextExperiment>) -> Findings {
     let Beside { model, mut causes, mut alternatives, mut not_excited, mut warnings } = beside;
     let (mut strange, mut much) = (Vec::new(), Vec::new());
     let mut found: Vec<(f64, Cause)> = Vec::new();
@@ -300,11 +295,10 @@ pub fn answer(
         warnings.push(warning);
     }
     let Figures { baseline, end, noise_floor } = told(parts).map_or_else(Figures::of_nothing, Part::figures);
-    Diagnosis {
+    let diagnosis = Diagnosis {
         verdict,
         baseline: Baseline { model, ..baseline },
         noise_floor_n: noise_floor,
-        noise_floor_nm: None,
         residuals: parts.iter().flat_map(Part::residuals).collect(),
         next_experiment: next(&open),
         causes,
@@ -313,20 +307,8 @@ pub fn answer(
         passed_over: passed,
         end,
         warnings,
-        validation: Vec::new(),
-        settled: Vec::new(),
-        course: Course::default(),
-        kept: parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect(),
-        plain: Vec::new(),
-        effects: Vec::new(),
-        atlas: Atlas::default(),
-        along: None,
-        per_inertia: false,
-        late_s: 0.0,
-        skew_s: 0.0,
-        rest_s: None,
-        guess_s: None,
-        of_delay: None,
-        hypotheses: Vec::new(),
-    }
+        ..Diagnosis::default()
+    };
+    let kept = parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect();
+    Findings { diagnosis, kept, ..Findings::default() }
 }

@@ -1,6 +1,7 @@
 //! Resolved questions: of several recordings of one object, those that settled an ambiguity of earlier ones.
 
 use crate::diagnose::contract::{Diagnosis, Settled};
+use crate::diagnose::findings::Findings;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 
@@ -17,23 +18,25 @@ fn open(diagnosis: &Diagnosis) -> Vec<Pair> {
     alternatives.map(|a| (a.instead_of.clone(), a.id.clone())).collect()
 }
 
-/// Adds the questions that each recording settled. `ask` diagnoses the first few recordings.
-pub fn settle(
+/// Questions that each recording settled. `whole`: the answer of all recordings; `ask` diagnoses the first few.
+pub fn settled(
     recordings: &[Recording],
-    whole: &mut Diagnosis,
-    ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
-) {
+    whole: &Diagnosis,
+    ask: &dyn Fn(&[Recording]) -> Result<Findings, EstimateError>,
+) -> Vec<Settled> {
+    let mut all = Vec::new();
     if !(2..=MOST).contains(&recordings.len()) {
-        return;
+        return all;
     }
     let mut unsettled: Vec<Pair> = Vec::new();
     for count in 1..=recordings.len() {
         // If the first recordings cannot be diagnosed, they leave no open question.
-        let made = if count < recordings.len() { ask(&recordings[..count]).ok() } else { None };
-        let Some(now) = made.as_ref().or((count == recordings.len()).then_some(&*whole)) else { continue };
+        let part = if count < recordings.len() { ask(&recordings[..count]).ok() } else { None };
+        let made = part.as_deref().or((count == recordings.len()).then_some(whole));
+        let Some(now) = made else { continue };
         let still = open(now);
         let has = |id: &str| now.causes.iter().any(|c| c.id == id);
-        let settled: Vec<Settled> = unsettled
+        let settled = unsettled
             .iter()
             .filter(|(a, b)| !still.iter().any(|(c, d)| (c == a && d == b) || (c == b && d == a)))
             .filter_map(|(a, b)| match (has(a), has(b)) {
@@ -42,11 +45,11 @@ pub fn settle(
                 // With both or neither, the question no longer exists.
                 _ => None,
             })
-            .map(|(kept, excluded)| sentence(&recordings[count - 1].name, now, kept, excluded))
-            .collect();
+            .map(|(kept, excluded)| sentence(&recordings[count - 1].name, now, kept, excluded));
+        all.extend(settled);
         unsettled = still;
-        whole.settled.extend(settled);
     }
+    all
 }
 
 fn sentence(by: &str, now: &Diagnosis, kept: &str, excluded: &str) -> Settled {

@@ -99,9 +99,10 @@ pub fn none(recording: &Recording) -> EstimateError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::contract::Diagnosis;
+    use crate::diagnose::diagnose;
+    use crate::diagnose::findings::Findings;
     use crate::diagnose::options::Options;
-    use crate::diagnose::{diagnose, validate};
+    use crate::diagnose::validate;
     use haptics::recording::Channel;
 
     const RADIUS_M: f64 = 0.3;
@@ -145,7 +146,7 @@ mod tests {
         assert!(said.contains("door moves about an axis") && said.contains("move along a line"), "{said}");
     }
 
-    fn asked(recording: &Recording) -> (Options, Diagnosis) {
+    fn asked(recording: &Recording) -> (Options, Findings) {
         let options = Options::default();
         let found = diagnose(std::slice::from_ref(recording), &options).expect("it can be diagnosed");
         (options, found)
@@ -166,7 +167,7 @@ mod tests {
     fn what_cannot_be_compared_is_refused_in_a_sentence() {
         let (options, found) = asked(&door("one", (0.1, 0.5), 0.0, 0.0));
         let mut moved = vec![door("moved", (0.1, 0.5), 0.05, 0.1)];
-        let said = |recordings: &[Recording], found: &Diagnosis| {
+        let said = |recordings: &[Recording], found: &Findings| {
             validate(recordings, &options, found).expect_err("another frame").to_string()
         };
         assert!(said(&moved, &found).contains("moved does not keep to the path"));

@@ -3,21 +3,16 @@
 
 use super::model::{effects, effects_of};
 use super::sensor_fault::SensorFault;
-use super::world::{calibrated, with_laws};
-use crate::diagnose::contract::{CauseParameter, Diagnosis};
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::equivalent::TWINS;
-use crate::diagnose::options::Options;
 use crate::diagnose::selection::comparison::Study;
-use crate::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
-use haptics::recording::Recording;
-use haptics::world::World;
 
 /// Effects in the object, in the form that its task uses.
 #[derive(Clone, Debug, PartialEq)]
-enum Inside {
+pub(crate) enum Inside {
     /// All laws along the coordinate.
     Laws(Vec<Effect>),
     /// Effects on blocks: causes with their parameters.
@@ -31,25 +26,11 @@ pub(crate) type Act = (String, Vec<CauseParameter>);
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hypothesis {
     /// The assumed cause.
-    id: String,
+    pub(crate) id: String,
     /// `None` if a cause among them cannot be simulated.
-    inside: Option<Inside>,
-    fault: Option<SensorFault>,
-    hung_share: f64,
-}
-
-/// A hypothesis as a world with a sensor fault.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Suspect {
-    /// The assumed cause.
-    pub id: String,
-    /// The object with it.
-    pub world: World,
-    /// Fault of the force sensors.
-    pub fault: SensorFault,
-    /// Share of a hung weight that acts along a mechanism's coordinate: all of it, unless its axis is assumed to be
-    /// vertical with a tilt.
-    pub hung_share: f64,
+    pub(crate) inside: Option<Inside>,
+    pub(crate) fault: Option<SensorFault>,
+    pub(crate) hung_share: f64,
 }
 
 /// Tilt of an axis that is assumed to be vertical, as a sine: no recording of the mechanism alone shows it. Nobody
@@ -182,53 +163,6 @@ fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
     let others = laws.iter().filter(|e| !is_weight(e) && e.law().id() != EccentricMass.id()).copied();
     let tilt = Effect::new(&GravityTilt, &[weight_n, sine_n.atan2(level_n), radius_m]);
     Some(others.chain([Effect::new(&Weight, &[weight_n]), tilt]).collect())
-}
-
-/// The world with all causes found on a needle, by its first hypothesis.
-pub(crate) fn as_found(world: &World, diagnosis: &Diagnosis) -> Option<World> {
-    let first = diagnosis.hypotheses.first().filter(|_| world.membrane.is_some())?;
-    match first.inside.as_ref()? {
-        Inside::Acts(acts) => Some(super::needle_world::with_acts(world, acts)),
-        Inside::Laws(_) => None,
-    }
-}
-
-/// All answers that the recordings leave open, as worlds, the one found first. Answers that no world can simulate are
-/// left out. The list is empty if a sensor fault was found that cannot be added to a recording.
-pub fn suspects(
-    recordings: &[Recording],
-    options: &Options,
-    diagnosis: &Diagnosis,
-) -> Result<Vec<Suspect>, EstimateError> {
-    let world = calibrated(recordings, options)?;
-    let suspect = |h: &Hypothesis| {
-        let mut world = match h.inside.as_ref()? {
-            Inside::Laws(laws) => with_laws(&world, laws),
-            Inside::Acts(acts) if world.membrane.is_some() => super::needle_world::with_acts(&world, acts),
-            Inside::Acts(acts) if world.switch.is_some() => super::switch_world::with_acts(&world, acts),
-            Inside::Acts(acts) => super::block_world::with_acts(&world, diagnosis, acts),
-        };
-        world.name = format!("{}, with {}", world.name, h.id.replace('-', " "));
-        Some(Suspect { id: h.id.clone(), world, fault: h.fault?, hung_share: h.hung_share })
-    };
-    let mut found: Vec<Suspect> = Vec::new();
-    for suspect in diagnosis.hypotheses.iter().filter_map(suspect) {
-        if found.iter().all(|s| s.id != suspect.id) {
-            found.push(suspect);
-        }
-    }
-    if found.is_empty() && world.crank.is_none() && world.mechanism.is_none() {
-        let mut world = world;
-        super::block_world::extend(&mut world, diagnosis);
-        super::switch_world::extend(&mut world, diagnosis);
-        found.extend(diagnosis.causes.first().map(|c| Suspect {
-            id: c.id.clone(),
-            world,
-            fault: SensorFault::default(),
-            hung_share: 1.0,
-        }));
-    }
-    Ok(found)
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::candidate::{Candidate, about_its_zero};
+use crate::diagnose::hypotheses::free_motion;
+use crate::diagnose::hypotheses::slope;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Solved;
 use crate::diagnose::selection::profile_likelihood::{settled, shares};
@@ -93,7 +95,7 @@ fn beside_model(
         found.extend(laws);
         at += candidate.columns.len();
     }
-    (crate::diagnose::hypotheses::free_motion::whole(track, found), is_whole)
+    (free_motion::whole(track, found), is_whole)
 }
 
 /// Dry friction of a model: a constant part, N or N m, and a part in proportion to the load.
@@ -138,10 +140,7 @@ impl Dry {
 /// The model's laws fitted without any cause.
 pub fn plain(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     let Some(solved) = study.system.solve(&[]) else { return model.clone() };
-    crate::diagnose::hypotheses::free_motion::whole(
-        track,
-        model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect(),
-    )
+    free_motion::whole(track, model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect())
 }
 
 /// A law whose linear parameters all change by one factor.
@@ -177,7 +176,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
         "inertia" => of(&Inertia, &[first]),
         "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),
         "gravity-tilt" if track.planar && weight_n > 0.0 => of(&GravityTilt, &[weight_n, first, radius]),
-        "gravity-tilt" => crate::diagnose::hypotheses::slope::tilted(track, first),
+        "gravity-tilt" => slope::tilted(track, first),
         "position-ripple" => {
             let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
             // cos(x − π/2) is the regressor of the sine.

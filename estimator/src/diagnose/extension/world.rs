@@ -1,55 +1,7 @@
 //! The worlds before and after a diagnosis.
 
-use super::hypothetical_worlds::as_found;
-use crate::diagnose::contract::Diagnosis;
-use crate::diagnose::options::Options;
-use crate::estimate::EstimateError;
-use crate::pipeline;
 use haptics::law::{Effect, Role};
-use haptics::recording::Recording;
 use haptics::world::World;
-
-/// Two worlds: one with the base model's laws at their own best fit, one with the causes found beside them. All else is
-/// equal, so that one can replace the other while somebody touches it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Worlds {
-    /// With the base model alone.
-    pub before: World,
-    /// With the causes found.
-    pub after: World,
-}
-
-/// Both worlds of a diagnosis, from its initial world or from one calibrated from the recordings.
-pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis) -> Result<Worlds, EstimateError> {
-    let world = calibrated(recordings, options)?;
-    let mut after = with_laws(&world, &diagnosis.effects);
-    after.name = format!("{}, extended", world.name);
-    if world.crank.is_none() && world.mechanism.is_none() {
-        super::block_world::extend(&mut after, diagnosis);
-        super::switch_world::extend(&mut after, diagnosis);
-        after = as_found(&after, diagnosis).unwrap_or(after);
-    }
-    Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
-}
-
-/// The initial world of the diagnosis, or one calibrated from the recordings.
-pub(crate) fn calibrated(recordings: &[Recording], options: &Options) -> Result<World, EstimateError> {
-    if let Some(world) = &options.world {
-        return Ok(world.clone());
-    }
-    let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
-    Ok(pipeline::analyse(recordings, &fit)?.world)
-}
-
-/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with
-/// the extended laws.
-pub fn extended_world(
-    recordings: &[Recording],
-    options: &Options,
-    diagnosis: &Diagnosis,
-) -> Result<World, EstimateError> {
-    worlds(recordings, options, diagnosis).map(|worlds| worlds.after)
-}
 
 /// The world with other laws along its coordinate.
 pub(crate) fn with_laws(world: &World, laws: &[Effect]) -> World {

@@ -5,6 +5,7 @@ use super::windows::{Compared, LEAST_WINDOWS, NO_LAW, NOT_FAITHFUL, TOO_FEW, WIN
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
+use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::{Study, residual};
 use crate::diagnose::selection::normal_equations::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
@@ -75,7 +76,7 @@ fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
     for stretch in stretches(track) {
         let motions: Vec<Motion> = track.rows[stretch.clone()].iter().map(|r| r.motion).collect();
         let needed = match track.freely {
-            Some(_) => crate::diagnose::hypotheses::law_forces::needed(track, &side.effects)[stretch.clone()].to_vec(),
+            Some(_) => law_forces::needed(track, &side.effects)[stretch.clone()].to_vec(),
             None => drive_forces(&side.effects, &motions),
         };
         for (i, needed) in stretch.zip(needed) {

@@ -5,6 +5,7 @@
 //! the measured motion, and its force is compared. The integrator is that of the servo's worlds.
 
 use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::selection::held_out_gain;
 
 /// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const WINDOW_S: f64 = 0.5;
@@ -63,7 +64,7 @@ pub fn told(what: &Compared<'_>, before: &[(f64, f64)], after: &[(f64, f64)]) ->
         rms_before,
         rms_after,
         share: share(&all),
-        interval: crate::diagnose::selection::held_out_gain::bootstrap(all.len(), DRAWS, &share),
+        interval: held_out_gain::bootstrap(all.len(), DRAWS, &share),
         in_turn: what.in_turn,
     })
 }

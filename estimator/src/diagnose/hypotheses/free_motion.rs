@@ -1,5 +1,4 @@
 use crate::diagnose::data::regression_data::{Freely, Track};
-
 use haptics::law::{EccentricMass, Effect, Inertia, Law as _};
 
 /// Share of backward travel up to which a motion counts as one-way.

@@ -6,6 +6,7 @@ use super::grid::Grid;
 use super::regressor_cache::Columns;
 use crate::diagnose::data::regression_data::{Place, Row, Track, Zero};
 use crate::diagnose::data::row_means;
+use crate::diagnose::data::stick_phases;
 use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{
@@ -274,7 +275,7 @@ impl Dictionary<'_> {
             // A gap cuts off the resisting part of the force, or all of it.
             for (behind, whole) in [(self.resisting, false), (self.predicted, true)] {
                 let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
-                crate::diagnose::data::stick_phases::plays(self.track, way, whole, &mut column);
+                stick_phases::plays(self.track, way, whole, &mut column);
                 let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column);
                 let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND, whole: LEAST_BEHIND, most: MOST });
                 all.push(backlash.at("delta", way, units.length));
@@ -288,7 +289,7 @@ impl Dictionary<'_> {
         let bent = self.remembered(&Hysteresis, &values, &|motion, memory, _| memory[0] - motion.direction);
         let felt = f64::from(u8::from(way > self.grid.felt));
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
-        crate::diagnose::data::stick_phases::bends(&self.track.rows, &values, &mut column);
+        stick_phases::bends(&self.track.rows, &values, &mut column);
         // Presliding of only part of the friction needs strong evidence: noise of the path during sticking looks like a
         // short bend.
         let least = if way > LONG_BENT * self.grid.felt { LEAST_BENT } else { ALL_BENT };

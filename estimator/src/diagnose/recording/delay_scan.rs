@@ -1,8 +1,6 @@
 //! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
 //! step.
 
-use crate::diagnose::contract::{Diagnosis, Figures};
-
 /// Result of the search for a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
@@ -13,16 +11,6 @@ pub struct Late {
     pub is_seen: bool,
     /// Residual RMS of the plain model without a delay.
     pub plain_rms: f64,
-}
-
-impl Late {
-    /// Enters it in the answer if it is significant, so that the diagnosis is repeated; `of`: residual figures of the
-    /// channel in which it was searched.
-    pub fn tell(self, found: &mut Diagnosis, of: Figures) {
-        found.guess_s = self.is_seen.then_some(self.tau_s);
-        found.rest_s = Some([self.tau_s, self.error_s]);
-        found.of_delay = Some(of);
-    }
 }
 
 /// Range of the search, and the demands on a delay.

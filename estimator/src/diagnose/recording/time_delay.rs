@@ -4,83 +4,16 @@
 //! finds it ([`guess_s`]).
 
 use super::delay_scan::{Demands, look};
-use crate::diagnose::contract::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
 use crate::diagnose::data::regression_data::{Model, Row, Track};
 use crate::diagnose::data::row_means::{Weights, column};
-use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::basis_functions::generic;
 use crate::diagnose::selection::gram::gram;
 use crate::diagnose::selection::normal_equations::solve;
-use crate::estimate::EstimateError;
 use crate::signal::derive::{interpolate, interpolate_cubic};
-use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
+use haptics::law::{CoulombFriction, Effect, Inertia, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
-/// Delay up to which a linear regressor is accurate, s.
-const LINEAR_S: f64 = 3e-3;
-/// Most rounds.
-const ROUNDS: usize = 5;
-/// The cause.
-const ID: &str = "time-delay";
-
-/// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
-pub fn undo(
-    recordings: &[Recording],
-    first: Diagnosis,
-    ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
-) -> Diagnosis {
-    let named_s = delay_s(&first);
-    let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
-    let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
-    // Whole samples only: an interpolated force is a mean, with less noise than the others.
-    let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
-    let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
-    let mut found = None;
-    for _ in 0..ROUNDS {
-        let back_s = whole(late_s);
-        if back_s == 0.0 {
-            return first;
-        }
-        let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
-        // If the repetition fails, the first answer remains.
-        let Ok(now) = ask(&back) else { return first };
-        late_s = back_s + now.rest_s.map_or(0.0, |[more, _]| more);
-        found = Some(now);
-        if whole(late_s) == back_s {
-            break;
-        }
-    }
-    // A delay that was not named must improve the residual clearly.
-    let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
-    let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
-    match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
-        Some(found) => with_delay(found, &first, late_s, whole(late_s)),
-        None => first,
-    }
-}
-
-/// The figures by which a delay is judged.
-fn told(found: &Diagnosis) -> Figures {
-    found.of_delay.clone().unwrap_or_else(|| Figures {
-        baseline: found.baseline.clone(),
-        end: found.end.clone(),
-        noise_floor: found.noise_floor_n,
-    })
-}
-
-/// Usual time between two samples, s.
-fn period_s(recording: &Recording) -> Option<f64> {
-    let time_s = recording.time_s.as_ref().filter(|t| t.len() > 2)?;
-    Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
-}
-
-/// Standard errors that a delay must have if it was not named at first.
-const SURE: f64 = 5.0;
-/// Largest ratio of residuals, after over before the shift, if the delay was named.
-const AS_GOOD: f64 = 1.1;
-/// The same ratio if the delay was not named.
-const BETTER: f64 = 0.95;
 /// Demands on a guess for a repetition of the diagnosis.
 const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
 
@@ -163,11 +96,6 @@ impl<'a> Moved<'a> {
     }
 }
 
-/// The delay that an answer names, s.
-fn delay_s(found: &Diagnosis) -> Option<f64> {
-    found.causes.iter().find(|c| c.id == ID)?.parameters.first().map(|p| p.value)
-}
-
 /// The recording with its forces shifted earlier, without its end, which has no such forces.
 pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && late_s != 0.0) else {
@@ -206,60 +134,6 @@ fn is_force(name: &str) -> bool {
         let of = quantity.trim_end_matches(['1', '2']);
         ["f", "fx", "fy", "fz", "tau"].contains(&of)
     })
-}
-
-/// The answer for the recording with its forces shifted back by `back_s`, with its delay.
-fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64) -> Diagnosis {
-    let place = first.causes.iter().position(|c| c.id == ID);
-    let mut cause = place.map_or_else(|| unnamed_before(first, late_s), |place| first.causes[place].clone());
-    let place = place.unwrap_or(0);
-    let error = found.rest_s.map(|[_, error]| error);
-    if let Some(tau) = cause.parameters.first_mut() {
-        tau.value = late_s;
-        tau.std_error = error.unwrap_or(tau.std_error);
-    }
-    let Figures { end, noise_floor, .. } = told(&found);
-    let (before, after, floor) = (cause.gain.heldout_rms_before, end.heldout_rms_n, noise_floor);
-    let power = (before * before - floor * floor).max(1e-3 * before * before);
-    let share = ((before * before - after * after) / power).clamp(-1.0, 1.0);
-    cause.gain.heldout_rms_after = after;
-    cause.gain.share_of_explainable = share;
-    cause.gain.interval = [cause.gain.interval[0].min(share), cause.gain.interval[1].max(share)];
-    if cause.gain.rollout.is_none() {
-        cause.gain.no_rollout = Some(PUT_BACK.to_owned());
-    }
-    cause.posterior = 1.0;
-    found.causes.retain(|c| c.id != ID);
-    found.alternatives.retain(|a| a.instead_of != ID && a.id != ID);
-    found.not_excited.retain(|n| n.id != ID);
-    found.passed_over.retain(|p| p.id != ID);
-    found.causes.insert(place.min(found.causes.len()), cause);
-    if matches!(found.verdict, Verdict::None | Verdict::Unexplained) {
-        found.verdict = Verdict::Causes;
-    }
-    let model = first.baseline.model.clone();
-    found.baseline = Baseline { model, ..told(first).baseline };
-    (found.end, found.noise_floor_n) = (end, noise_floor);
-    found.late_s = back_s;
-    found
-}
-
-/// A delay that the first answer did not name, as a cause.
-fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
-    let before = told(first);
-    let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
-    Cause {
-        id: ID.to_owned(),
-        kind: Kind::Instrument,
-        parameters: vec![parameter],
-        p_value: 0.0,
-        posterior: 1.0,
-        gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },
-        evidence: format!(
-            "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",
-            1e3 * late_s
-        ),
-    }
 }
 
 #[cfg(test)]

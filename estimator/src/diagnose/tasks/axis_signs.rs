@@ -4,6 +4,7 @@ use super::crank::{path, plain_crank};
 use super::mechanism::named;
 use super::one_coordinate;
 use crate::diagnose::contract::Cause;
+use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
@@ -126,7 +127,7 @@ pub fn of_mechanism(
 
 /// The thesis's crank with gravity at any phase. In few strokes, an eccentric mass or a weight on a tilted plane can
 /// look like driving friction, and leaves as large a residual as a mirrored axis does.
-fn model_of(arm: &Arm) -> crate::diagnose::data::regression_data::Model {
+fn model_of(arm: &Arm) -> regression_data::Model {
     let mut model = plain_crank();
     model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
     model

@@ -1,6 +1,7 @@
 pub(crate) mod axis_signs;
 pub(crate) mod carried_block;
 pub(crate) mod crank;
+pub(crate) mod delay_correction;
 pub(crate) mod free_motion;
 pub(crate) mod mechanism;
 pub(crate) mod needle;

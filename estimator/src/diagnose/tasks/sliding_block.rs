@@ -13,11 +13,15 @@ use crate::diagnose::contract::{
 };
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::experiment::proposal;
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::held_out_gain;
 use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use crate::segment::slid::{LIFTED_M, LIFTED_S};
 use crate::segment::threshold::{Levels, percentile};
@@ -61,7 +65,7 @@ pub fn is_slid(recordings: &[Recording]) -> bool {
 }
 
 /// Diagnoses recordings of one block that is slid.
-pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn slid(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut track, faults, read) = track_of(recordings, options.world.as_ref())?;
     let weight_n = read.iter().find_map(|s| s.weight_n);
     let model = model(options, weight_n.is_some())?;
@@ -86,15 +90,9 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
 }
 
 /// Validates the found causes on another recording.
-pub fn validate(recordings: &[Recording], options: &Options, found: &Diagnosis) -> Result<Validation, EstimateError> {
+pub fn validate(recordings: &[Recording], options: &Options, found: &Findings) -> Result<Validation, EstimateError> {
     let (mut track, ..) = track_of(recordings, options.world.as_ref())?;
-    Ok(crate::diagnose::validation::on_other_recordings::validate(
-        &mut track,
-        &found.plain,
-        &found.effects,
-        &[],
-        &found.kept,
-    ))
+    Ok(on_other_recordings::validate(&mut track, &found.plain, &found.effects, &[], &found.kept))
 }
 
 /// The pads yield before the block slides, by hundredths of a millimetre, as with presliding and backlash. Neither is
@@ -331,8 +329,7 @@ fn let_go(found: &mut Diagnosis, track: &Track) {
     // Rows of empty fingers, before and after, with a row's noise each.
     let rows = 2.0 * FREE_BEFORE_S / track.period_s;
     let lambda = rows * (size / track.force_noise.max(1e-9)).powi(2);
-    next.expected_power =
-        crate::diagnose::experiment::proposal::SURE_HUNG * crate::diagnose::experiment::proposal::power(lambda);
+    next.expected_power = proposal::SURE_HUNG * proposal::power(lambda);
     next.experiment = Some(Experiment {
         id: "slide-let-go".to_owned(),
         seconds: 10.0,
@@ -367,7 +364,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
             std_error: error,
             unit: "1".to_owned(),
         }],
-        p_value: crate::diagnose::selection::held_out_gain::chi_square_tail((off / error).powi(2), 1.0),
+        p_value: held_out_gain::chi_square_tail((off / error).powi(2), 1.0),
         posterior: 0.5,
         gain: Gain::default().run(Err(AT_ONCE.to_owned())),
         evidence: format!(

@@ -5,7 +5,8 @@ use crate::constraint::detect_in;
 use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::atlas::{Variable, View};
 use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{CauseParameter, Diagnosis, NotExcited};
+use crate::diagnose::contract::{CauseParameter, NotExcited};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::NO_CLOCK;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
@@ -67,7 +68,7 @@ fn without_a_clock() -> impl Iterator<Item = NotExcited> {
 }
 
 /// Diagnoses paths of one mechanism.
-pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut rows, mut kinds) = (Vec::new(), Vec::new());
     let mut beside = Beside::default();
     for (k, recording) in recordings.iter().enumerate() {

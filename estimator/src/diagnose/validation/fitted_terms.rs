@@ -3,7 +3,9 @@
 use super::on_other_recordings::compared;
 use crate::diagnose::contract::Validation;
 use crate::diagnose::hypotheses::candidate::{Candidate, Searched};
+use crate::diagnose::options;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::stepwise;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
@@ -31,7 +33,7 @@ pub struct Kept {
 pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
     let Some(solved) = &study.solved else { return Vec::new() };
     let mut at = study.base.len();
-    let of = |chosen: &crate::diagnose::selection::stepwise::Chosen| {
+    let of = |chosen: &stepwise::Chosen| {
         let candidate = &study.candidates[chosen.candidate];
         let end = at + candidate.columns.len();
         let values = solved.values[at..end].to_vec();
@@ -116,7 +118,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
     }
     let missing = kept.iter().filter(|k| channels.iter().all(|c| c.channel != k.channel));
     left_out.extend(missing.map(|k| k.id.to_owned()));
-    let mut found = found.ok_or_else(crate::diagnose::options::nothing)?;
+    let mut found = found.ok_or_else(options::nothing)?;
     found.left_out = left_out;
     Ok(found)
 }

@@ -23,8 +23,9 @@ pub(crate) mod tests;
 pub(crate) mod time_delay;
 
 use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, Figures, Final, NextExperiment, NotExcited};
+use crate::diagnose::contract::{Alternative, CauseParameter, Final, NextExperiment, NotExcited};
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
+use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -37,7 +38,7 @@ use net_force::Carry;
 use signals::Seen;
 
 /// Diagnoses recordings of the same blocks.
-pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
     let world = options.world.as_ref();
     let (carry, grasp, ground) = look(&seen, world)?;
@@ -97,7 +98,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
         // too.
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
-        late.tell(&mut found, Figures { end, ..figures });
+        found.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)

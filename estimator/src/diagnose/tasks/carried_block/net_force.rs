@@ -13,6 +13,7 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::stepwise::Chosen;
 use crate::estimate::EstimateError;
@@ -209,8 +210,7 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
 fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let picks = study.picks();
-    let left =
-        crate::diagnose::selection::comparison::residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let left = comparison::residual(&study.y, &study.base, &study.candidates, &picks, solved);
     let mean = |free: bool| {
         let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
         let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));

@@ -3,6 +3,7 @@
 use super::recorded::{reach, recorded};
 use crate::diagnose::contract::{Diagnosis, Verdict};
 use crate::diagnose::diagnose;
+use crate::diagnose::findings::Findings;
 use crate::diagnose::options::Options;
 use haptics::device::{Device as _, ScriptedOperator, Skill};
 use haptics::recording::Recording;
@@ -71,7 +72,7 @@ fn recording(seed: u64, hidden: &Hidden) -> Recording {
     })
 }
 
-fn found(seed: u64, hidden: &Hidden) -> Diagnosis {
+fn found(seed: u64, hidden: &Hidden) -> Findings {
     diagnose(&[recording(seed, hidden)], &Options::default()).expect("a block was carried")
 }
 

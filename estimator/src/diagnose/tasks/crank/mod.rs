@@ -13,15 +13,18 @@ use crate::diagnose::answer::{along_coordinate, atlas, excitation};
 use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
+use crate::diagnose::selection::comparison;
 use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use haptics::law::{Effect, Law, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::Recording;
 
 /// Diagnoses recordings of one crank.
-pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let mut tracks = Vec::new();
     let (mut geometries, mut strange, mut short) = (Vec::new(), Vec::new(), Vec::new());
     let mut faults = Vec::new();
@@ -102,7 +105,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
-    found.guess_s = time_delay::guess_s(&track, &model);
+    found.delay.guess_s = time_delay::guess_s(&track, &model);
     name_joint(&mut found, link);
     add_scale(&mut found, scale);
     let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
@@ -111,8 +114,8 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
 }
 
 /// Validates the found causes on another recording of the same crank.
-pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
-    let recording = &time_delay::put_back(recording, diagnosis.late_s);
+pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
+    let recording = &time_delay::put_back(recording, diagnosis.delay.corrected_s);
     let axis_signs::Looked { signals, circle, rows, .. } =
         axis_signs::Looked::at(recording, &sample_faults::faults(recording).bad)?;
     let mut track = turned(&signals, recording, &circle, rows)?.rows;
@@ -123,7 +126,7 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
         effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
     };
     let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
-    Ok(crate::diagnose::validation::on_other_recordings::validate(&mut track, &before, &after, &known, &diagnosis.kept))
+    Ok(on_other_recordings::validate(&mut track, &before, &after, &known, &diagnosis.kept))
 }
 
 /// Names the scale of all lengths if the path itself did not show it.
@@ -190,7 +193,7 @@ fn turned(
 }
 
 /// True if the forces seem rotated against the motion.
-fn is_turned(study: &crate::diagnose::selection::comparison::Study) -> bool {
+fn is_turned(study: &comparison::Study) -> bool {
     study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
 }
 

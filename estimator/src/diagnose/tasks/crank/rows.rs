@@ -2,8 +2,10 @@
 
 use super::contact_phases::held_and_free;
 use super::path::{Arm, Path, PathPoint};
+use crate::diagnose::data::interpolation;
 use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, offsets};
 use crate::diagnose::data::known_weight::Hung;
+use crate::diagnose::data::regression_data::Zero;
 use crate::diagnose::data::regression_data::{Bearing, Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::signal::derive::savitzky_golay;
@@ -221,7 +223,7 @@ impl Signals {
             bearing: Bearing::default(),
             slope,
             extra: Vec::new(),
-            zero: crate::diagnose::data::regression_data::Zero::Open,
+            zero: Zero::Open,
             freely: None,
             rows,
             fine,
@@ -311,9 +313,9 @@ impl Signals {
                 places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
                 recorded.push(raw.as_recorded[at.nearest].dot(&along));
                 if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
-                    fine.extend((1..fill).map(|part| {
-                        crate::diagnose::data::interpolation::between(&before, &point, part as f64 / fill as f64)
-                    }));
+                    fine.extend(
+                        (1..fill).map(|part| interpolation::between(&before, &point, part as f64 / fill as f64)),
+                    );
                 }
                 if k == 0 {
                     row.span.start = fine.len();

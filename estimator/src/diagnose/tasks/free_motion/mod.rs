@@ -13,11 +13,14 @@ use super::mechanism::{known_laws, named};
 use super::one_coordinate;
 use crate::diagnose::answer::along_coordinate::explain;
 use crate::diagnose::answer::atlas;
-use crate::diagnose::contract::Diagnosis;
+use crate::diagnose::contract;
 use crate::diagnose::data::coordinate::Along;
+use crate::diagnose::data::covariates;
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
 use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::rate_signs;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::rules::threshold;
@@ -59,7 +62,7 @@ pub(crate) fn diagnose(
     recordings: &[Recording],
     paths: &[Option<MechanismPath>],
     options: &Options,
-) -> Result<Diagnosis, EstimateError> {
+) -> Result<Findings, EstimateError> {
     let (mut track, faults) = tracks(recordings, paths)?;
     let first = &recordings[0];
     let mut model = model(&track, first, options)?;
@@ -95,13 +98,13 @@ pub(crate) fn diagnose(
 fn tracks(
     recordings: &[Recording],
     paths: &[Option<MechanismPath>],
-) -> Result<(Track, Vec<crate::diagnose::contract::Cause>), EstimateError> {
+) -> Result<(Track, Vec<contract::Cause>), EstimateError> {
     let (mut tracks, mut faults) = (Vec::new(), Vec::new());
     for (recording, path) in recordings.iter().zip(paths) {
         let found = sample_faults::faults(recording);
-        let (recording, mirrored_rate) = crate::diagnose::recording::rate_signs::with_rates_of_motion(recording);
+        let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
         let mut rows = track(recording.as_ref(), &found.bad, path.as_ref())?;
-        rows.extra = vec![crate::diagnose::data::covariates::of(recording.as_ref())];
+        rows.extra = vec![covariates::of(recording.as_ref())];
         faults.extend(mirrored_rate.map(sample_faults::against_motion));
         faults.extend(found.causes);
         tracks.push(rows);

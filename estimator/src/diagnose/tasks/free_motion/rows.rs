@@ -6,6 +6,7 @@
 //! between the rows and averaged with the same weights.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
+use crate::diagnose::data::regression_data::Zero;
 use crate::diagnose::data::regression_data::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::mechanism;
@@ -314,7 +315,7 @@ impl Made {
             bearing: Bearing::default(),
             slope: None,
             extra: Vec::new(),
-            zero: crate::diagnose::data::regression_data::Zero::Open,
+            zero: Zero::Open,
             freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),
         }
     }

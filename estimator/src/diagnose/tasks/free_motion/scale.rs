@@ -2,6 +2,7 @@
 
 use crate::diagnose::contract::{Diagnosis, NotExcited};
 use crate::diagnose::data::regression_data::{Freely, Track};
+use crate::diagnose::hypotheses::free_motion;
 use crate::diagnose::tasks::free_motion::Scale;
 use crate::identify::mechanism::Stated;
 use haptics::law::Coordinate;
@@ -33,7 +34,7 @@ pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: 
         why: "the recording has no force column, so there is no force sensor whose gain or bias could show".to_owned(),
     }));
     if !both_ways {
-        found.not_excited.extend(crate::diagnose::hypotheses::free_motion::WITH_BOTH_WAYS.map(|id| NotExcited {
+        found.not_excited.extend(free_motion::WITH_BOTH_WAYS.map(|id| NotExcited {
             id: id.to_owned(),
             why: "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
                   go the other way, too"

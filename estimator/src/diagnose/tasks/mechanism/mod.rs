@@ -5,18 +5,21 @@ pub(crate) mod sensor_zero;
 
 use super::{axis_signs, free_motion, one_coordinate, thrown_body, transmission, untimed_path};
 use crate::diagnose::answer::{along_coordinate, atlas, excitation};
-use crate::diagnose::contract::{Diagnosis, Validation};
+use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::rate_signs;
 use crate::diagnose::recording::{sample_faults, sample_offset, time_delay};
 use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
 use haptics::recording::Recording;
 
 /// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
-pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
         return Err(EstimateError::Other(format!(
             "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
@@ -33,10 +36,10 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
         return transmission::driven(recordings, options);
     }
     let ask = |recordings: &[Recording]| mechanism(recordings, options);
-    Ok(time_delay::undo(recordings, ask(recordings)?, &ask))
+    Ok(super::delay_correction::undo(recordings, ask(recordings)?, &ask))
 }
 
-fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
     // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
     // changes too fast for a linear regressor, which overestimates it.
@@ -61,7 +64,7 @@ const CLOSER: usize = 2;
 const OF_SKEW: f64 = 0.7;
 
 /// The answer, and the sub-sample offset between force and motion, s.
-fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
+fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Findings, Option<f64>), EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
     let paths = crate::identify::mechanism::paths(recordings);
@@ -70,7 +73,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     }
     for (recording, path) in recordings.iter().zip(&paths) {
         let found = sample_faults::faults(recording);
-        let (recording, mirrored_rate) = crate::diagnose::recording::rate_signs::with_rates_of_motion(recording);
+        let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
         let recording = recording.as_ref();
         let mut rows = rows::track(recording, &found.bad, path.as_ref())?;
         if let Some(first) = tracks.first() {
@@ -99,7 +102,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
     sensor_zero::ask(&mut found, &track);
     found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
-    found.guess_s = time_delay::guess_s(&track, &model);
+    found.delay.guess_s = time_delay::guess_s(&track, &model);
     let is_hung = track.hung.iter().any(Option::is_some);
     excitation::without_known(&mut found, !fixed.is_empty() || is_hung, true);
     if options.atlas {
@@ -130,21 +133,22 @@ pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Mod
 }
 
 /// Validates the found causes on another recording of the same mechanism.
-pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
-    let recording = &time_delay::motion_apart(&time_delay::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
+pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
+    let recording =
+        &time_delay::motion_apart(&time_delay::put_back(recording, diagnosis.delay.corrected_s), diagnosis.skew_s);
     let along = diagnosis.along.ok_or_else(|| coordinate::none(recording))?;
     let path = along.path_of(recording)?;
     let mut track = track_of(recording, path.as_ref(), diagnosis)?;
     along.demand(track.coordinate, recording)?;
-    let Diagnosis { plain, effects, kept, .. } = diagnosis;
-    Ok(crate::diagnose::validation::on_other_recordings::validate(&mut track, plain, effects, &[], kept))
+    let Findings { plain, effects, kept, .. } = diagnosis;
+    Ok(on_other_recordings::validate(&mut track, plain, effects, &[], kept))
 }
 
 /// Rows of a recording for the validation of a mechanism, driven or free.
 fn track_of(
     recording: &Recording,
     path: Option<&haptics::world::MechanismPath>,
-    diagnosis: &Diagnosis,
+    diagnosis: &Findings,
 ) -> Result<regression_data::Track, EstimateError> {
     let bad = sample_faults::faults(recording).bad;
     if crate::identify::mechanism::raw(recording, path)?.force.is_some() {

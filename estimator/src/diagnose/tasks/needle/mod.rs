@@ -16,11 +16,11 @@ pub(crate) mod tests;
 pub(crate) mod time_delay;
 
 use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{
-    Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited, parameter,
-};
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, NextExperiment, NotExcited, parameter};
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
@@ -40,7 +40,7 @@ const PUNCTURE_SHARE: f64 = 0.03;
 const MUCH: f64 = 4.0;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
-pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
@@ -82,7 +82,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
     }
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
-        late.tell(&mut found, on_sheet.figures());
+        found.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
     found.hypotheses =
         simulated_channels::hypotheses((&sheet, shaft.as_ref()), (seen.holds, seen.two_fingered), law.is_some());
@@ -120,7 +120,7 @@ fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), 
     }
     match whole {
         Some(whole) => Ok((whole, names, left_out)),
-        None => Err(first_error.unwrap_or_else(crate::diagnose::options::nothing)),
+        None => Err(first_error.unwrap_or_else(options::nothing)),
     }
 }
 

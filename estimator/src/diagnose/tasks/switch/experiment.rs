@@ -8,6 +8,7 @@ use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
 use crate::diagnose::experiment::separation::{Imagined, separation};
+use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;
 use crate::segment::threshold::percentile;
@@ -37,9 +38,7 @@ pub fn propose(
         let (asked, motion) = asked(seen, count)?;
         let on_way = push.imagined(&imagine(seen, push, &motion));
         let beside: Option<Imagined> = known.map(|known| {
-            let of = |t: &crate::diagnose::experiment::waypoints::Throw| {
-                (usize::from(!t.right), t.fast_m_s, 2.0 * asked.half_range)
-            };
+            let of = |t: &waypoints::Throw| (usize::from(!t.right), t.fast_m_s, 2.0 * asked.half_range);
             curve::imagined(&motion.all().iter().map(of).collect::<Vec<_>>(), known, seen.period_s)
         });
         let told = |a: &Alternative| {

@@ -15,7 +15,8 @@ pub(crate) mod throw;
 
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use crate::diagnose::contract::{Alternative, CauseParameter, NextExperiment, NotExcited};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
@@ -61,7 +62,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
 }
 
 /// Diagnoses recordings of one switch.
-pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+pub fn switch(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let faults: Vec<sample_faults::Faults> = recordings.iter().map(sample_faults::faults).collect();
     let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
     let has_world = options.world.as_ref().and_then(Known::of).is_some();

@@ -4,6 +4,7 @@
 use crate::diagnose::answer::atlas::{Variable, View};
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::hypotheses::candidate;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
@@ -86,11 +87,7 @@ pub fn blow(
     // The model's restitution is kept in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
-        candidate.searched.push(crate::diagnose::hypotheses::candidate::Searched {
-            name: "e of the model",
-            value: restitution,
-            unit: "1",
-        });
+        candidate.searched.push(candidate::Searched { name: "e of the model", value: restitution, unit: "1" });
     }
     let along = vec![true; n];
     // A throw has one blow, so all of them are shown together, over their speed before impact.

@@ -7,6 +7,7 @@ pub(crate) mod sliding;
 
 use crate::diagnose::answer::build::{Beside, Found, Part, answer};
 use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
@@ -18,12 +19,12 @@ use crate::identify::tossed::{Tossed, tossed};
 use haptics::recording::Recording;
 
 /// Diagnoses recordings of one thrown body; `None` for other recordings.
-pub fn impact(recordings: &[Recording], options: &Options) -> Option<Result<Diagnosis, EstimateError>> {
+pub fn impact(recordings: &[Recording], options: &Options) -> Option<Result<Findings, EstimateError>> {
     let seen = tossed(recordings)?;
     Some(diagnosed(recordings, options, &seen))
 }
 
-fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Result<Diagnosis, EstimateError> {
+fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Result<Findings, EstimateError> {
     let meta = &recordings[0].meta;
     let floor = options.world.as_ref().and_then(|w| w.floor.as_ref());
     let sliding = sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)))?;

@@ -11,8 +11,10 @@ pub(crate) mod rows;
 
 use crate::diagnose::answer::atlas::{Variable, View};
 use crate::diagnose::answer::build::{Beside, Found, answer};
-use crate::diagnose::contract::{CauseParameter, Diagnosis, NotExcited};
+use crate::diagnose::contract::{CauseParameter, NotExcited};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
@@ -52,8 +54,8 @@ impl Side {
 }
 
 /// Diagnoses recordings of one transmission.
-pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let Some(names) = recordings.first().and_then(columns) else { return Err(crate::diagnose::options::nothing()) };
+pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
+    let Some(names) = recordings.first().and_then(columns) else { return Err(options::nothing()) };
     let mut seen = Seen::of(recordings, names);
     let mut beside = Beside {
         model: "rigid transmission+input without friction".to_owned(),
