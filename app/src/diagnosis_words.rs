@@ -1,7 +1,7 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
 use crate::ui::theme::state_name;
-use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Residual, Verdict};
+use estimator::diagnose::{Cause, CauseParameter, Findings, Residual, Verdict};
 use estimator::segment::SystemState;
 use haptics::law;
 
@@ -15,12 +15,12 @@ pub fn title(id: &str) -> String {
 }
 
 /// The answer in one line.
-pub fn headline(diagnosis: &Diagnosis) -> String {
+pub fn headline(diagnosis: &Findings) -> String {
     headline_of("The model", diagnosis)
 }
 
 /// The answer in one line, about what was compared.
-pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
+pub fn headline_of(model: &str, diagnosis: &Findings) -> String {
     let names: Vec<String> = diagnosis.causes.iter().map(|c| one(&c.id)).collect();
     match diagnosis.verdict {
         Verdict::None => "Nothing beyond the noise.".to_owned(),
@@ -111,7 +111,7 @@ pub fn said_in_words(parameter: &CauseParameter) -> Option<String> {
 }
 
 /// Shown unit of what was compared.
-pub fn compared_unit(diagnosis: &Diagnosis) -> String {
+pub fn compared_unit(diagnosis: &Findings) -> String {
     diagnosis.baseline.unit.as_deref().map_or_else(|| force_unit(diagnosis).to_owned(), shown_unit)
 }
 
@@ -134,7 +134,7 @@ pub fn residual_unit(left: &[&Residual]) -> (String, f64) {
 }
 
 /// Shown unit of the forces.
-pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
+pub fn force_unit(diagnosis: &Findings) -> &'static str {
     diagnosis.course.force_unit()
 }
 
@@ -144,7 +144,7 @@ pub fn shown_unit(unit: &str) -> String {
 }
 
 /// Shown unit of what a cause's gain is counted in, and its factor from SI.
-pub fn gain_unit(cause: &Cause, diagnosis: &Diagnosis) -> (String, f64) {
+pub fn gain_unit(cause: &Cause, diagnosis: &Findings) -> (String, f64) {
     match cause.gain.unit.as_deref() {
         Some("m") => ("mm".to_owned(), 1e3),
         Some(unit) => (shown_unit(unit), 1.0),

@@ -2,18 +2,18 @@
 //! seen against, and what it takes is what was left over.
 
 use estimator::diagnose::atlas::{Against, Channel, Variable};
-use estimator::diagnose::{Diagnosis, Options, diagnose};
+use estimator::diagnose::{Findings, Options, diagnose};
 use haptics::recording::{Channel as Column, Recording, Task};
 use tests::tasks::{Case, needle, switch, throw};
 
 /// The answer with its atlas.
-fn answered(case: &Case) -> Diagnosis {
+fn answered(case: &Case) -> Findings {
     let options = Options { atlas: true, ..case.options.clone() };
     diagnose(&case.recordings, &options).expect("it can be diagnosed")
 }
 
 /// The suspect of this name, in the channel where it has most evidence.
-fn suspect<'a>(answer: &'a Diagnosis, id: &str) -> (&'a Channel, &'a Against) {
+fn suspect<'a>(answer: &'a Findings, id: &str) -> (&'a Channel, &'a Against) {
     let all = answer.atlas.channels.iter().flat_map(|c| c.suspects.iter().map(move |s| (c, s)));
     let of_id = all.filter(|(_, s)| s.id == id);
     of_id.max_by(|a, b| a.1.score.total_cmp(&b.1.score)).unwrap_or_else(|| panic!("{id} is no suspect"))
@@ -28,7 +28,7 @@ fn left_over((channel, suspect): (&Channel, &Against)) -> (f64, f64) {
 }
 
 /// Every channel is whole, and the hidden cause takes most of what is left of its own.
-fn look(what: &str, answer: &Diagnosis, id: &str, variable: Variable, most_left: f64) {
+fn look(what: &str, answer: &Findings, id: &str, variable: Variable, most_left: f64) {
     for channel in &answer.atlas.channels {
         let n = channel.left.len();
         assert!(channel.recording.is_empty() || channel.recording.len() == n, "{what}: {}", channel.name);

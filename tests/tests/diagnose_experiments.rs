@@ -3,7 +3,7 @@
 //! `TOUCHSTONE_SEED=20400 cargo test -p tests --test diagnose_experiments` repeats a day, `TOUCHSTONE_TASK_CASES=30` asks more.
 
 use blind::Share;
-use estimator::diagnose::{Diagnosis, Experiment, diagnose};
+use estimator::diagnose::{Experiment, Findings, diagnose};
 use haptics::recording::Recording;
 use rayon::prelude::*;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -50,7 +50,7 @@ struct Asked {
     settled: bool,
 }
 
-fn open(answer: &Diagnosis, id: &str) -> bool {
+fn open(answer: &Findings, id: &str) -> bool {
     answer.causes.iter().any(|c| c.id == id) || answer.alternatives.iter().any(|a| a.id == id)
 }
 
@@ -70,7 +70,7 @@ fn ask(kind: &'static str, make: Make, perform: Perform, wrong: &str, seed: u64)
     Some(Asked { kind, power: next.expected_power, settled })
 }
 
-fn ids(answer: &Diagnosis) -> Vec<&str> {
+fn ids(answer: &Findings) -> Vec<&str> {
     answer.causes.iter().map(|c| c.id.as_str()).collect()
 }
 

@@ -2,7 +2,7 @@
 //!
 //! `TOUCHSTONE_SEED=20400 cargo test -p tests --test diagnose_validate` repeats a day.
 
-use estimator::diagnose::{Diagnosis, Options, Validation, diagnose, validate};
+use estimator::diagnose::{Findings, Options, Validation, diagnose, validate};
 use haptics::recording::Recording;
 use rayon::prelude::*;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -19,8 +19,8 @@ fn cases() -> u64 {
     std::env::var("TOUCHSTONE_TASK_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(3)
 }
 
-/// Diagnosis of the first recording and its validation on the second.
-fn measured((case, _, again): &Twice) -> (Diagnosis, Validation) {
+/// Findings of the first recording and its validation on the second.
+fn measured((case, _, again): &Twice) -> (Findings, Validation) {
     let found = diagnose(&case.recordings, &case.options).expect("it can be diagnosed");
     let options: &Options = &case.options;
     let mut on = validate(std::slice::from_ref(again), options, &found).expect("it can be measured");

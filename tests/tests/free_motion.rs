@@ -4,13 +4,13 @@
 //! `TOUCHSTONE_TASK_CASES=40 cargo test --release -p tests --test free_motion -- --nocapture` prints the figures of
 //! `docs/diagnosis.md`; without the number there is one case of each.
 
-use estimator::diagnose::{Diagnosis, Options, Verdict, diagnose, extended_world, validate};
+use estimator::diagnose::{Findings, Options, Verdict, diagnose, extended_world, validate};
 use haptics::law::Role;
 use haptics::recording::{Channel, Recording};
 use rayon::prelude::*;
 use tests::free_motion::{Case, Hidden};
 
-fn asked(recording: &Recording, baseline: Option<&str>) -> Diagnosis {
+fn asked(recording: &Recording, baseline: Option<&str>) -> Findings {
     let options = Options { baseline: baseline.map(str::to_owned), ..Options::default() };
     diagnose(std::slice::from_ref(recording), &options).expect("a free motion can be diagnosed")
 }
@@ -87,9 +87,8 @@ fn a_known_gravity_moment_gives_the_inertia_beside_a_hidden_spring() {
     };
     let turned = Case { zero_rad: -1.5, known: Vec::new(), ..case.clone() };
     let [known, unknown] = [case, turned].map(|case| asked(&case.recording(), None));
-    let stiffness = |found: &Diagnosis| found.causes.first().expect("a spring").parameters[0].clone();
-    let of =
-        |found: &Diagnosis| found.effects.iter().find(|e| e.role() == Role::Inertia).expect("an inertia").values[0];
+    let stiffness = |found: &Findings| found.causes.first().expect("a spring").parameters[0].clone();
+    let of = |found: &Findings| found.effects.iter().find(|e| e.role() == Role::Inertia).expect("an inertia").values[0];
     assert!((of(&known) - 0.01).abs() < 2e-4, "{}", of(&known));
     assert!((stiffness(&known).value - 0.05).abs() < 4.0 * stiffness(&known).std_error, "{known:?}");
     // Measured from the horizontal, and nothing known: per unit of inertia, with units that say so.
@@ -195,11 +194,11 @@ fn figures() {
                 continue;
             }
             for size in if hidden == Hidden::Nothing { vec![0.0] } else { vec![1.0, 4.0] } {
-                let answers: Vec<Diagnosis> = (7000..7000 + count)
+                let answers: Vec<Findings> = (7000..7000 + count)
                     .into_par_iter()
                     .map(|seed| asked(&make(seed, hidden, size).recording(), baseline))
                     .collect();
-                let is = |of: &dyn Fn(&Diagnosis) -> bool| answers.iter().filter(|found| of(found)).count();
+                let is = |of: &dyn Fn(&Findings) -> bool| answers.iter().filter(|found| of(found)).count();
                 let silent = is(&|found| found.verdict == Verdict::None);
                 let named = is(&|found| found.causes.iter().any(|c| c.id == id));
                 let within = is(&|found| {

@@ -158,7 +158,7 @@ fn answers(asked: &Asked) -> Value {
     let recordings = &asked.recordings;
     match diagnose(recordings, &asked.options) {
         Ok(diagnosis) => {
-            said.insert("diagnosis".to_owned(), serde_json::to_value(&diagnosis).expect("JSON"));
+            said.insert("diagnosis".to_owned(), serde_json::to_value(&diagnosis.diagnosis).expect("JSON"));
             if asked.whole {
                 let others = validate(recordings, &asked.options, &diagnosis);
                 said.insert("validation".to_owned(), or_error(others.map(|others| json!(others))));

@@ -2,7 +2,7 @@
 //!
 //! The axis has an integrator of its own (20 kHz, set-valued dry friction) and shares no formula with the estimator.
 
-use estimator::diagnose::{Diagnosis, Options, diagnose};
+use estimator::diagnose::{Findings, Options, diagnose};
 use haptics::recording::{Channel, Meta, Recording, Task};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -87,18 +87,18 @@ fn recording(seed: u64, hidden: Hidden) -> Recording {
     }
 }
 
-fn asked(seed: u64, hidden: Hidden, baseline: &str) -> Diagnosis {
+fn asked(seed: u64, hidden: Hidden, baseline: &str) -> Findings {
     let options = Options { baseline: Some(baseline.to_owned()), ..Options::default() };
     diagnose(&[recording(seed, hidden)], &options).expect("it can be diagnosed")
 }
 
-fn ids(found: &Diagnosis) -> Vec<&str> {
+fn ids(found: &Findings) -> Vec<&str> {
     let mut ids: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
     ids.sort_unstable();
     ids
 }
 
-fn value(found: &Diagnosis, id: &str) -> f64 {
+fn value(found: &Findings, id: &str) -> f64 {
     found.causes.iter().find(|c| c.id == id).map_or(f64::NAN, |c| c.parameters[0].value)
 }
 

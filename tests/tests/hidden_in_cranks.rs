@@ -4,7 +4,7 @@
 //! Strokes are sums of waves, forces are those of a weight, dry friction and oil; links are bent by the law of cosines. No formula is the
 //! estimator's.
 
-use estimator::diagnose::{Diagnosis, Options, Verdict, diagnose};
+use estimator::diagnose::{Findings, Options, Verdict, diagnose};
 use haptics::recording::{Channel, HandMeta, Meta, Recording, Task};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -145,15 +145,15 @@ fn recording(seed: u64, hidden: Hidden) -> Recording {
     }
 }
 
-fn asked(seed: u64, hidden: Hidden) -> Diagnosis {
+fn asked(seed: u64, hidden: Hidden) -> Findings {
     diagnose(&[recording(seed, hidden)], &Options::default()).expect("it can be diagnosed")
 }
 
-fn ids(found: &Diagnosis) -> Vec<&str> {
+fn ids(found: &Findings) -> Vec<&str> {
     found.causes.iter().map(|c| c.id.as_str()).collect()
 }
 
-fn value(found: &Diagnosis, id: &str, name: &str) -> f64 {
+fn value(found: &Findings, id: &str, name: &str) -> f64 {
     let cause = found.causes.iter().find(|c| c.id == id);
     cause.and_then(|c| c.parameters.iter().find(|p| p.name == name)).map_or(f64::NAN, |p| p.value)
 }
@@ -231,7 +231,7 @@ fn a_ripple_has_the_length_that_it_has() {
     }
 }
 
-fn is_on_the_bearing(found: &Diagnosis) -> bool {
+fn is_on_the_bearing(found: &Findings) -> bool {
     found.warnings.iter().any(|w| w.contains("the load on the bearing"))
 }
 

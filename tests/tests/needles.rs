@@ -4,7 +4,7 @@
 //! Each case pushes a tool in twice, at two places; it is cut in two between them. A new seed every day, as in `diagnose_tasks`.
 
 use blind::Share;
-use estimator::diagnose::{Diagnosis, Options, Verdict, diagnose};
+use estimator::diagnose::{Findings, Options, Verdict, diagnose};
 use haptics::recording::{Recording, Span};
 use std::time::{SystemTime, UNIX_EPOCH};
 use tests::tasks::needle::{Kind, make};
@@ -36,11 +36,11 @@ fn halves(kind: Kind, number: u64) -> [Recording; 2] {
     [part("first", 0, cut), part("second", cut, whole.len())]
 }
 
-fn asked(recordings: &[Recording]) -> Diagnosis {
+fn asked(recordings: &[Recording]) -> Findings {
     diagnose(recordings, &Options::default()).expect("the tool is pushed in")
 }
 
-fn names(diagnosis: &Diagnosis, id: &str) -> bool {
+fn names(diagnosis: &Findings, id: &str) -> bool {
     diagnosis.causes.iter().any(|c| c.id == id)
 }
 
@@ -85,7 +85,7 @@ fn more_recordings_sharpen_and_invent_nothing() {
         let both = halves(Kind::Hardening, number);
         let (one, two) = (asked(&both[..1]), asked(&both));
         let error =
-            |d: &Diagnosis| d.causes.iter().find(|c| c.id == "stiffness-hardening").map(|c| c.parameters[0].std_error);
+            |d: &Findings| d.causes.iter().find(|c| c.id == "stiffness-hardening").map(|c| c.parameters[0].std_error);
         named += usize::from(error(&two).is_some());
         sharper += usize::from(error(&two).zip(error(&one)).is_none_or(|(two, one)| two < one));
         let nothing = asked(&halves(Kind::Nothing, number));

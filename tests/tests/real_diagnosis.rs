@@ -1,11 +1,11 @@
 //! Diagnoses of real measurements. The data are not part of this repository; they are looked for in `../shared/data` beside the workspace,
 //! and each test says so when they are absent.
 
-use estimator::diagnose::{Cause, Diagnosis, Options, diagnose};
+use estimator::diagnose::{Cause, Findings, Options, diagnose};
 use haptics::recording::{Recording, Span};
 use tests::shared_recordings as load;
 
-fn diagnosed(recordings: &[Recording]) -> Diagnosis {
+fn diagnosed(recordings: &[Recording]) -> Findings {
     let found = diagnose(recordings, &Options::default()).expect("it can be diagnosed");
     for cause in &found.causes {
         println!("{}: {:?}; {}", cause.id, cause.parameters, cause.evidence);
@@ -14,7 +14,7 @@ fn diagnosed(recordings: &[Recording]) -> Diagnosis {
     found
 }
 
-fn cause<'a>(found: &'a Diagnosis, id: &str) -> &'a Cause {
+fn cause<'a>(found: &'a Findings, id: &str) -> &'a Cause {
     found.causes.iter().find(|c| c.id == id).unwrap_or_else(|| panic!("{id} is named"))
 }
 

@@ -2,7 +2,7 @@
 //! excluded, and what a hand of our own then does on the hidden one leaves only what is hidden.
 
 use app::experiment::{Like, Rehearsal, Timetable, rehearse};
-use estimator::diagnose::{Diagnosis, Experiment, Verdict, diagnose, suspects};
+use estimator::diagnose::{Experiment, Findings, Verdict, diagnose, suspects};
 use haptics::recording::Recording;
 use tests::tasks::{Case, needle, switch};
 
@@ -45,11 +45,11 @@ fn share_settled(rehearsal: &Rehearsal) -> f64 {
     settled as f64 / all.max(1) as f64
 }
 
-fn ids(answer: &Diagnosis) -> Vec<&str> {
+fn ids(answer: &Findings) -> Vec<&str> {
     answer.causes.iter().map(|c| c.id.as_str()).collect()
 }
 
-fn is_open(answer: &Diagnosis, id: &str) -> bool {
+fn is_open(answer: &Findings, id: &str) -> bool {
     answer.causes.iter().any(|c| c.id == id) || answer.alternatives.iter().any(|a| a.id == id)
 }
 

@@ -1,12 +1,12 @@
 //! Thrown cubes at any rate of the tracker, with few throws and with noisy orientations: a body flies, hits and slides for some time, not for some
 //! samples.
 
-use estimator::diagnose::{Cause, Diagnosis, diagnose};
+use estimator::diagnose::{Cause, Findings, diagnose};
 use estimator::identify::mechanism;
 use haptics::recording::{Channel, Recording};
 use tests::tasks::throw::{Kind, Sight, seen};
 
-fn diagnosed(kind: Kind, seed: u64, sight: &Sight) -> (Diagnosis, Option<f64>) {
+fn diagnosed(kind: Kind, seed: u64, sight: &Sight) -> (Findings, Option<f64>) {
     let (case, truth) = seen(kind, seed, sight);
     let found = diagnose(&case.recordings, &case.options).unwrap_or_else(|e| panic!("{kind:?} {sight:?}: {e}"));
     for cause in &found.causes {
@@ -15,7 +15,7 @@ fn diagnosed(kind: Kind, seed: u64, sight: &Sight) -> (Diagnosis, Option<f64>) {
     (found, truth.value.map(|(_, value)| value))
 }
 
-fn cause<'a>(found: &'a Diagnosis, id: &str) -> &'a Cause {
+fn cause<'a>(found: &'a Findings, id: &str) -> &'a Cause {
     found.causes.iter().find(|c| c.id == id).unwrap_or_else(|| panic!("{id} is named: {:?}", found.not_excited))
 }
 

@@ -1,7 +1,7 @@
 //! Transmissions that are generated: a driven input, a gap and a spring to an output that is loaded and rubs. The signs of the sensors are
 //! somebody's choice, and whichever it was, the same is found.
 
-use estimator::diagnose::{Cause, Diagnosis, Options, diagnose};
+use estimator::diagnose::{Cause, Findings, Options, diagnose};
 use haptics::recording::{Channel, Recording};
 use std::f64::consts::{PI, TAU};
 
@@ -75,11 +75,11 @@ fn turned(recording: &Recording, names: &[&str]) -> Recording {
     other
 }
 
-fn named<'a>(found: &'a Diagnosis, id: &str) -> Option<&'a Cause> {
+fn named<'a>(found: &'a Findings, id: &str) -> Option<&'a Cause> {
     found.causes.iter().find(|c| c.id == id)
 }
 
-fn value(found: &Diagnosis, id: &str, name: &str) -> f64 {
+fn value(found: &Findings, id: &str, name: &str) -> f64 {
     let cause = named(found, id).unwrap_or_else(|| panic!("{id}: {:?}", found.causes));
     cause.parameters.iter().find(|p| p.name == name).unwrap_or_else(|| panic!("{name}: {cause:?}")).value
 }
@@ -128,7 +128,7 @@ struct OnPaper {
     dry: f64,
 }
 
-fn found_on_paper(seed: u64, hidden: &OnPaper, loads: &[f64]) -> Diagnosis {
+fn found_on_paper(seed: u64, hidden: &OnPaper, loads: &[f64]) -> Findings {
     let found = diagnose(&on_paper(seed, hidden, loads), &Options::default()).expect("runs");
     for cause in &found.causes {
         println!("{seed} {}: {:?}", cause.id, cause.parameters);

@@ -3,7 +3,7 @@
 //! The logs share no formula with the estimator: a hand's strokes as sums of waves, a handle on its circle, forces of a weight and of dry friction,
 //! sensors with noise and steps. `TOUCHSTONE_SEED=20400 cargo test -p tests --test wandering` repeats a day.
 
-use estimator::diagnose::{Diagnosis, Options, diagnose};
+use estimator::diagnose::{Findings, Options, diagnose};
 use haptics::recording::{Channel, Meta, Recording, Task};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -87,11 +87,11 @@ fn recording(rng: &mut StdRng, grasp: Grasp) -> Recording {
     }
 }
 
-fn asked(recording: &Recording) -> Diagnosis {
+fn asked(recording: &Recording) -> Findings {
     diagnose(std::slice::from_ref(recording), &Options::default()).expect("it can be diagnosed")
 }
 
-fn value(found: &Diagnosis, name: &str) -> Option<[f64; 2]> {
+fn value(found: &Findings, name: &str) -> Option<[f64; 2]> {
     let slip = found.causes.iter().find(|c| c.id == "fingertip-slip")?;
     slip.parameters.iter().find(|p| p.name == name).map(|p| [p.value, p.std_error])
 }

@@ -5,7 +5,7 @@ use crate::report::Sheet;
 use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;
-use estimator::diagnose::Diagnosis;
+use estimator::diagnose::Findings;
 use estimator::estimate::Fit;
 use estimator::pipeline::{Analysis, Options, analyse};
 use haptics::recording::Recording;
@@ -55,7 +55,7 @@ struct Chain {
     /// What was identified.
     fit: Fit,
     /// What the model of the thesis leaves, and why.
-    diagnosis: Diagnosis,
+    diagnosis: Findings,
     /// Root mean square of measured − predicted by channel, N.
     residual_rms: Vec<(String, f64)>,
     /// How many values lie within two of their errors of those it was recorded with.
@@ -174,7 +174,7 @@ impl Demo {
         built_in: &BuiltIn,
         recordings: &[Recording],
         text: &mut String,
-    ) -> anyhow::Result<(Diagnosis, PathBuf)> {
+    ) -> anyhow::Result<(Findings, PathBuf)> {
         let options = estimator::diagnose::Options::default();
         let diagnosis = estimator::diagnose::diagnose(recordings, &options)?;
         let world = estimator::diagnose::extended_world(recordings, &options, &diagnosis)?;

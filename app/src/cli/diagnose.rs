@@ -73,7 +73,7 @@ impl Diagnose {
                 .with_context(|| format!("the world could not be written: {}", path.display()))?;
             let _ = writeln!(text, "world: {}", path.display());
         }
-        Ok(Output { text, json: serde_json::to_value(&diagnosis)? })
+        Ok(Output { text, json: serde_json::to_value(&diagnosis.diagnosis)? })
     }
 }
 
@@ -143,7 +143,7 @@ impl Diagnose {
                 task.give_to(recording);
             }
         }
-        Ok(serde_json::to_value(diagnose(&recordings, options)?)?)
+        Ok(serde_json::to_value(diagnose(&recordings, options)?.diagnosis)?)
     }
 
     /// Version, revision of the sources if the build knows it, and options: a change of these may change the answer.

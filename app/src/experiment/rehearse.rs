@@ -3,7 +3,7 @@
 
 use super::tool::{insert, is_tool};
 use super::{MotionPlan, Timetable, perform};
-use estimator::diagnose::{Diagnosis, Experiment, NextExperiment, Suspect};
+use estimator::diagnose::{Experiment, Findings, NextExperiment, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Recording, Task};
 
@@ -119,7 +119,7 @@ pub fn rehearse(
     suspects: &[Suspect],
     next: &NextExperiment,
     (rounds, like): (u64, Like<'_>),
-    again: &dyn Fn(&Recording) -> Result<Diagnosis, String>,
+    again: &dyn Fn(&Recording) -> Result<Findings, String>,
     goes_on: &dyn Fn(f64) -> bool,
 ) -> Result<Rehearsal, Option<String>> {
     let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.".to_owned())?;
@@ -169,7 +169,7 @@ pub fn rehearse(
     Ok(Rehearsal { outcomes })
 }
 
-fn judged(answer: &Diagnosis, id: &str, separates: &[String], recording: Recording) -> Round {
+fn judged(answer: &Findings, id: &str, separates: &[String], recording: Recording) -> Round {
     let named: Vec<String> = answer.causes.iter().map(|c| c.id.clone()).collect();
     let open: Vec<String> = answer.alternatives.iter().filter(|a| a.posterior > OPEN).map(|a| a.id.clone()).collect();
     let others = separates.iter().filter(|s| *s != id);
@@ -193,7 +193,7 @@ mod tests {
     struct Asked {
         recording: [Recording; 1],
         options: Options,
-        answer: Diagnosis,
+        answer: Findings,
         next: NextExperiment,
         suspects: Vec<Suspect>,
     }
@@ -208,7 +208,7 @@ mod tests {
             Self { recording, options, answer, next, suspects }
         }
 
-        fn again(&self, more: &Recording) -> Result<Diagnosis, String> {
+        fn again(&self, more: &Recording) -> Result<Findings, String> {
             let both = [self.recording[0].clone(), more.clone()];
             diagnose(&both, &self.options).map_err(|error| error.to_string())
         }

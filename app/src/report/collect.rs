@@ -3,7 +3,7 @@
 use super::source::Source;
 use crate::ui::plots::Residuals;
 use crate::ui::prepare::Prepared;
-use estimator::diagnose::{self, Diagnosis};
+use estimator::diagnose::{self, Findings};
 use estimator::estimate::Parameter;
 use estimator::online::enough::{Enough, Wanted};
 use estimator::online::enough_for;
@@ -38,10 +38,10 @@ pub struct Content {
     pub analysis: Result<Analysis, String>,
     /// Attained share of the target accuracy per parameter, with the missing motion.
     pub enough: Vec<Enough>,
-    /// Diagnosis of the base model of the task.
-    pub diagnosis: Result<Diagnosis, String>,
-    /// Diagnosis of the calibrated world; `None` where it failed or agrees.
-    pub of_world: Option<Diagnosis>,
+    /// Findings of the base model of the task.
+    pub diagnosis: Result<Findings, String>,
+    /// Findings of the calibrated world; `None` where it failed or agrees.
+    pub of_world: Option<Findings>,
 }
 
 /// A recording that is drawn.

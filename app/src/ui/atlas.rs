@@ -3,9 +3,9 @@
 
 use super::format;
 use crate::diagnosis_words::{force_unit, title};
-use estimator::diagnose::Diagnosis;
+use estimator::diagnose::Findings;
 use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
-use estimator::diagnose::course::{Course, Instant};
+use estimator::diagnose::{Course, Instant};
 use std::f64::consts::TAU;
 
 /// Ranges of a variable: fewest and most; rows that a mean needs, and usually has at least.
@@ -69,7 +69,7 @@ pub struct Sheet {
 
 impl Sheet {
     /// The atlas of the recording of this number.
-    pub fn new(diagnosis: &Diagnosis, recording: usize) -> Self {
+    pub fn new(diagnosis: &Findings, recording: usize) -> Self {
         let mut cells = along_the_motion(diagnosis, recording);
         cells.extend(diagnosis.atlas.channels.iter().flat_map(|channel| of_channel(diagnosis, channel, recording)));
         Self { cells }
@@ -110,7 +110,7 @@ impl Cell {
     }
 }
 
-fn is_named(diagnosis: &Diagnosis, id: &str) -> bool {
+fn is_named(diagnosis: &Findings, id: &str) -> bool {
     diagnosis.causes.iter().any(|c| c.id == id)
 }
 
@@ -125,7 +125,7 @@ fn scaled(mut cells: Vec<Cell>, channel: &'static str, unit: &'static str, noise
     cells
 }
 
-fn along_the_motion(diagnosis: &Diagnosis, recording: usize) -> Vec<Cell> {
+fn along_the_motion(diagnosis: &Findings, recording: usize) -> Vec<Cell> {
     let (course, atlas) = (&diagnosis.course, &diagnosis.atlas);
     let trusted = |i: &usize| {
         let row = &course.instants[*i];
@@ -140,7 +140,7 @@ fn along_the_motion(diagnosis: &Diagnosis, recording: usize) -> Vec<Cell> {
 }
 
 /// A channel of a task without one coordinate.
-fn of_channel(diagnosis: &Diagnosis, channel: &Channel, recording: usize) -> Vec<Cell> {
+fn of_channel(diagnosis: &Findings, channel: &Channel, recording: usize) -> Vec<Cell> {
     let (unit, factor) = format::channel_unit(channel.unit);
     // Short recordings are seen all together.
     let is_of = |row: usize| channel.recording.get(row).is_none_or(|of| *of == recording);

@@ -6,7 +6,7 @@ use super::jobs::{JobKind, Outcome};
 use super::mapping::name_of;
 use super::prepare::Prepared;
 use super::session::{Session, sentence};
-use estimator::diagnose::{self, Diagnosis, Options, Progress, Validation};
+use estimator::diagnose::{self, Findings, Options, Progress, Validation};
 use haptics::recording::Recording;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -104,7 +104,7 @@ pub fn check_now(
     }
 }
 
-fn one(recording: &Recording, options: &Options, diagnosis: &Diagnosis) -> Checked {
+fn one(recording: &Recording, options: &Options, diagnosis: &Findings) -> Checked {
     let found = diagnose::validate(std::slice::from_ref(recording), options, diagnosis);
     let found = found.map_err(|error| sentence(&error.to_string())).and_then(|mut all| {
         if all.is_empty() { Err("Nothing could be compared.".to_owned()) } else { Ok(all.swap_remove(0)) }

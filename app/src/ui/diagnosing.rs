@@ -11,7 +11,7 @@ use super::prepare::Prepared;
 use super::session::{Session, Workspace, sentence};
 use super::trainer::{Compare, WorldChoice};
 use crate::experiment::Rehearsal;
-use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
+use estimator::diagnose::{self, Findings, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::Arc;
@@ -44,7 +44,7 @@ impl StartFrom {
 #[derive(Debug)]
 pub struct Answer {
     /// What was found.
-    pub diagnosis: Diagnosis,
+    pub diagnosis: Findings,
     /// Its curves, one a recording.
     pub residuals: Vec<Residuals>,
     /// What every suspect would take of the force, one a recording.

@@ -4,7 +4,7 @@ use super::jobs::{JobKind, Outcome};
 use super::session::Session;
 use super::trainer::{Operator, Trainer, WorldChoice};
 use crate::experiment::{SIMULATED, Step, Timetable, what_is_known};
-use estimator::diagnose::{Diagnosis, Experiment};
+use estimator::diagnose::{Experiment, Findings};
 use haptics::device::HandGoal;
 use haptics::recording::Meta;
 use haptics::world::World;
@@ -42,7 +42,7 @@ impl Guided {
     }
 
     /// What a diagnosis asks for, in the world that stands in Train.
-    pub fn in_world(world: &World, diagnosis: &Diagnosis) -> Result<Self, String> {
+    pub fn in_world(world: &World, diagnosis: &Findings) -> Result<Self, String> {
         let next = diagnosis.next_experiment.as_ref().ok_or("Nothing is open.")?;
         let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.")?;
         Ok(Self::new(Timetable::new(world, asked, &next.motion)?, asked.clone(), None))

@@ -19,7 +19,6 @@ pub(crate) mod tasks;
 pub(crate) mod validation;
 pub(crate) mod worlds;
 
-use crate::diagnose::findings::Findings;
 use crate::estimate::EstimateError;
 use crate::log::NO_CLOCK;
 use crate::segment::task_of;
@@ -32,6 +31,7 @@ pub use contract::{
 pub use experiment::strokes::{Stroke, Strokes};
 pub use experiment::waypoints::{Insertions, Throw, Throws};
 pub use extension::sensor_fault::SensorFault;
+pub use findings::Findings;
 use haptics::recording::{Recording, Task};
 pub use options::Options;
 pub use progress::Progress;

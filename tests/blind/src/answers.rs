@@ -6,7 +6,7 @@ use super::interval::quantile;
 use super::plan::Log;
 use super::score::{Row, ask};
 use super::sets::{Job, Set};
-use estimator::diagnose::{Diagnosis, Rollout, RolloutOf};
+use estimator::diagnose::{Findings, Rollout, RolloutOf};
 
 fn job(bench: Bench, effects: Vec<(Effect, u32)>, ratio: f64, seed: u64) -> Job {
     let set = if effects.is_empty() { Set::Null } else { Set::Single };
@@ -18,7 +18,7 @@ fn asked(job: Job) -> Row {
     rows.remove(0)
 }
 
-fn answer(row: &Row) -> &Diagnosis {
+fn answer(row: &Row) -> &Findings {
     row.answer.as_ref().expect("an answer")
 }
 

@@ -181,7 +181,7 @@ fn a_second_recording_is_of_the_same_object_moved_otherwise() {
     assert!(mixed[1] - mixed[0] > 0.5, "{mixed:?}");
 }
 
-fn said(ids: &[&str], others: &[(&str, &str)], rms: [f64; 2]) -> Diagnosis {
+fn said(ids: &[&str], others: &[(&str, &str)], rms: [f64; 2]) -> Findings {
     let causes: Vec<_> = ids
         .iter()
         .map(|id| {
@@ -195,13 +195,14 @@ fn said(ids: &[&str], others: &[(&str, &str)], rms: [f64; 2]) -> Diagnosis {
         .map(|(id, place)| serde_json::json!({"id": id, "instead_of": place, "posterior": 0.1, "why": ""}))
         .collect();
     let verdict = if ids.is_empty() { "none" } else { "causes" };
-    serde_json::from_value(serde_json::json!({
+    let diagnosis = serde_json::from_value(serde_json::json!({
         "verdict": verdict,
         "baseline": {"model": "", "rms_N": 0.0, "heldout_rms_N": rms[0], "whiteness_p": 0.0},
         "noise_floor_N": 0.0, "causes": causes, "alternatives": alternatives, "not_excited": [],
         "next_experiment": null, "final": {"heldout_rms_N": rms[1], "whiteness_p": 0.0}
     }))
-    .expect("a diagnosis")
+    .expect("a diagnosis");
+    Findings { diagnosis, ..Findings::default() }
 }
 
 #[test]

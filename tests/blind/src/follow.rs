@@ -4,7 +4,7 @@ use super::case::Object;
 use super::interval::Share;
 use super::score::{Engine, Row};
 use super::sets::Set;
-use estimator::diagnose::{Diagnosis, Options};
+use estimator::diagnose::{Findings, Options};
 use haptics::recording::Recording;
 
 /// An alternative less probable than this is as good as excluded.
@@ -20,14 +20,14 @@ pub struct Followed {
     /// Probability of that, as the answer has it.
     pub expected_power: f64,
     /// The answer to both recordings together.
-    pub answer: Result<Diagnosis, String>,
+    pub answer: Result<Findings, String>,
 }
 
 /// Performs what an answer asks for and asks again, with both recordings; nothing where nothing (that can be performed) was asked for.
 pub fn follow(
     object: &Object,
     first: &[Recording],
-    answer: &Diagnosis,
+    answer: &Findings,
     options: &Options,
     engine: &Engine<'_>,
     seed: u64,

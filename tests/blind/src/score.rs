@@ -7,7 +7,7 @@ use super::follow::{Followed, follow};
 use super::interval::{Share, quantile};
 use super::plan::Log;
 use super::sets::{Job, Set};
-use estimator::diagnose::{Diagnosis, Options, Verdict};
+use estimator::diagnose::{Findings, Options, Verdict};
 use haptics::recording::{Recording, Task};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -41,7 +41,7 @@ pub struct Row {
     /// What the answer takes off the unexplained force as a share of what the oracle takes; see [`Row::gain_of_oracle`].
     pub share_of_oracle: f64,
     /// The answer, or the sentence of the error.
-    pub answer: Result<Diagnosis, String>,
+    pub answer: Result<Findings, String>,
     /// How long the answer took, s.
     pub took_s: f64,
     /// What came of the experiment that the answer asks for.
@@ -49,7 +49,7 @@ pub struct Row {
 }
 
 /// Whoever looks for what is hidden.
-pub type Engine<'a> = dyn Fn(&[Recording], &Options) -> Result<Diagnosis, String> + Sync + 'a;
+pub type Engine<'a> = dyn Fn(&[Recording], &Options) -> Result<Findings, String> + Sync + 'a;
 
 /// What a case may tell beside its recordings.
 pub fn options(case: &Case) -> Options {
@@ -78,7 +78,7 @@ pub fn ask(jobs: &[Job], engine: &Engine<'_>) -> Vec<Row> {
 
 impl Row {
     /// Brings a truth and an answer together.
-    pub fn new(job: &Job, case: &Case, truth: &Truth, answer: Result<Diagnosis, String>, took_s: f64) -> Self {
+    pub fn new(job: &Job, case: &Case, truth: &Truth, answer: Result<Findings, String>, took_s: f64) -> Self {
         let force = truth.hidden.len() == 1 && truth.hidden[0].effect.shows() == Shows::Force;
         Self {
             set: job.set,
@@ -234,7 +234,7 @@ const TRUSTED: f64 = 0.5;
 const LEAST_GAIN: f64 = 0.02;
 
 /// Powers taken off the locked rows: by the answer's extension, and by taking off the hidden effect itself.
-fn share_of_oracle(answer: &Diagnosis, truth: &Truth) -> f64 {
+fn share_of_oracle(answer: &Findings, truth: &Truth) -> f64 {
     let locked = answer.course.instants.iter().filter(|i| i.is_locked && i.recording == 0 && i.weight >= TRUSTED);
     let (mut found, mut oracle, mut noise) = (0.0, 0.0, 0.0);
     for instant in locked {

@@ -4,7 +4,7 @@
 //! `TOUCHSTONE_SEED=20400 cargo test -p blind --test forward` repeats a day.
 
 use blind::{Bench, Case, Effect, Log, Spec, make, score};
-use estimator::diagnose::{Diagnosis, diagnose, worlds};
+use estimator::diagnose::{Findings, diagnose, worlds};
 use estimator::simulate::simulate;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -35,7 +35,7 @@ const RUN: [(Bench, Effect); 15] = [
 ];
 
 /// Whether the extended world leaves less of the recording than the plain one.
-fn foretells(case: &Case, found: &Diagnosis) -> bool {
+fn foretells(case: &Case, found: &Findings) -> bool {
     let worlds = worlds(&case.recordings, &score::options(case), found).expect("it can be calibrated");
     let left_n = |world| {
         let predicted = simulate(world, &case.recordings[0]).expect("the motion was recorded");

@@ -4,7 +4,7 @@
 //! `TOUCHSTONE_SEED=20400 cargo test -p blind --test recording` repeats a day.
 
 use blind::{Bench, Case, Effect, Log, Spec, make, score};
-use estimator::diagnose::{Cause, Diagnosis, Verdict, diagnose};
+use estimator::diagnose::{Cause, Findings, Verdict, diagnose};
 use haptics::recording::{Channel, Recording};
 use std::f64::consts::TAU;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -34,16 +34,16 @@ fn column(recording: &Recording, name: &str) -> Vec<f64> {
     recording.channel(name).unwrap_or_else(|| panic!("there is no {name}")).to_vec()
 }
 
-fn answer(case: &Case) -> Diagnosis {
+fn answer(case: &Case) -> Findings {
     diagnose(&case.recordings, &score::options(case)).expect("it can be diagnosed")
 }
 
-fn named<'a>(found: &'a Diagnosis, id: &str) -> &'a Cause {
+fn named<'a>(found: &'a Findings, id: &str) -> &'a Cause {
     let said: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
     found.causes.iter().find(|c| c.id == id).unwrap_or_else(|| panic!("{id} was not named but {said:?}"))
 }
 
-fn is_alone(found: &Diagnosis, id: &str) {
+fn is_alone(found: &Findings, id: &str) {
     named(found, id);
     assert_eq!(found.causes.len(), 1, "beside {id}: {:?}", found.causes.iter().map(|c| &c.id).collect::<Vec<_>>());
 }
@@ -215,7 +215,7 @@ fn a_known_radius_tells_the_scale_of_the_lengths() {
         case.recordings[0].meta.known.insert("radius_m".to_owned(), radius_m);
         answer(&case)
     };
-    let epsilon = |found: &Diagnosis| named(found, "length-scale").parameters[0].clone();
+    let epsilon = |found: &Findings| named(found, "length-scale").parameters[0].clone();
     let silly_m = 0.3;
     let radius_m = silly_m * (1.0 + epsilon(&with_known(silly_m)).value);
     assert_eq!(with_known(radius_m).verdict, Verdict::None, "its own radius");

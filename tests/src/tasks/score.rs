@@ -2,7 +2,7 @@
 
 use super::{Case, Truth};
 use blind::Share;
-use estimator::diagnose::{Cause, Diagnosis, Verdict, diagnose};
+use estimator::diagnose::{Cause, Findings, Verdict, diagnose};
 use std::fmt::Write;
 
 /// One case, asked.
@@ -14,7 +14,7 @@ pub struct Row {
     /// What is true.
     pub truth: Truth,
     /// The answer, or the sentence of the error.
-    pub answer: Result<Diagnosis, String>,
+    pub answer: Result<Findings, String>,
 }
 
 /// Makes a case and asks the program.

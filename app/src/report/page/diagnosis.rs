@@ -9,7 +9,7 @@ use crate::report::chart;
 use crate::report::collect::Content;
 use crate::ui::format;
 use crate::ui::session::sentence;
-use estimator::diagnose::{Cause, CauseParameter, Diagnosis, RolloutOf};
+use estimator::diagnose::{Cause, CauseParameter, Findings, RolloutOf};
 use estimator::words::amount;
 use haptics::law::{self, Kind};
 use maud::{Markup, html};
@@ -33,7 +33,7 @@ pub fn diagnosis(content: &Content) -> Markup {
     }
 }
 
-fn answer(content: &Content, diagnosis: &Diagnosis) -> Markup {
+fn answer(content: &Content, diagnosis: &Findings) -> Markup {
     let found = !diagnosis.causes.is_empty();
     html! {
         p class="verdict" { (headline(diagnosis)) }
@@ -64,8 +64,8 @@ fn answer(content: &Content, diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// Diagnosis with everything fitted in the model.
-fn calibrated(diagnosis: &Diagnosis) -> Markup {
+/// Findings with everything fitted in the model.
+fn calibrated(diagnosis: &Findings) -> Markup {
     html! {
         div class="cause" {
             h4 { "The same question to the calibrated world" }
@@ -119,7 +119,7 @@ fn percent(share: f64) -> String {
 }
 
 /// Residual of the base and of the extended model, and the noise, as bars of one scale.
-fn levels(diagnosis: &Diagnosis) -> Markup {
+fn levels(diagnosis: &Findings) -> Markup {
     let unit = compared_unit(diagnosis);
     let (before, after, noise) =
         (diagnosis.baseline.heldout_rms_n, diagnosis.end.heldout_rms_n, diagnosis.noise_floor_n);
@@ -146,7 +146,7 @@ fn levels(diagnosis: &Diagnosis) -> Markup {
 }
 
 /// Residual in every channel and state.
-fn by_state(diagnosis: &Diagnosis) -> Markup {
+fn by_state(diagnosis: &Findings) -> Markup {
     let all = &diagnosis.residuals;
     html! {
         @if all.len() > 1 {
@@ -173,7 +173,7 @@ fn by_state(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-fn card(rank: usize, cause: &Cause, diagnosis: &Diagnosis) -> Markup {
+fn card(rank: usize, cause: &Cause, diagnosis: &Findings) -> Markup {
     // An unnamed residual term is not a cause: it has no probability and is in no world.
     let named = law::cause(&cause.id).is_some();
     let others: Vec<_> = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id).collect();
@@ -207,7 +207,7 @@ fn card(rank: usize, cause: &Cause, diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
+fn gain(cause: &Cause, diagnosis: &Findings) -> Markup {
     let gain = &cause.gain;
     let ((unit, factor), [low, high]) = (gain_unit(cause, diagnosis), gain.interval);
     let rms = |value: f64| format::significant(value, 2);

@@ -6,7 +6,7 @@ use crate::report::Sheet;
 use crate::report::collect::Content;
 use crate::ui::format;
 use crate::ui::session::sentence;
-use estimator::diagnose::{Diagnosis, Verdict};
+use estimator::diagnose::{Findings, Verdict};
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::recording::Task;
 use maud::{Markup, html};
@@ -98,7 +98,7 @@ fn summary(content: &Content) -> Markup {
 }
 
 /// Residual of the calibrated world, in one sentence.
-pub fn of_world(diagnosis: &Diagnosis) -> String {
+pub fn of_world(diagnosis: &Findings) -> String {
     match diagnosis.verdict {
         Verdict::None => "The world that was calibrated leaves nothing beyond the noise.".to_owned(),
         Verdict::Unexplained => {

@@ -5,7 +5,7 @@ use crate::diagnosis_words::listed;
 use crate::report::chart;
 use crate::report::collect::{Content, Drawn};
 use crate::ui::format;
-use estimator::diagnose::{Diagnosis, Verdict};
+use estimator::diagnose::{Findings, Verdict};
 use estimator::signal::noise::white_noise;
 use estimator::simulate::Simulation;
 use maud::{Markup, html};
@@ -80,7 +80,7 @@ fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
 
 /// Explanation why a world without a significant residual leaves a share of single channels here; `None` if it does
 /// not.
-pub fn beside_the_diagnosis(content: &Content, diagnosis: &Diagnosis) -> Option<String> {
+pub fn beside_the_diagnosis(content: &Content, diagnosis: &Findings) -> Option<String> {
     if diagnosis.verdict != Verdict::None {
         return None;
     }

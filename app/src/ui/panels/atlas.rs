@@ -13,7 +13,7 @@ use egui::{
     Align, Align2, Color32, FontId, Layout, Pos2, Rect, Response, RichText, ScrollArea, Sense, Shape, Stroke, Ui, pos2,
     vec2,
 };
-use estimator::diagnose::Diagnosis;
+use estimator::diagnose::Findings;
 use haptics::law;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -31,7 +31,7 @@ const WORDS: f32 = 18.0;
 const NUMBERS: [f32; 2] = [52.0, 20.0];
 
 /// Draws the grid, or one candidate enlarged.
-pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
+pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Findings) {
     let open = session.diagnosing.atlas_open.clone();
     match open.and_then(|key| sheet.find(&key)) {
         Some(cell) => large(ui, session, cell, diagnosis),
@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagn
     }
 }
 
-fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
+fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Findings) {
     let gap = space::M;
     let mut clicked = None;
     ScrollArea::vertical().id_salt("atlas").auto_shrink(false).show(ui, |ui| {
@@ -75,7 +75,7 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis
 }
 
 /// Causes detected outside of a channel: faults of samples, scales from a free fall.
-fn without_picture(sheet: &Sheet, diagnosis: &Diagnosis) -> Option<String> {
+fn without_picture(sheet: &Sheet, diagnosis: &Findings) -> Option<String> {
     let unseen =
         diagnosis.causes.iter().filter(|c| law::cause(&c.id).is_some() && sheet.cells.iter().all(|s| s.id != c.id));
     let names: Vec<String> = unseen.map(|c| title(&c.id)).collect();
@@ -165,7 +165,7 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
 }
 
 /// Draws one candidate over the whole panel, with numbers and text.
-fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis) {
+fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Findings) {
     let p = palette(ui);
     compact(ui, |ui| {
         if ui.add(egui::Button::new((Icon::Back, words::ALL_SUSPECTS)).small()).clicked()

@@ -14,7 +14,7 @@ use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
 use egui::{Align, Layout, RichText, TextEdit, Ui};
-use estimator::diagnose::{Diagnosis, NextExperiment};
+use estimator::diagnose::{Findings, NextExperiment};
 use haptics::law::Coordinate;
 use std::path::PathBuf;
 
@@ -44,7 +44,7 @@ mod words {
 }
 
 /// Card below the causes.
-pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
+pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
     let Some(next) = &diagnosis.next_experiment else { return };
     plain_card(ui, words::RECORD_NEXT, |ui| {
         ui.add(egui::Label::new(sentence(&next.motion)).wrap());
@@ -67,7 +67,7 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
 }
 
 /// Coordinate of a directly driven mechanism; `None` for objects that the hand of Train can hold.
-fn driven(session: &Session, diagnosis: &Diagnosis) -> Option<Coordinate> {
+fn driven(session: &Session, diagnosis: &Findings) -> Option<Coordinate> {
     let task = session.choice.task;
     let is_mechanism = session.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
     is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
@@ -214,7 +214,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Questions resolved by a later recording, and simulated recordings: above the causes.
-pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
+pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Findings) {
     if !diagnosis.settled.is_empty() {
         plain_card(ui, words::SETTLED, |ui| {
             for settled in &diagnosis.settled {

@@ -2,8 +2,8 @@
 
 use crate::ui::format;
 use egui_plot::PlotPoint;
-use estimator::diagnose::Diagnosis;
-use estimator::diagnose::course::{Course, Instant};
+use estimator::diagnose::Findings;
+use estimator::diagnose::{Course, Instant};
 use estimator::log::gap_above_s;
 use std::f64::consts::TAU;
 
@@ -81,7 +81,7 @@ pub struct Residuals {
 
 impl Residuals {
     /// Curves of the recording with this index.
-    pub fn new(diagnosis: &Diagnosis, recording: usize) -> Self {
+    pub fn new(diagnosis: &Findings, recording: usize) -> Self {
         let course = &diagnosis.course;
         let rows: Vec<&Instant> = course.instants.iter().filter(|i| i.recording == recording).collect();
         let sure: Vec<&Instant> = rows.iter().copied().filter(|i| i.weight >= LEAST_WEIGHT).collect();
