@@ -1,12 +1,12 @@
 //! Everything that a diagnosis found: the published answer, and data for plots, worlds and checks on other recordings.
 
-use super::answer::atlas::Atlas;
-use super::answer::time_series::Course;
 use super::contract::{Baseline, Diagnosis, Final};
-use super::data::coordinate::Along;
-use super::extension::hypothetical_worlds::Hypothesis;
-use super::recording::delay_scan::Late;
-use super::validation::fitted_terms::Kept;
+use crate::diagnose::answer::atlas::Atlas;
+use crate::diagnose::answer::time_series::Course;
+use crate::diagnose::data::coordinate::Along;
+use crate::diagnose::extension::hypothetical_worlds::Hypothesis;
+use crate::diagnose::recording::delay_scan::Late;
+use crate::diagnose::validation::fitted_terms::Kept;
 use haptics::law::Effect;
 use std::ops::{Deref, DerefMut};
 
@@ -21,7 +21,7 @@ pub struct Findings {
     pub effects: Vec<Effect>,
     /// Measured and modelled force, row by row.
     pub course: Course,
-    /// The residual beside every suspect; empty unless [`super::Options::atlas`] asks for it.
+    /// The residual beside every suspect; empty unless [`super::options::Options::atlas`] asks for it.
     pub atlas: Atlas,
     /// Part of a sample by which force and motion differ in time, s: corrected, and not called a delay.
     pub skew_s: f64,

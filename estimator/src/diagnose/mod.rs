@@ -35,7 +35,7 @@ pub use findings::Findings;
 use haptics::recording::{Recording, Task};
 pub use options::Options;
 pub use progress::Progress;
-pub use tasks::mechanism::named;
+pub use tasks::baseline_models::named;
 pub use worlds::{Suspect, Worlds, extended_world, suspects, worlds};
 
 /// Diagnoses one or several recordings of the same object.

@@ -1,11 +1,11 @@
 //! Worlds of a diagnosis: without and with its causes, and one for every answer that the recordings leave open.
 
 use super::extension::{block_world, needle_world, switch_world};
+use super::findings::Findings;
 use super::options::Options;
 use crate::diagnose::extension::hypothetical_worlds::{Hypothesis, Inside};
 use crate::diagnose::extension::sensor_fault::SensorFault;
 use crate::diagnose::extension::world::with_laws;
-use crate::diagnose::findings::Findings;
 use crate::estimate::EstimateError;
 use crate::pipeline;
 use haptics::recording::Recording;

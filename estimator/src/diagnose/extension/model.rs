@@ -2,8 +2,7 @@
 
 use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::candidate::{Candidate, about_its_zero};
-use crate::diagnose::hypotheses::free_motion;
-use crate::diagnose::hypotheses::slope;
+use crate::diagnose::hypotheses::{free_motion, slope};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Solved;
 use crate::diagnose::selection::profile_likelihood::{settled, shares};

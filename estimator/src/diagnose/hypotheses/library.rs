@@ -5,8 +5,7 @@ use super::candidate::{Candidate, Column, Shape};
 use super::grid::Grid;
 use super::regressor_cache::Columns;
 use crate::diagnose::data::regression_data::{Place, Row, Track, Zero};
-use crate::diagnose::data::row_means;
-use crate::diagnose::data::stick_phases;
+use crate::diagnose::data::{row_means, stick_phases};
 use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{

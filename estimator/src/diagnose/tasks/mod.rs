@@ -1,4 +1,4 @@
-pub(crate) mod axis_signs;
+pub(crate) mod baseline_models;
 pub(crate) mod carried_block;
 pub(crate) mod crank;
 pub(crate) mod delay_correction;

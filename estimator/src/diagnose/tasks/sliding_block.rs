@@ -5,7 +5,8 @@
 //! weight is known (less the lift of the fingers), and a constant otherwise. A tilted table pulls on the block alone.
 //! Empty fingers feel a sensor bias, too.
 
-use super::mechanism::{named, rows};
+use super::baseline_models::named;
+use super::mechanism::rows;
 use super::one_coordinate;
 use crate::diagnose::answer::along_coordinate;
 use crate::diagnose::contract::{

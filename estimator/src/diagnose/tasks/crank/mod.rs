@@ -1,5 +1,6 @@
 //! Diagnosis of cranks.
 
+pub(crate) mod axis_signs;
 pub(crate) mod bearing_load;
 pub(crate) mod bearing_load_confounding;
 pub(crate) mod contact_phases;
@@ -8,7 +9,8 @@ pub(crate) mod path;
 pub(crate) mod path_residual;
 pub(crate) mod rows;
 
-use super::{axis_signs, one_coordinate};
+use super::baseline_models::plain_crank;
+use super::one_coordinate;
 use crate::diagnose::answer::{along_coordinate, atlas, excitation};
 use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
 use crate::diagnose::data::regression_data::Model;
@@ -20,7 +22,7 @@ use crate::diagnose::selection::comparison;
 use crate::diagnose::selection::rules::threshold;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
-use haptics::law::{Effect, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
 
 /// Diagnoses recordings of one crank.
@@ -212,11 +214,6 @@ fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
     if link == Some(Link::First) {
         cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
     }
-}
-
-/// The thesis's crank (eq. 5.2).
-pub fn plain_crank() -> Model {
-    [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
 }
 
 /// Takes a weight that the sidecar states out of the fitted laws.

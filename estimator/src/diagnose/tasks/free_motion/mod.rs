@@ -9,7 +9,7 @@
 pub(crate) mod rows;
 pub(crate) mod scale;
 
-use super::mechanism::{known_laws, named};
+use super::baseline_models::{known_laws, named};
 use super::one_coordinate;
 use crate::diagnose::answer::along_coordinate::explain;
 use crate::diagnose::answer::atlas;
@@ -20,8 +20,7 @@ use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::rate_signs;
-use crate::diagnose::recording::sample_faults;
+use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::rules::threshold;
 use crate::estimate::EstimateError;

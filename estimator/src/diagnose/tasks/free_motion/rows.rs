@@ -6,8 +6,7 @@
 //! between the rows and averaged with the same weights.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
-use crate::diagnose::data::regression_data::Zero;
-use crate::diagnose::data::regression_data::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing};
+use crate::diagnose::data::regression_data::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing, Zero};
 use crate::estimate::EstimateError;
 use crate::identify::mechanism;
 use crate::identify::mechanism::Raw;

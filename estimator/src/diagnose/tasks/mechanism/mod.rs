@@ -1,21 +1,21 @@
 //! Diagnosis of mechanisms with one degree of freedom.
 
+pub(crate) mod axis_signs;
 pub(crate) mod rows;
 pub(crate) mod sensor_zero;
 
-use super::{axis_signs, free_motion, one_coordinate, thrown_body, transmission, untimed_path};
+use super::baseline_models::{known_laws, named};
+use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
 use crate::diagnose::answer::{along_coordinate, atlas, excitation};
 use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::rate_signs;
-use crate::diagnose::recording::{sample_faults, sample_offset, time_delay};
+use crate::diagnose::recording::{rate_signs, sample_faults, sample_offset, time_delay};
 use crate::diagnose::selection::rules::threshold;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
-use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
 use haptics::recording::Recording;
 
 /// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
@@ -112,26 +112,6 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
     Ok((found, skew_s))
 }
 
-/// Laws of a mechanism that the sidecar states, which are taken out of the fitted ones.
-pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
-    let known = &recording.meta.known;
-    // The mass of a pendulum is not its moment of inertia.
-    let names = match coordinate {
-        Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
-        Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
-    };
-    let laws: [&'static dyn Law; 3] = [&Inertia, &ViscousFriction, &CoulombFriction];
-    let mut fixed = Model::new();
-    for (law, name) in laws.into_iter().zip(names) {
-        let Some(value) = known.get(name).copied().filter(|_| model.iter().any(|e| e.law().id() == law.id())) else {
-            continue;
-        };
-        model.retain(|e| e.law().id() != law.id());
-        fixed.push(Effect::new(law, &[value]));
-    }
-    fixed
-}
-
 /// Validates the found causes on another recording of the same mechanism.
 pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
     let recording =
@@ -162,21 +142,4 @@ fn track_of(
         return rows::track(recording, &bad, path);
     }
     free_motion::rows::track(recording, &bad, path)
-}
-
-/// Laws of the baseline with this name.
-///
-/// # Errors
-/// A term that is no law of a baseline, in a sentence.
-pub fn named(name: &str) -> Result<Model, EstimateError> {
-    name.split('+')
-        .map(|part| match part.trim() {
-            "mass" | "inertia" => Ok(Effect::new(&Inertia, &[1.0])),
-            "viscous" => Ok(Effect::new(&ViscousFriction, &[1.0])),
-            "coulomb" => Ok(Effect::new(&CoulombFriction, &[1.0])),
-            other => Err(EstimateError::Other(format!(
-                "`{other}` is no part of a baseline; write mass, mass+viscous or mass+viscous+coulomb, or name a world file"
-            ))),
-        })
-        .collect()
 }

@@ -1,16 +1,16 @@
 //! Axis signs: mirrored channels and swapped axes, corrected before the model is fitted.
 
-use super::crank::{path, plain_crank};
-use super::mechanism::named;
-use super::one_coordinate;
+use super::path;
+use super::path::{Arm, Geometry};
+use super::rows::{Axes, Signals, with_axes};
 use crate::diagnose::contract::Cause;
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::rules::threshold;
-use crate::diagnose::tasks::crank::path::{Arm, Geometry};
-use crate::diagnose::tasks::crank::rows::{Axes, Signals, with_axes};
+use crate::diagnose::tasks::baseline_models::plain_crank;
+use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
@@ -102,27 +102,6 @@ pub fn of_crank<'a>(
         }
         None => (straight, fault, looked),
     })
-}
-
-/// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The
-/// sign is corrected in the rows.
-pub fn of_mechanism(
-    track: &mut Track,
-    recording: &Recording,
-    rate: Option<&str>,
-) -> Result<Option<Cause>, EstimateError> {
-    if !one_coordinate::drives(track, &named("mass+viscous+coulomb")?)? {
-        return Ok(rate.map(sample_faults::against_motion));
-    }
-    for row in &mut track.rows {
-        row.y = -row.y;
-        row.force = -row.force;
-        row.force_rate = -row.force_rate;
-    }
-    // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
-    let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
-    let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
-    Ok(Some(sample_faults::driving(name)))
 }
 
 /// The thesis's crank with gravity at any phase. In few strokes, an eccentric mass or a weight on a tilted plane can
