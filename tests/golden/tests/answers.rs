@@ -2,8 +2,8 @@
 //!
 //! A restructuring must leave every answer equal. The set holds the fast blind battery, recordings of every task of [`tests::tasks`], the
 //! built-in recordings, and real measurements where they are beside the checkout. One file a group, one line a recording, in
-//! `tests/golden`. A change that is meant to alter answers writes them anew, and its commit says which and why:
-//! `TOUCHSTONE_WRITE_GOLDEN=1 cargo test -p tests --test golden`.
+//! `tests/golden/answers`. A change that is meant to alter answers writes them anew, and its commit says which and why:
+//! `TOUCHSTONE_WRITE_GOLDEN=1 cargo test -p golden`.
 
 use blind::{Counts, battery};
 use estimator::diagnose::{Options, Suspect, diagnose, suspects, validate, worlds};
@@ -117,7 +117,7 @@ fn hold<Job: Send>(group: &str, jobs: Vec<Job>, asked: impl Fn(Job) -> Asked + S
         (asked.name.clone(), answers(&asked))
     };
     let now: Vec<(String, Value)> = jobs.into_par_iter().with_max_len(1).map(answer).collect();
-    let path = workspace().join(format!("tests/golden/{group}.jsonl"));
+    let path = workspace().join(format!("tests/golden/answers/{group}.jsonl"));
     if std::env::var_os("TOUCHSTONE_WRITE_GOLDEN").is_some() {
         let lines = now.iter().map(|(name, answers)| json!({"recording": name, "answers": answers}).to_string() + "\n");
         std::fs::write(&path, lines.collect::<String>()).expect("the answers are written");
