@@ -1,6 +1,9 @@
 //! A law with its values: what a world file stores and the servo runs.
 
-use super::{Enters, Law, MAX_PARAMETERS, Memory, Motion, Role, law, tame};
+use super::catalogue::law;
+use super::entry::Enters;
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role, tame};
+use super::memory::Memory;
 use serde::{Deserialize, Serialize};
 
 /// A law with its parameter values.

@@ -3,8 +3,9 @@
 //! is stiffer by (2β − 1)|z|, not |z|: Bouc–Wen with n = 1 (Wen 1976); β = ½ unloads at σ, β = 1 (or 0, unset) is Dahl.
 //! Fc ≥ 0, σ ≥ 0, ½ ≤ β ≤ 1: never gives energy. σ → ∞ is Coulomb friction. The memory is z, solved exactly over each step.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Presliding hysteresis; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,10 @@
 //! proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is what it bends over. The memory is z. The `hysteresis` of worlds
 //! whose friction goes with the load.
 
-use super::entry::POSITIVE;
-use super::{Entry, Hysteresis, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::hysteresis::Hysteresis;
+use super::memory::Memory;
 
 /// Presliding hysteresis under a load; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

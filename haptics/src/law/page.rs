@@ -1,7 +1,7 @@
 //! The page of a cause for `docs/causes/`, made of what the catalogue says about it. `cargo run -p haptics --example causes` writes
 //! all of them; `haptics/tests/causes.rs` fails when the written ones say something else.
 
-use super::{Enters, Entry, Kind, ParameterSpec};
+use super::entry::{Enters, Entry, Kind, ParameterSpec};
 use std::fmt::Write as _;
 
 /// First line of every page, so that nobody mends the copy.
