@@ -1,8 +1,9 @@
 //! The flat face of a fingertip: the foam under it is pressed more on one side when what it holds turns, and turns that back.
 
+use super::contact_point::Contact;
 use super::model::Pad;
 use super::rect::Rect;
-use super::state::{BodyState, Contact};
+use super::state::BodyState;
 use std::f64::consts::FRAC_PI_2;
 
 impl Pad {

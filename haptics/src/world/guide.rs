@@ -4,7 +4,7 @@
 //! are its first and last point. The place on it is followed from part to part by projecting the body onto the tangent, so that
 //! a part costs the same however long the curve is.
 
-use super::check::{WorldError, finite, not_negative, positive, range_error};
+use super::error::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! What one tick works with. Its buffers are sized once and kept from tick to tick, because the servo never allocates.
 
 use super::contact::Touch;
-use super::model::MAX_BLOCKS;
+use super::limits::MAX_BLOCKS;
 use super::rect::Rect;
 use crate::Vec2;
 
