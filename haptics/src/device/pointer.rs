@@ -1,6 +1,7 @@
 //! What mouse, touch screen, keyboard and gamepad share: two fingertips that follow two goals through the arm's impedance.
 
-use super::{DeviceSpec, HandImpedance, Sample};
+use super::impedance::HandImpedance;
+use super::interface::{DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 

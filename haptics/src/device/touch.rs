@@ -4,8 +4,8 @@
 //! that is lifted while the other stays down opens gently, after a moment: fingers never leave the glass at the same instant, and
 //! lifting both must not let the object go. When both are up, both tips stay where they are wanted, with the force they have.
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::pointer::{Pointer, towards};
-use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};

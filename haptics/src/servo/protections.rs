@@ -1,8 +1,11 @@
 //! What keeps the operator safe or the account honest, and would not be missed by anything else if it were taken out.
 
+use super::config::ServoConfig;
+use super::control_loop::Loop;
 use super::coupling::{Coupling, Proxy};
 use super::safety::Limits;
-use super::{Loop, Servo, ServoConfig, Swap};
+use super::swap::Swap;
+use super::thread::Servo;
 use crate::Vec2;
 use crate::device::{Command, Device, DeviceSpec, Sample};
 use crate::world::{Input, State, World, presets, step};

@@ -1,6 +1,6 @@
 //! The hand at the far end: two fingertips on springs and dampers that go where the near hand was, and press as it pressed.
 
-use super::Delay;
+use super::delay::Delay;
 use crate::Vec2;
 use crate::device::{Command, HandImpedance, Sample};
 use crate::world::Input;

@@ -7,8 +7,8 @@
 //! few times a second, for as long as the hand is there. A new line is a new beginning: until its answers have agreed on where the hand
 //! is the board gets zero torque.
 
-use super::board::Tally;
 use super::farewell::Outliving;
+use super::tally::Tally;
 use super::turns::Line;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::sync::Arc;

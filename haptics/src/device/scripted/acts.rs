@@ -1,9 +1,9 @@
 //! What an operator is told to do, act by act: lessons write their demonstrations as such a list.
 
 use super::builder::{Builder, SPARE_PINCH};
-use super::plan::{Goal, Job, Spin};
+use super::movement::{Goal, Job, Spin};
 use crate::Vec2;
-use crate::device::HandImpedance;
+use crate::device::impedance::HandImpedance;
 use crate::world::{Block, Shape, State, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

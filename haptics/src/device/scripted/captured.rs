@@ -1,10 +1,10 @@
 //! What the scripted operator does with a needle, a barrel and a switch: the movements that show what they are like.
 
-use super::Mistake;
 use super::builder::Builder;
-use super::plan::Goal;
+use super::movement::Goal;
+use super::skill::Mistake;
 use crate::Vec2;
-use crate::device::HandImpedance;
+use crate::device::impedance::HandImpedance;
 use crate::world::{Membrane, Shape, State, World};
 
 /// Spread of an expert's pinch: who varies more holds more firmly.

@@ -2,7 +2,7 @@
 //! that does so ends each movement where it is planned to end, and begins the next when it has *seen* the hand there.
 
 use super::eye::Frame;
-use super::plan::Goal;
+use super::movement::Goal;
 
 /// The hand counts as where it was wanted within this, m.
 const THERE_M: f64 = 3e-3;

@@ -1,6 +1,6 @@
 //! A motion that somebody else has thought out, for the scripted hand to follow: where the pair of fingers is wanted, at even times.
 
-use super::plan::Goal;
+use super::movement::Goal;
 
 /// Goals at even times, from the start on.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Counts what the ticks took: one second a part, the last ten parts are "recent", what falls out is kept as a sum.
 
-use super::histogram::Histogram;
-use super::{Figures, STALL_S, TickTiming, Timing};
+use super::figures::{Figures, STALL_S, TickTiming, Timing};
+use crate::servo::histogram::Histogram;
 use crate::servo::rate::RateReport;
 
 /// What counts as recent, s.

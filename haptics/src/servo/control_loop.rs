@@ -8,7 +8,7 @@ use super::safety::{Limits, Safety, SafetyFlags};
 use super::swap::Swap;
 use super::timing::Timing;
 use crate::Vec2;
-use crate::device::{Command, Device};
+use crate::device::{Command, Device, Sample};
 use crate::world::{Input, State, Stored, World, step};
 
 /// What the recorder keeps of every tick.
@@ -155,28 +155,9 @@ impl Loop {
             None => Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity },
         };
         step(world, state, &input, dt_s);
-        // The operator feels the reaction to what the tips exert, or the coupling that they hang on.
-        let mut wanted = match &self.proxy {
-            Some(proxy) => proxy.force_n(&sample),
-            None => state.tip_force_n.map(|f| -f),
-        };
-        match self.test.advance(dt_s) {
-            Change::Off => {}
-            Change::On(test_n, first) => {
-                wanted = test_n;
-                if first {
-                    self.safety.swapped();
-                }
-            }
-            Change::Ended => self.safety.swapped(),
-        }
-        if let Some(most) = self.passivity_control_n_s_m {
-            let extra = control(&self.observer, sample.tip_velocity, dt_s, most);
-            for (force, extra) in wanted.iter_mut().zip(extra) {
-                *force += extra;
-            }
-        }
+        let wanted = self.wanted_force_n(&sample, dt_s);
         self.sent_force_n = self.safety.limit(wanted, dt_s, &mut flags);
+        let Swap { world, state, .. } = &mut *self.current;
         // Cleared with every tick: each impact is told once.
         let impact_m_s = std::mem::take(&mut state.impact_m_s);
         if impact_m_s > 0.0 {
@@ -197,6 +178,32 @@ impl Loop {
             label: crate::world::true_label(world, state),
         };
         self.last
+    }
+
+    /// Force on the operator's fingers before the safety stage, N: of the world or of a test, and of the passivity controller.
+    fn wanted_force_n(&mut self, sample: &Sample, dt_s: f64) -> [Vec2; 2] {
+        // The operator feels the reaction to what the tips exert, or the coupling that they hang on.
+        let mut wanted = match &self.proxy {
+            Some(proxy) => proxy.force_n(sample),
+            None => self.current.state.tip_force_n.map(|f| -f),
+        };
+        match self.test.advance(dt_s) {
+            Change::Off => {}
+            Change::On(test_n, first) => {
+                wanted = test_n;
+                if first {
+                    self.safety.swapped();
+                }
+            }
+            Change::Ended => self.safety.swapped(),
+        }
+        if let Some(most) = self.passivity_control_n_s_m {
+            let extra = control(&self.observer, sample.tip_velocity, dt_s, most);
+            for (force, extra) in wanted.iter_mut().zip(extra) {
+                *force += extra;
+            }
+        }
+        wanted
     }
 
     /// The world stands still, its clock too, and the force goes.

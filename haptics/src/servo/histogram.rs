@@ -72,11 +72,6 @@ impl Histogram {
     pub fn len(&self) -> u64 {
         self.total
     }
-
-    /// True when nothing was counted.
-    pub fn is_empty(&self) -> bool {
-        self.total == 0
-    }
 }
 
 /// The usual four numbers of a distribution of durations, s.
