@@ -1,13 +1,13 @@
 //! The toggle switch: a housing on the table, a bushing with a slot, a lever with a round knob, and a mark at each end of the
 //! throw: a ring at the left one, a bar at the right one, as on real switches. The mark of the side that it is on is lit.
 
-use super::{Canvas, HALF_DEPTH_M, Mode, at};
-use crate::Material;
+use super::canvas::{Canvas, HALF_DEPTH_M, Mode, at};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::{Solid, Stroke};
 use crate::theme::{Color, ColorRole, Theme};
-use crate::vec2;
 use glam::{Vec2, Vec3};
 use haptics::world::Switch;
 

@@ -1,6 +1,6 @@
 //! What the shaders can read beside their vertices: numbers of the scene, the shadow map or that of undersides, the table's light maps.
 
-use super::MapFormat;
+use super::map_format::MapFormat;
 
 /// Layouts of the bind groups, by number.
 #[derive(Debug)]
