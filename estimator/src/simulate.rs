@@ -2,12 +2,12 @@
 
 mod gap;
 
+use crate::cancellation;
 use crate::estimate::EstimateError;
 use crate::identify::{block, crank, mechanism, needle};
 use crate::log::{gap_above_s, gaps};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
-use crate::wanted;
 use haptics::Vec2;
 use haptics::law::Coordinate;
 use haptics::law::object::MembraneHistory;
@@ -339,7 +339,7 @@ pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) 
         });
     }
     walk_tips(world, &times(recording), &tips, see);
-    wanted::look()
+    cancellation::check()
 }
 
 /// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked,
@@ -355,7 +355,7 @@ pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: 
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
     see(time_s[0], &state);
     for i in 1..n {
-        if i % LOOKS == 0 && !wanted::still() {
+        if i % LOOKS == 0 && !cancellation::is_wanted() {
             return;
         }
         let gap_s = time_s[i] - time_s[i - 1];

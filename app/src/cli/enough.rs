@@ -1,7 +1,7 @@
 //! Whether there is enough data, as a short table.
 
 use crate::ui::format;
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 use std::fmt::Write;
 
 /// One line a parameter: how much of the wanted accuracy is reached, and what is missing. Empty without wishes.

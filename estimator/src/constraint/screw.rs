@@ -3,7 +3,7 @@
 //! Positions alone show a pitch only while they wind; what the body's orientation does is not needed. The axis is where all
 //! directions of motion make one and the same angle with it; axis, centre, radius and pitch are then refined together.
 
-use crate::wanted;
+use crate::cancellation;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
 /// A path that winds by less shows no pitch, rad.
@@ -112,7 +112,7 @@ fn refine(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<Helix> {
     let (mut best, mut damping) = (wind.residuals(points, &p), 1e-4);
     let mut inverse = DMatrix::zeros(7, 7);
     for _ in 0..ROUNDS {
-        wanted::look().ok()?;
+        cancellation::check().ok()?;
         let slopes = DMatrix::from_columns(&[0, 1, 2, 3, 4, 5, 6].map(|j: usize| {
             let (mut a, mut b) = (p, p);
             a[j] += 1e-6 * scale[j];

@@ -1,7 +1,7 @@
 //! Baum–Welch: the model that explains a sequence best, near a prior.
 
 use super::{Chain, Covariance, Expectation, Gaussian, HmmError, Model, forward_backward};
-use crate::wanted;
+use crate::cancellation;
 use nalgebra::DMatrix;
 
 /// What is believed before the data are seen, as if it had been seen in so many samples.
@@ -46,7 +46,7 @@ pub fn baum_welch(start: Model, values: &[f64], training: &Training) -> Result<T
     let mut objective = Vec::new();
     for step in 0..=training.most_steps {
         // Whoever asked for it looks, too: nothing of it is kept.
-        if !wanted::still() {
+        if !cancellation::is_wanted() {
             break;
         }
         let expectation = forward_backward(&model.chain, &model.log_emissions(values, training.weight));

@@ -5,7 +5,7 @@
 //! draw costs as much as its blocks, not as its rows.
 
 use super::linear::{LinearFit, least_squares};
-use crate::wanted;
+use crate::cancellation;
 use nalgebra::{DMatrix, DVector};
 use std::ops::{Index, Range};
 
@@ -109,7 +109,7 @@ pub fn block_bootstrap_within(
     let mut values: Vec<DVector<f64>> = Vec::with_capacity(DRAWS);
     let mut total = vec![0.0; sums.width];
     for _ in 0..DRAWS {
-        if !wanted::still() {
+        if !cancellation::is_wanted() {
             return None;
         }
         total.fill(0.0);

@@ -7,27 +7,27 @@
 pub mod frame;
 mod friction;
 mod geometry;
-mod held;
+mod grasp_slip;
+mod joint_fit;
 pub mod laws;
-mod motion;
 mod needed;
+mod path_coordinate;
 mod report;
-mod slipping;
-mod together;
+mod signals;
 
 use crate::estimate::{Constraint, EstimateError, Fit, Slip};
 use crate::segment::{Method, Segmentation, Thresholds, segment_by};
 use crate::signal::task::{half_width, is_two_fingered};
 use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
+use grasp_slip::{slip_warning, without_slips};
 use haptics::recording::{Recording, Segment, Task};
-use held::{Grasped, Held, Smooth, grasped, smooth};
-use motion::{Along, Rows, motions_at};
+pub use joint_fit::{Together, fit_together, refit_together};
 pub(crate) use needed::needed_forces;
+use path_coordinate::{Along, Rows, motions_at};
 use report::{GripSignals, constraint, geometry_parameters, grip_parameters, warnings};
-use slipping::{slip_warning, without_slips};
+use signals::{Grasped, Held, Smooth, grasped, smooth};
 use std::sync::{Arc, Mutex, PoisonError};
-pub use together::{Together, fit_together, refit_together};
 
 /// A path that misses its best circle by more than this share of the radius is no crank's.
 const LARGEST_RESIDUAL: f64 = 0.08;

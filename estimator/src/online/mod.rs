@@ -7,29 +7,29 @@
 pub mod block;
 pub mod change;
 pub mod crank;
-pub mod enough;
+mod decimating_store;
 pub mod filter;
-mod grasp;
+mod grasp_record;
+pub mod information;
 pub mod leak;
 pub mod recursive;
 mod replay;
-mod sense;
-mod store;
+mod state_tracker;
 #[cfg(test)]
 mod tests;
-mod triangle;
+mod triangular;
 
 use crate::estimate::{EstimateError, Parameter};
 use block::Blocks;
 pub use block::pull::{Anchor, Pull};
 use crank::Crank;
-use enough::{Enough, Problem, Wanted};
 use filter::{Filters, Sample};
 use haptics::recording::Task;
+use information::{Enough, Problem, Wanted};
 use leak::LeakAnswer;
 pub use replay::{enough_for, replay};
-use sense::Sense;
 use serde::Serialize;
+use state_tracker::Sense;
 
 /// What may be chosen.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,7 @@ pub struct Online {
     sense: Sense,
     body: Body,
     settings: Settings,
-    now: Option<sense::Now>,
+    now: Option<state_tracker::Now>,
 }
 
 impl Online {
@@ -177,7 +177,7 @@ impl Online {
 
     /// What is missing for these parameters, by the information that was collected here.
     pub fn enough(&self, parameters: &[Parameter]) -> Vec<Enough> {
-        enough::judge(parameters, &self.problems(), &self.settings.wanted)
+        information::judge(parameters, &self.problems(), &self.settings.wanted)
     }
 
     /// Whether a crank's laws have rows; blocks are judged from the first sample on.

@@ -1,8 +1,8 @@
 //! Recordings through the estimator that runs beside the servo.
 
-use super::enough::{Enough, Wanted, crank_problems_of, judge};
 use super::filter::Sample;
-use super::sense::FREE_ROW_S;
+use super::information::{Enough, Wanted, crank_problems_of, judge};
+use super::state_tracker::FREE_ROW_S;
 use super::{Online, Settings};
 use crate::estimate::{EstimateError, Fit};
 use crate::signal::task::task_signals;

@@ -24,9 +24,9 @@ mod state;
 pub mod subtasks;
 pub mod threshold;
 
+use crate::cancellation;
 use crate::estimate::EstimateError;
 use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals, times};
-use crate::wanted;
 use definition::Definition;
 use grasps::Hand;
 use haptics::recording::{Recording, Task};
@@ -223,13 +223,13 @@ pub fn segment_by(
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
     let task = Definition::of(recording, task_of(recording, task)?)?;
-    wanted::look()?;
+    cancellation::check()?;
     let found = by_definition(method, recording, &task, given)?;
     let mut found =
         if recording.meta.segments.is_empty() { found } else { by_hand::put(found, recording, &times(recording)) };
     found.score = score::score(recording, &found);
     // It may be kept for the next fit: only a whole one.
-    wanted::look()?;
+    cancellation::check()?;
     Ok(found)
 }
 

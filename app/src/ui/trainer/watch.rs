@@ -3,7 +3,7 @@
 //! The servo knows nothing of it: ticks come from the ring that it fills anyway. The window never waits: what the thread cannot take is
 //! left out, and the estimator starts its windows anew after the hole. With a manual clock everything happens at once, on one thread.
 
-use estimator::online::enough::Wanted;
+use estimator::online::information::Wanted;
 use estimator::online::{Online, Report, Settings};
 use haptics::recording::Task;
 use haptics::servo::TickRecord;

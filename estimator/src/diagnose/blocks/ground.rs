@@ -10,7 +10,7 @@ use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::heights::{Rest, rests};
 use crate::identify::block::object;
-use crate::identify::block::slipping::{LEAST_M, may_stand};
+use crate::identify::block::slip_detection::{LEAST_M, may_stand};
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use crate::signal::task::half_width;

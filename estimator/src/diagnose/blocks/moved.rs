@@ -8,7 +8,7 @@ use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Cause, Gain};
 use crate::diagnose::rollout::AT_ONCE;
 use crate::identify::block::object;
-use crate::identify::block::slipping::LEAST_M;
+use crate::identify::block::slip_detection::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 

@@ -1,7 +1,7 @@
 //! What a diagnosis looks at in a recording of carried blocks: states from the pipeline, all channels through one filter.
 
 use crate::estimate::EstimateError;
-use crate::identify::block::landing::{stands_from, usual_lift};
+use crate::identify::block::placement_time::{stands_from, usual_lift};
 use crate::identify::block::{Blocks, MAIN, object};
 use crate::segment::{Method, SystemState};
 use crate::signal::noise::white_noise;

@@ -3,7 +3,7 @@
 use super::ground::{Rows, Stand};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::geometry::Study;
-use crate::identify::block::slipping::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 
 /// Starts that are asked about in every rest, besides its very beginning.

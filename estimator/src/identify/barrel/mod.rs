@@ -2,28 +2,28 @@
 //!
 //! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share shows where the
 //! pads' own stiffness is stated. A leak and a drift of the sensors look alike while it hangs; the free phases before and after
-//! tell them apart. The cable is searched for (`pull.rs`); where its pull turns as the barrel moves, it shows where it is tied.
+//! tell them apart. The cable is searched for (`cable_force.rs`); where its pull turns as the barrel moves, it shows where it is tied.
 
 mod cable;
-mod holding;
-mod pull;
+mod cable_force;
+mod grip_phases;
+mod grip_rotation;
 mod report;
+mod sensor_zero;
 mod signals;
 mod slip;
-mod swing;
-mod wall;
-mod zero;
+mod wall_stiffness;
 
 use crate::estimate::{EstimateError, Fit};
 use crate::segment::{Method, Segmentation, Thresholds};
+use cable_force::{Pull, Rows};
+use grip_rotation::Swing;
 use haptics::Vec2;
 use haptics::recording::Recording;
-use pull::{Pull, Rows};
 use report::Seen;
+use sensor_zero::Zero;
 use signals::Signals;
-use swing::Swing;
-use wall::Grip;
-use zero::Zero;
+use wall_stiffness::Grip;
 
 /// The object's name in the results.
 pub const OBJECT: &str = "barrel";

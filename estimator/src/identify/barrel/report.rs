@@ -1,9 +1,9 @@
 //! What the barrel's recording shows, in the words of a fit.
 
 use super::cable::Cable;
-use super::pull::{GROWTH, MASS, Pull, STIFFNESS};
+use super::cable_force::{GROWTH, MASS, Pull, STIFFNESS};
 use super::signals::Signals;
-use super::wall::Grip;
+use super::wall_stiffness::Grip;
 use super::{OBJECT, Taken};
 use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};

@@ -4,7 +4,7 @@
 //! barrel is put down than when it was picked up, it slid down between them. At the same lift pads give the same, so it cancels.
 
 use super::signals::Signals;
-use super::wall::weight_n;
+use super::wall_stiffness::weight_n;
 
 /// Pads that creep and a floor that is not quite even: less than this way is no slip, m.
 const CREEP_M: f64 = 4e-5;

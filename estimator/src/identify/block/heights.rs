@@ -11,7 +11,7 @@
 //! Several recordings of the same blocks share heights and gives; grasps are each one's own. What was restacked in one recording and
 //! left alone in another is then known in both.
 
-use super::slipped::{Slipped, slips};
+use super::height_slip_correction::{Slipped, slips};
 use super::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::bootstrap::{Resampled, block_bootstrap_within};

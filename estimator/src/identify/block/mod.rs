@@ -4,16 +4,16 @@
 //! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
-mod give;
+mod friction_coefficient;
+mod height_slip_correction;
 pub(crate) mod heights;
-pub(crate) mod landing;
+mod joint_fit;
 mod leak;
 mod needed;
-mod pressed;
-mod slip;
-mod slipped;
-pub(crate) mod slipping;
-mod together;
+mod pad_stiffness;
+pub(crate) mod placement_time;
+pub(crate) mod slip_detection;
+mod width;
 
 use super::bootstrap::block_bootstrap;
 use super::linear::{LinearFit, least_squares};
@@ -25,13 +25,13 @@ use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, SystemState, Thresholds, by_hand, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
-use give::{Give, pad_parameter};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 use heights::Stacked;
+pub use joint_fit::{Together, fit_together};
 pub(crate) use needed::needed_forces;
-pub(crate) use pressed::{Hold, holds, width_under};
-pub use together::{Together, fit_together};
+use pad_stiffness::{Give, pad_parameter};
+pub(crate) use width::{Hold, holds, width_under};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -404,7 +404,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
-    fn slip(&self, number: usize, ratio: f64) -> Option<slip::Slip> {
+    fn slip(&self, number: usize, ratio: f64) -> Option<friction_coefficient::Slip> {
         const NOISES: f64 = 8.0;
         const AFTER_S: f64 = 0.3;
         let carried = self.shown(MAIN, number);
@@ -415,7 +415,12 @@ impl<'a> Blocks<'a> {
         let time = &self.signals.time_s;
         let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
         let least_grip_n = NOISES * self.levels.force_noise_n;
-        slip::slip(self, *grasp.first()?, end, slip::Held { weight_n, least_grip_n, ratio })
+        friction_coefficient::slip(
+            self,
+            *grasp.first()?,
+            end,
+            friction_coefficient::Held { weight_n, least_grip_n, ratio },
+        )
     }
 
     /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.

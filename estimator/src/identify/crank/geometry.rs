@@ -1,7 +1,7 @@
 //! Circle and give of the pads, from the radius residual.
 
 use super::SIGNIFICANT;
-use super::held::Held;
+use super::signals::Held;
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{Values, least_squares, least_squares_values};

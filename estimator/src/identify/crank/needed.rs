@@ -1,8 +1,8 @@
 //! The forces that a motion of a crank's handle needs, for a replay.
 
 use super::geometry::Geometry;
-use super::held::{Held, Smooth, grasped, smooth};
-use super::motion::motions;
+use super::path_coordinate::motions;
+use super::signals::{Held, Smooth, grasped, smooth};
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
 use crate::segment::{SystemState, segment};

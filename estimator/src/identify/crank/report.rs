@@ -3,8 +3,8 @@
 use super::SIGNIFICANT;
 use super::friction::Friction;
 use super::geometry::{Drawn, Geometry};
-use super::held::{Held, Smooth};
 use super::laws::WEIGHT;
+use super::signals::{Held, Smooth};
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};

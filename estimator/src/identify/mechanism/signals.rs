@@ -1,6 +1,6 @@
 //! From a recording to the coordinate of a mechanism, its derivatives and the force along it: one zero-phase filter for all.
 
-use super::even::Even;
+use super::resampling::Even;
 use crate::estimate::EstimateError;
 use crate::identify::linear::COLUMN_NOISE_UNCERTAINTY;
 use crate::signal::derive::{central_differences, stencil};

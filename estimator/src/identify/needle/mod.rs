@@ -4,10 +4,10 @@
 //! pierced a hole. Two fingers measure their tips, not the needle between their pads: the pads' give is read from how the grip's
 //! width follows its force, and what is not known of it joins the errors.
 
-mod beyond;
 mod channels;
-pub(crate) mod loading;
+pub(crate) mod loading_curve;
 mod phases;
+mod puncture_and_drag;
 pub(crate) mod signals;
 pub(crate) mod strokes;
 
@@ -15,7 +15,7 @@ use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter,
 pub(crate) use channels::{Channels, channels};
 use haptics::Vec2;
 use haptics::recording::Recording;
-use loading::{Loading, Point};
+use loading_curve::{Loading, Point};
 use signals::Along;
 use strokes::Push;
 
@@ -188,5 +188,5 @@ fn curve(along: &Along, pushes: &[Push], holds: &[usize], give: f64) -> Result<L
             points.push(Point { hold, depth_m: depth - give * force_n, force_n });
         }
     }
-    loading::fit(&points, holds.len())
+    loading_curve::fit(&points, holds.len())
 }

@@ -6,19 +6,19 @@
 //! as a pad, and what that leaves open joins the errors of all places. The knob's path is taken as an arc about a lever twice as
 //! long as its travel, its axis below; what a straighter path would change joins the errors of the forces.
 
-mod reading;
+mod assumptions;
 mod report;
 mod signals;
-mod way;
+mod throw_curve;
 
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::{Resampled, median_error_of_few};
 use crate::identify::pads::EVEN;
+use assumptions::Reading;
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
-use reading::Reading;
 use signals::Signals;
-use way::{Stop, Way};
+use throw_curve::{Stop, Way};
 
 /// The object's name in the results.
 pub const OBJECT: &str = "switch";
@@ -94,14 +94,14 @@ impl Curves {
     fn of(signals: &Signals, reading: &Reading) -> Result<Self, EstimateError> {
         let seen = [signals.seen(0, reading), signals.seen(1, reading)];
         let peaked = |w: &Way| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
-        let ways = [way::way(&seen[0])?.filter(peaked), way::way(&seen[1])?.filter(peaked)];
+        let ways = [throw_curve::way(&seen[0])?.filter(peaked), throw_curve::way(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
             reading: *reading,
             top_m: signals.middle_m,
             ways,
             resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
-            stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
+            stops: [throw_curve::stop(&seen[0])?, throw_curve::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
             width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),
         })

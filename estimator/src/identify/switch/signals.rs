@@ -3,7 +3,7 @@
 //! Fingers push and cannot pull. The one behind the knob presses it up to the top of the curve and follows it down until the force
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
-use super::reading::Reading;
+use super::assumptions::Reading;
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
 use crate::signal::derive::savitzky_golay;

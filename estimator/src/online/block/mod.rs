@@ -6,12 +6,12 @@
 pub mod pull;
 mod report;
 
-use super::enough::{Problem, block_problems};
+use super::decimating_store::Store;
 use super::filter::{Filters, Sample};
-use super::grasp::{Grasp, Row};
+use super::grasp_record::{Grasp, Row};
+use super::information::{Problem, block_problems};
 use super::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
-use super::sense::{FREE_ROW_S, Now, Sense};
-use super::store::Store;
+use super::state_tracker::{FREE_ROW_S, Now, Sense};
 use super::{Event, Report, Settings};
 use crate::estimate::Parameter;
 use crate::segment::SystemState;

@@ -8,7 +8,7 @@
 //! with the errors of the directions and what biases and the pads' give do to all lines alike.
 
 use super::super::change::ChangeDetector;
-use super::super::store::Store;
+use super::super::decimating_store::Store;
 use haptics::Vec2;
 use nalgebra::{Matrix2, SymmetricEigen};
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! What is known of a carried object, as parameters of a fit.
 
-use super::super::grasp::Grasp;
+use super::super::grasp_record::Grasp;
 use super::super::leak::{LeakAnswer, Verdict};
-use super::super::sense::Sense;
+use super::super::state_tracker::Sense;
 use super::Blocks;
 use crate::estimate::Parameter;
 

@@ -7,9 +7,9 @@
 mod geometry;
 mod laws;
 
-use super::enough::{Problem, crank_problems};
 use super::filter::{Filters, Sample};
-use super::sense::{FREE_ROW_S, Now, Sense};
+use super::information::{Problem, crank_problems};
+use super::state_tracker::{FREE_ROW_S, Now, Sense};
 use super::{Event, Report, Settings};
 use crate::identify::crank::frame::{Handled, blur};
 use crate::identify::crank::laws::NAMES;

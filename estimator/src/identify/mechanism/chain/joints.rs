@@ -1,7 +1,7 @@
 //! Both joints of a chain as they were recorded: rates from one light filter, and every column of the model through one more.
 
 use crate::estimate::EstimateError;
-use crate::identify::mechanism::even::Even;
+use crate::identify::mechanism::resampling::Even;
 use crate::identify::mechanism::signals::{direction, noise_blur, saturated, uninterrupted};
 use crate::signal::derive::stencil;
 use crate::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};

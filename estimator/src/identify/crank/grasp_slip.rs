@@ -2,7 +2,7 @@
 //! the radius residual and taken out of the positions, so that centre and radius survive them.
 
 use super::geometry::{Geometry, geometry};
-use super::held::Held;
+use super::signals::Held;
 use crate::constraint::slips::steps;
 use crate::estimate::{EstimateError, Slip};
 use crate::signal::task::{CUBIC_HALF, half_width};

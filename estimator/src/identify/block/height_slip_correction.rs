@@ -1,8 +1,8 @@
 //! Slips of the grip on a block that stands, as the fit takes them out of heights: the thesis's height that was 9 % off.
 
 use super::heights::Rest;
-use super::landing::stands_from;
-use super::slipping::{Heights, LEAST_M, Slip, Stretch, may_stand};
+use super::placement_time::stands_from;
+use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
 use super::{Blocks, MAIN, object};
 use crate::identify::linear::least_squares;
 use crate::signal::task::half_width;

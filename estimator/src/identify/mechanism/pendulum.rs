@@ -1,8 +1,8 @@
 //! Refines a free motion by integrating it: the whole record against the laws' own integrator (output error). Decay over
 //! many swings says far more about friction than accelerations do.
 
+use super::parameters::Term;
 use super::signals::{Piece, Raw};
-use super::terms::Term;
 use crate::identify::bootstrap::block_bootstrap_within;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};

@@ -1,7 +1,7 @@
 //! What other motions would add to the information: their rows, made by the same laws.
 
 use super::super::crank::{Found, Rubbing};
-use super::super::grasp::Grasp;
+use super::super::grasp_record::Grasp;
 use super::super::recursive::Recursive;
 use super::{Motion, Problem};
 use crate::identify::crank::laws::{LAWS, NAMES, WEIGHT, column};

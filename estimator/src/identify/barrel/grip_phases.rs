@@ -1,7 +1,7 @@
 //! The cable that holds a barrel, as parameters and as a constraint from one side.
 
 use super::cable::Cable;
-use super::pull::{GEOMETRY, Pull, STIFFNESS};
+use super::cable_force::{GEOMETRY, Pull, STIFFNESS};
 use super::report::{Seen, Value, error_of};
 use super::{CABLE, OBJECT};
 use crate::constraint::{Carry, carried};

@@ -2,8 +2,8 @@
 
 use super::block::pull::{Hold, Left};
 use super::change::ChangeDetector;
+use super::decimating_store::Store;
 use super::recursive::Recursive;
-use super::store::Store;
 use haptics::Vec2;
 
 /// Rows of a reading that are kept for judging a leak.

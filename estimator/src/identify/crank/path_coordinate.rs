@@ -2,8 +2,8 @@
 
 use super::frame::{Frame, Handled, LOW_PASS_HALF_S, blur};
 use super::geometry::Geometry;
-use super::held::{Grasped, Held};
 use super::laws::{LAWS, column};
+use super::signals::{Grasped, Held};
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;

@@ -7,13 +7,13 @@
 //! ([`usual`]), without seconds.
 
 mod candidates;
+mod recommended_motion;
 mod recorded;
-mod usual;
-mod wanted;
+mod target_accuracy;
 
 pub(super) use candidates::{block_problems, crank_problems};
 pub(super) use recorded::crank_problems_of;
-pub use wanted::Wanted;
+pub use target_accuracy::Wanted;
 
 use crate::estimate::Parameter;
 use nalgebra::{DMatrix, DVector};
@@ -237,7 +237,7 @@ fn one(parameter: &Parameter, all: &[Parameter], place: Option<(&Problem, usize)
         (enough.more_seconds, enough.missing) = ahead(problem, column, std_error, goal);
     }
     if share < 1.0 && enough.more_seconds.is_none() && enough.missing.is_none() {
-        enough.missing = usual::shows(parameter, all).map(|motion| missing(motion, None));
+        enough.missing = recommended_motion::shows(parameter, all).map(|motion| missing(motion, None));
     }
     enough
 }

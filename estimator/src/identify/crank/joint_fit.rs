@@ -4,7 +4,7 @@
 //! Averaging the single fits is not the same: two recordings that each show only the sum of two parameters can show both together.
 
 use super::friction::{Friction, Sensed, friction};
-use super::motion::Rows;
+use super::path_coordinate::Rows;
 use super::{Prepared, Seen, describe, see};
 use crate::estimate::{Correlated, EstimateError, Fit, Parameter};
 use crate::segment::{Method, Segmentation, Thresholds};

@@ -1,10 +1,10 @@
 //! What pulls at the hand while the barrel hangs from it: its weight, which a leak lowers, its inertia, and a cable.
 
 use super::cable::Cable;
+use crate::cancellation;
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::{LinearFit, least_squares};
-use crate::wanted;
 use haptics::Vec2;
 use nalgebra::{DMatrix, DVector};
 
@@ -209,7 +209,7 @@ fn search(rows: &Rows) -> Option<Cable> {
     let about_m = rows.place_m.iter().sum::<Vec2>() / rows.place_m.len().max(1) as f64;
     let mut best: Option<(f64, Cable)> = None;
     for k in 0..DIRECTIONS {
-        wanted::look().ok()?;
+        cancellation::check().ok()?;
         let angle_rad = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
         let straight = Cable { about_m, angle_rad, taut_m: 0.0, bend_1_m: 0.0 };
         let mut along: Vec<f64> = rows.place_m.iter().map(|p| straight.stretch(*p).0).collect();

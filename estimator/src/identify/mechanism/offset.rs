@@ -1,9 +1,9 @@
 //! A force that never changes shows nothing of what it moves: a constant of its own explains it, whatever the motion.
 
+use super::parameters::{Known, Term};
 use super::regress::Shown;
 use super::report::{OBJECT, push_known};
 use super::signals::{Piece, Raw};
-use super::terms::{Known, Term};
 use crate::estimate::{Fit, Parameter};
 
 /// Forces that differ by less, as a share of the largest, differ by rounding.

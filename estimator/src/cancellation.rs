@@ -2,7 +2,7 @@
 //!
 //! The wish belongs to the thread that works ([`while_wanted`]); without one, everything is wanted. It does not go along as an argument,
 //! because the loops that take the time lie deep below functions that have nothing else to do with it. What an ended loop leaves is no
-//! result: the stage around it asks [`look`] before it keeps anything for later or hands it on.
+//! result: the stage around it asks [`check`] before it keeps anything for later or hands it on.
 
 use crate::estimate::EstimateError;
 use std::cell::RefCell;
@@ -32,8 +32,8 @@ pub fn while_wanted<T>(wanted: impl Fn() -> bool + 'static, work: impl FnOnce() 
     wish().then_some(done)
 }
 
-/// False when nobody waits for what this thread does: a loop ends, and its caller asks [`look`].
-pub fn still() -> bool {
+/// False when nobody waits for what this thread does: a loop ends, and its caller asks [`check`].
+pub fn is_wanted() -> bool {
     // The wish is called outside of the borrow: it may look itself.
     let wish = WISH.with(|wish| wish.borrow().clone());
     wish.is_none_or(|wanted| wanted())
@@ -43,8 +43,8 @@ pub fn still() -> bool {
 ///
 /// # Errors
 /// [`EstimateError::Ended`] then.
-pub fn look() -> Result<(), EstimateError> {
-    if still() { Ok(()) } else { Err(EstimateError::Ended) }
+pub fn check() -> Result<(), EstimateError> {
+    if is_wanted() { Ok(()) } else { Err(EstimateError::Ended) }
 }
 
 #[cfg(test)]
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn nobody_said_anything_so_all_is_wanted() {
-        assert!(still() && look().is_ok());
+        assert!(is_wanted() && check().is_ok());
     }
 
     #[test]
@@ -66,23 +66,24 @@ mod tests {
         let result = while_wanted(
             move || count.replace(count.get().max(1) - 1) > 1,
             || {
-                while look().is_ok() {
+                while check().is_ok() {
                     rounds += 1;
                 }
             },
         );
         assert_eq!((result, rounds, left.get()), (None, 2, 0));
-        assert!(still(), "only that work was not wanted");
+        assert!(is_wanted(), "only that work was not wanted");
     }
 
     #[test]
     fn the_wish_is_this_threads_alone_and_a_panic_takes_it_along() {
-        let inside = while_wanted(|| false, || (still(), std::thread::spawn(still).join().expect("no panic")));
+        let inside = while_wanted(|| false, || (is_wanted(), std::thread::spawn(is_wanted).join().expect("no panic")));
         assert_eq!(inside, None);
         let caught = catch_unwind(AssertUnwindSafe(|| while_wanted(|| false, || panic!("a bug"))));
-        assert!(caught.is_err() && still());
+        assert!(caught.is_err() && is_wanted());
         // The innermost counts, and the outer one is there again.
-        let (inner, outer) = while_wanted(|| true, || (while_wanted(|| false, still), still())).expect("wanted");
+        let (inner, outer) =
+            while_wanted(|| true, || (while_wanted(|| false, is_wanted), is_wanted())).expect("wanted");
         assert_eq!((inner, outer), (None, true));
     }
 }
