@@ -3,23 +3,27 @@
 //! The rows are those of the batch fit ([`crate::identify::block`]): the vertical sum over a constant and the acceleration, the width
 //! over the grip. The pads count as linear here; the batch fit also averages over pads that bend.
 
+mod candidates;
+mod grasp_record;
 pub mod pull;
 mod report;
 
 use super::decimating_store::Store;
 use super::filter::{Filters, Sample};
-use super::grasp_record::{Grasp, Row};
-use super::information::{Problem, block_problems};
+use super::information::problem::Problem;
 use super::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
+use super::report::{Event, Report};
+use super::settings::Settings;
 use super::state_tracker::{FREE_ROW_S, Now, Sense};
-use super::{Event, Report, Settings};
 use crate::estimate::Parameter;
 use crate::segment::SystemState;
+use candidates::block_problems;
+use grasp_record::{Grasp, Row};
 use haptics::Vec2;
 use haptics::recording::Task;
 use pull::Left;
 pub(crate) use report::leak_parameter;
-use report::{friction, grip_stiffness, mean_width, width};
+use report::{friction, grip_stiffness, mean_width, weight, width};
 
 /// The ends of a state are left out, s: contacts ring there.
 const GUARD_S: f64 = 0.12;
@@ -225,7 +229,7 @@ impl Blocks {
     pub(super) fn report(&self, sense: &Sense, report: &mut Report) {
         for (index, object) in self.objects[..self.count].iter().enumerate() {
             let name = self.name(index);
-            report.parameters.extend(self.weight(&name, object, sense));
+            report.parameters.extend(weight(&name, object, sense, self.gravity));
             report.parameters.push(width(&name, object));
             report.parameters.push(grip_stiffness(&name, object));
             report.parameters.push(friction(&name, object));

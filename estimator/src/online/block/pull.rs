@@ -64,20 +64,20 @@ pub struct Pull {
 
 /// One carried row, weight and bias taken out.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Left {
-    pub(in super::super) time_s: f64,
-    pub(in super::super) at_m: Vec2,
+pub(crate) struct Left {
+    pub(crate) time_s: f64,
+    pub(crate) at_m: Vec2,
     /// Force of the hand that weight and inertia do not explain, N.
-    pub(in super::super) force_n: Vec2,
+    pub(crate) force_n: Vec2,
     /// Noise of a row, N.
-    pub(in super::super) noise_n: f64,
+    pub(crate) noise_n: f64,
     /// What all rows err alike by, N: only vertical forces know the weight's error.
-    pub(in super::super) common_n: Vec2,
+    pub(crate) common_n: Vec2,
 }
 
 impl Left {
     /// Size of what no model gets right, N, for a weight.
-    pub(in super::super) fn model_n(weight_n: f64) -> f64 {
+    pub(crate) fn model_n(weight_n: f64) -> f64 {
         MODEL_SHARE * weight_n.abs()
     }
 
@@ -94,7 +94,7 @@ impl Left {
 
 /// The watch over one object.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Hold {
+pub(crate) struct Hold {
     detector: ChangeDetector<1>,
     suspects: (f64, u32),
     calm: u32,
@@ -106,7 +106,7 @@ pub(in super::super) struct Hold {
 }
 
 impl Hold {
-    pub(in super::super) fn new(false_alarms_per_hour: f64, row_s: f64) -> Self {
+    pub(crate) fn new(false_alarms_per_hour: f64, row_s: f64) -> Self {
         Self {
             detector: ChangeDetector::new(false_alarms_per_hour, row_s, [MATTERS_N]),
             suspects: (0.0, 0),
@@ -118,14 +118,14 @@ impl Hold {
         }
     }
 
-    pub(in super::super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.detector.restart(0.0);
         self.lines.clear();
         (self.suspects, self.calm, self.began_s, self.pulls, self.newest) = ((0.0, 0), 0, None, false, None);
     }
 
     /// Takes a row; true when it tells nothing about the weight.
-    pub(in super::super) fn take(&mut self, left: &Left) -> bool {
+    pub(crate) fn take(&mut self, left: &Left) -> bool {
         let suspect = left.suspect();
         self.count(left, suspect);
         if !self.pulls {
@@ -169,12 +169,12 @@ impl Hold {
     }
 
     /// Held for an interruption: it is not known any more whether it still pulls.
-    pub(in super::super) fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         (self.pulls, self.suspects) = (false, (0.0, 0));
     }
 
     /// What holds the object. Allocates.
-    pub(in super::super) fn pull(&self, object: usize) -> Option<Pull> {
+    pub(crate) fn pull(&self, object: usize) -> Option<Pull> {
         let (began_s, newest) = (self.began_s?, self.newest?);
         Some(Pull {
             object,

@@ -1,9 +1,8 @@
 //! What is known of a carried object, as parameters of a fit.
 
-use super::super::grasp_record::Grasp;
 use super::super::leak::{LeakAnswer, Verdict};
 use super::super::state_tracker::Sense;
-use super::Blocks;
+use super::grasp_record::Grasp;
 use crate::estimate::Parameter;
 
 /// The grip must vary by this share of its mean for the pads' give to show.
@@ -83,28 +82,27 @@ pub(super) fn friction(name: &str, object: &Grasp) -> Parameter {
     }
 }
 
-impl Blocks {
-    pub(super) fn weight(&self, name: &str, object: &Grasp, sense: &Sense) -> Vec<Parameter> {
-        let samples = object.carried_rows as usize;
-        let error = object.weight.std_errors()[0];
-        let why = match sense.lift_bias() {
-            None => {
-                "the hand was not seen free yet: a bias of the force sensors would pass for weight; let go for a second"
-            }
-            Some(_) if !error.is_finite() => "it was not carried for long enough yet",
-            Some((bias, bias_error)) => {
-                let (value, error) = (object.weight.values()[0] - bias, error.hypot(bias_error));
-                let how = "mean of the summed vertical forces while carried, accelerations and bias taken out";
-                let mass = "weight divided by gravity";
-                return vec![
-                    Parameter::identified(name, "weight_N", value, error, samples, how),
-                    Parameter::identified(name, "mass_kg", value / self.gravity, error / self.gravity, samples, mass),
-                ];
-            }
-        };
-        vec![
-            Parameter::unidentified(name, "weight_N", samples, why),
-            Parameter::unidentified(name, "mass_kg", samples, why),
-        ]
-    }
+/// Weight and mass while it is carried.
+pub(super) fn weight(name: &str, object: &Grasp, sense: &Sense, gravity: f64) -> Vec<Parameter> {
+    let samples = object.carried_rows as usize;
+    let error = object.weight.std_errors()[0];
+    let why = match sense.lift_bias() {
+        None => {
+            "the hand was not seen free yet: a bias of the force sensors would pass for weight; let go for a second"
+        }
+        Some(_) if !error.is_finite() => "it was not carried for long enough yet",
+        Some((bias, bias_error)) => {
+            let (value, error) = (object.weight.values()[0] - bias, error.hypot(bias_error));
+            let how = "mean of the summed vertical forces while carried, accelerations and bias taken out";
+            let mass = "weight divided by gravity";
+            return vec![
+                Parameter::identified(name, "weight_N", value, error, samples, how),
+                Parameter::identified(name, "mass_kg", value / gravity, error / gravity, samples, mass),
+            ];
+        }
+    };
+    vec![
+        Parameter::unidentified(name, "weight_N", samples, why),
+        Parameter::unidentified(name, "mass_kg", samples, why),
+    ]
 }

@@ -4,16 +4,20 @@
 //! the laws' rows are made with the circle as it was known when they began, and corrected to first order for what became of it
 //! ([`laws`]).
 
+mod candidates;
 mod geometry;
 mod laws;
+pub(super) mod recorded;
 
 use super::filter::{Filters, Sample};
-use super::information::{Problem, crank_problems};
+use super::information::problem::Problem;
+use super::report::{Event, Report};
+use super::settings::Settings;
 use super::state_tracker::{FREE_ROW_S, Now, Sense};
-use super::{Event, Report, Settings};
 use crate::identify::crank::frame::{Handled, blur};
 use crate::identify::crank::laws::NAMES;
 use crate::segment::SystemState;
+use candidates::crank_problems;
 use geometry::Circle;
 use haptics::Vec2;
 use laws::Laws;
@@ -110,9 +114,6 @@ impl Crank {
         crank_problems(&self.circle, &self.laws, bias_error, sense.lift_noise_n(), FREE_ROW_S)
     }
 }
-
-pub(super) use geometry::Circle as Found;
-pub(super) use laws::Laws as Rubbing;
 
 fn handled(filters: &Filters, bias_n: Vec2) -> Handled {
     let pick = |s: &Sample| {

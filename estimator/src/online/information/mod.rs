@@ -4,24 +4,23 @@
 //! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
 //! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing there. Where several are needed, the one that
 //! all of them together could least do without is named first. What has no such matrix gets the motion that its fit takes it from
-//! ([`usual`]), without seconds.
+//! (`recommended_motion`), without seconds.
 
-mod candidates;
+pub(super) mod matrices;
+pub(super) mod motion;
+pub(super) mod problem;
 mod recommended_motion;
-mod recorded;
-mod target_accuracy;
+pub(super) mod target_accuracy;
 
-pub(super) use candidates::{block_problems, crank_problems};
-pub(super) use recorded::crank_problems_of;
+pub use motion::Motion;
 pub use target_accuracy::Wanted;
 
 use crate::estimate::Parameter;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
+use problem::Problem;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Nobody waits longer than this for a number, s.
-const LONGEST_S: f64 = 1800.0;
 /// Going on as before is fine when it takes no longer than this, s …
 const SOON_S: f64 = 8.0;
 /// … or than so many times the best other motion.
@@ -30,101 +29,6 @@ const CLEARLY: f64 = 2.0;
 const TRIAL_S: f64 = 5.0;
 /// It must shrink the error by this share to be named.
 const HELPS: f64 = 0.1;
-
-/// A motion that shows something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Motion {
-    /// Nothing new.
-    GoOn,
-    /// Fingers off everything for a second.
-    LetGo,
-    /// Held still above the ground.
-    HoldAboveGround,
-    /// Lifted and lowered quickly.
-    LiftAndLower,
-    /// The pinch changes.
-    SqueezeMoreAndLess,
-    /// The pinch is loosened until the object slides.
-    LoosenUntilItSlides,
-    /// All the way round.
-    FullTurn,
-    /// Both directions.
-    Reverse,
-    /// Slowly and fast.
-    OtherSpeeds,
-    /// Changing speed within a turn.
-    Accelerate,
-    /// Pressed towards the centre and drawn from it.
-    PushAndPull,
-    /// A block is set down, pressed, and lifted again.
-    SetDownAgain,
-    /// A needle through the sheet and out again.
-    PushThroughAndBack,
-    /// A needle to and fro in its hole.
-    MoveInTheHole,
-    /// A needle still, outside of the sheet.
-    HoldInTheAir,
-    /// A switch over and back, slowly.
-    ThrowSlowlyBothWays,
-    /// A switch pressed on at its ends.
-    PressOnBothStops,
-    /// A resting knob touched by one finger after the other.
-    TouchFromBothSides,
-    /// A switch thrown while both fingers hold it.
-    ThrowBetweenFingers,
-    /// A cable pulled until it holds.
-    PullTaut,
-    /// A taut cable pulled in other directions.
-    PullOtherWays,
-    /// A mechanism at several speeds.
-    MoveAtOtherSpeeds,
-    /// A mechanism faster and slower.
-    ChangeSpeed,
-    /// A mechanism slowly through everything it can reach.
-    SlowlyThroughAllAngles,
-    /// A tool along a surface.
-    SlideAlong,
-    /// A body thrown once more.
-    ThrowAgain,
-    /// Nothing that is done in such a recording.
-    NoMotion,
-}
-
-impl Motion {
-    /// What to do, as an order.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::GoOn => "go on as before",
-            Self::LetGo => "let go for a second, with the fingers off everything",
-            Self::HoldAboveGround => "hold it still above the ground",
-            Self::LiftAndLower => "lift and lower it more quickly",
-            Self::SqueezeMoreAndLess => "squeeze more, then less, while holding it",
-            Self::LoosenUntilItSlides => "loosen the pinch until it begins to slide",
-            Self::FullTurn => "turn it all the way round",
-            Self::Reverse => "reverse the direction a few times",
-            Self::OtherSpeeds => "turn at other speeds, slowly and fast",
-            Self::Accelerate => "speed up and slow down within a turn",
-            Self::PushAndPull => "push towards the centre and pull away from it while turning",
-            Self::SetDownAgain => "set it down, let go, and lift it again, a few times",
-            Self::PushThroughAndBack => "push slowly until it goes through, pull out, and do it again at another place",
-            Self::MoveInTheHole => "once through, move on and back out at an even speed, a few times",
-            Self::HoldInTheAir => "hold it still in the air for some seconds, and let go of it once",
-            Self::ThrowSlowlyBothWays => "throw it slowly both ways, a few times",
-            Self::PressOnBothStops => "press gently on at both ends of its travel",
-            Self::TouchFromBothSides => "touch the resting knob from one side, leave it, then from the other",
-            Self::ThrowBetweenFingers => "hold it between both fingers and throw it, slowly and then quickly",
-            Self::PullTaut => "pull slowly until the cable holds, give way, and pull again",
-            Self::PullOtherWays => "keep the cable taut and move around, in other directions",
-            Self::MoveAtOtherSpeeds => "move it at several speeds, slowly and fast",
-            Self::ChangeSpeed => "speed it up and slow it down, as quickly as it allows",
-            Self::SlowlyThroughAllAngles => "move it slowly through all its angles, or hold it still at several",
-            Self::SlideAlong => "slide along the surface, to and fro, while pressing more and less",
-            Self::ThrowAgain => "throw it again, so that it slides farther",
-            Self::NoMotion => "no motion of such a recording shows it better; state it if it is known",
-        }
-    }
-}
 
 /// What is known of one parameter, and what is missing.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
@@ -159,46 +63,6 @@ pub struct Missing {
     /// Seconds of it that would do; absent where it takes more than that motion alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-}
-
-/// One regression with what other motions would add to it.
-#[derive(Clone, Debug)]
-pub(super) struct Problem {
-    pub(super) object: String,
-    /// Names of parameters with their place among the columns.
-    pub(super) names: Vec<(String, usize)>,
-    /// Inverse covariance of what was collected, columns in their own units.
-    pub(super) information: DMatrix<f64>,
-    /// Standard deviation of every column's value before anything is seen: far beyond any object.
-    pub(super) before: Vec<f64>,
-    /// Information a second of each motion; the first is going on as before.
-    pub(super) motions: Vec<(Motion, DMatrix<f64>)>,
-}
-
-impl Problem {
-    /// Variance of a column's value after so many seconds of a motion.
-    fn variance(&self, column: usize, motion: &DMatrix<f64>, seconds: f64) -> f64 {
-        let n = self.before.len();
-        let prior = DMatrix::from_diagonal(&DVector::from_iterator(n, self.before.iter().map(|s| s.powi(-2))));
-        // Scaled by what is known before: the columns' units differ by orders of magnitude.
-        let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&self.before));
-        let total = &scale * (&self.information + motion * seconds + prior) * &scale;
-        let inverse = total.cholesky().map(|c| c.inverse());
-        inverse.map_or(f64::INFINITY, |i| i[(column, column)] * self.before[column].powi(2))
-    }
-
-    /// Seconds of a motion until a column's variance is `wanted`; `None` when that takes too long.
-    fn seconds(&self, column: usize, motion: &DMatrix<f64>, wanted: f64) -> Option<f64> {
-        if self.variance(column, motion, LONGEST_S) > wanted {
-            return None;
-        }
-        let (mut low, mut high) = (0.0, LONGEST_S);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if self.variance(column, motion, middle) > wanted { low = middle } else { high = middle }
-        }
-        Some(high)
-    }
 }
 
 /// Judges every parameter that an accuracy is wanted of.
@@ -293,6 +157,7 @@ fn missing(motion: Motion, seconds: Option<f64>) -> Missing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DVector;
 
     /// A constant and a slope: what was collected shows the constant only.
     fn problem() -> Problem {

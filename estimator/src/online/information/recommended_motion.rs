@@ -1,6 +1,6 @@
 //! The motion that shows a parameter, where no information matrix tells which one is missing: what each fit takes its number from.
 
-use super::Motion;
+use super::motion::Motion;
 use crate::estimate::Parameter;
 
 /// Object, parameter and the motion that shows it; an empty object means any.

@@ -1,6 +1,6 @@
 //! The rates that the readings show, with errors.
 
-use super::{Measured, Series, Weighing};
+use super::weighing::{Measured, Series, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 

@@ -1,134 +1,22 @@
 //! What other motions would add to the information: their rows, made by the same laws.
 
-use super::super::crank::{Found, Rubbing};
-use super::super::grasp_record::Grasp;
-use super::super::recursive::Recursive;
-use super::{Motion, Problem};
+use super::geometry::Circle;
+use super::laws::Laws;
 use crate::identify::crank::laws::{LAWS, NAMES, WEIGHT, column};
+use crate::online::information::matrices::{collected, per_second, with_copy};
+use crate::online::information::motion::Motion;
+use crate::online::information::problem::Problem;
 use haptics::law::Motion as Along;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use std::f64::consts::TAU;
-
-/// Sum of x xᵀ over rows, as a mean, times so many rows a second.
-fn per_second(rows: &[Vec<f64>], rows_per_s: f64) -> DMatrix<f64> {
-    let n = rows.first().map_or(0, Vec::len);
-    let sum = rows.iter().fold(DMatrix::zeros(n, n), |sum, row| {
-        let x = DVector::from_column_slice(row);
-        sum + &x * x.transpose()
-    });
-    sum * (rows_per_s / rows.len().max(1) as f64)
-}
-
-/// Information of a recursion, and what its rows are divided by to become information: the noise with all that its errors count.
-fn collected<const P: usize>(fit: &Recursive<P>) -> (DMatrix<f64>, f64) {
-    let (inverse, errors) = (fit.inverse(), fit.std_errors());
-    let known: Vec<f64> =
-        (0..P).filter(|j| errors[*j].is_finite()).map(|j| errors[j] * errors[j] / inverse[j][j]).collect();
-    let variance =
-        if known.is_empty() { fit.noise().powi(2).max(1e-12) } else { known.iter().sum::<f64>() / known.len() as f64 };
-    let information =
-        DMatrix::from_fn(P, P, |i, j| inverse[i][j]).try_inverse().unwrap_or_else(|| DMatrix::zeros(P, P));
-    (information / variance, variance.max(1e-300))
-}
-
-/// The same with one more column that is a copy of column `of`: a bias that acts as that parameter does.
-fn with_copy(matrix: &DMatrix<f64>, of: usize) -> DMatrix<f64> {
-    let n = matrix.nrows();
-    let place = |i: usize| if i == n { of } else { i };
-    DMatrix::from_fn(n + 1, n + 1, |i, j| matrix[(place(i), place(j))])
-}
-
-/// Problems of a carried object: weight beside the bias, width beside the pads' give, friction.
-pub(in super::super) fn block_problems(
-    name: &str,
-    object: &Grasp,
-    bias_error: Option<f64>,
-    bias_noise_n: f64,
-    row_s: f64,
-    free_row_s: f64,
-) -> Vec<Problem> {
-    vec![
-        weight(name, object, bias_error, bias_noise_n, row_s, free_row_s),
-        width(name, object, row_s),
-        Problem {
-            object: name.to_owned(),
-            names: vec![("friction".to_owned(), 0)],
-            information: DMatrix::zeros(1, 1),
-            before: vec![1.0],
-            // Only sliding shows it: a tenth of a second of it to about 3 %.
-            motions: vec![
-                (Motion::GoOn, DMatrix::zeros(1, 1)),
-                (Motion::LoosenUntilItSlides, DMatrix::from_element(1, 1, 0.03_f64.powi(-2))),
-            ],
-        },
-    ]
-}
-
-fn weight(
-    name: &str,
-    object: &Grasp,
-    bias_error: Option<f64>,
-    bias_noise_n: f64,
-    row_s: f64,
-    free_row_s: f64,
-) -> Problem {
-    let (collected, variance) = collected(&object.weight);
-    let mut information = with_copy(&collected, 0);
-    if let Some(error) = bias_error {
-        information[(2, 2)] += error.powi(-2);
-    }
-    let rows = 1.0 / row_s;
-    let seconds = (object.weight.rows() as f64 * row_s).max(row_s);
-    let carry = |accelerations: &[f64]| -> DMatrix<f64> {
-        let rows_of: Vec<Vec<f64>> = accelerations.iter().map(|a| vec![1.0, *a, 1.0]).collect();
-        per_second(&rows_of, rows) / variance
-    };
-    let free_noise = if bias_noise_n > 0.0 { bias_noise_n } else { variance.sqrt() };
-    let let_go = per_second(&[vec![0.0, 0.0, 1.0]], 1.0 / free_row_s) / (free_noise * free_noise);
-    Problem {
-        object: name.to_owned(),
-        names: vec![("weight_N".to_owned(), 0), ("mass_kg".to_owned(), 0)],
-        information,
-        before: vec![10.0, 10.0, 10.0],
-        motions: vec![
-            (Motion::GoOn, with_copy(&(collected / seconds), 0)),
-            (Motion::HoldAboveGround, carry(&[0.1, -0.1])),
-            (Motion::LiftAndLower, carry(&[2.0, -2.0, 1.0, -1.0])),
-            (Motion::LetGo, let_go),
-        ],
-    }
-}
-
-fn width(name: &str, object: &Grasp, row_s: f64) -> Problem {
-    let (information, variance) = collected(&object.width);
-    let seconds = (object.width.rows() as f64 * row_s).max(row_s);
-    let (grip, spread) = object.grip_and_spread();
-    let hold = |grips: &[f64], rate: f64| {
-        let rows: Vec<Vec<f64>> =
-            grips.iter().enumerate().map(|(k, f)| vec![1.0, *f, if k % 2 == 0 { rate } else { -rate }]).collect();
-        per_second(&rows, 1.0 / row_s) / variance
-    };
-    let same = &information / seconds;
-    Problem {
-        object: name.to_owned(),
-        names: vec![("width_m".to_owned(), 0)],
-        information,
-        before: vec![1.0, 0.01, 1.0],
-        motions: vec![
-            (Motion::GoOn, same),
-            (Motion::HoldAboveGround, hold(&[grip - spread, grip + spread], 1e-4)),
-            (Motion::SqueezeMoreAndLess, hold(&[0.6 * grip, 0.8 * grip, 1.2 * grip, 1.4 * grip], 1e-3)),
-        ],
-    }
-}
 
 /// Steps of a turn that candidates are sampled at.
 const STEPS: usize = 96;
 
 /// Problems of a crank: its laws beside the bias, its circle beside the give.
-pub(in super::super) fn crank_problems(
-    circle: &Found,
-    laws: &Rubbing,
+pub(crate) fn crank_problems(
+    circle: &Circle,
+    laws: &Laws,
     bias_error: Option<f64>,
     bias_noise_n: f64,
     free_row_s: f64,
@@ -138,7 +26,7 @@ pub(in super::super) fn crank_problems(
     let turned = Turned {
         information,
         variance,
-        seconds: laws.fit().rows() as f64 / Rubbing::rows_per_s(),
+        seconds: laws.fit().rows() as f64 / Laws::rows_per_s(),
         normal_n,
         pull_n,
         speed_m_s,
@@ -148,7 +36,7 @@ pub(in super::super) fn crank_problems(
         free_row_s,
     };
     let (information, variance) = collected(circle.fit());
-    let seconds = circle.fit().rows() as f64 / Found::rows_per_s();
+    let seconds = circle.fit().rows() as f64 / Circle::rows_per_s();
     let force_n = circle.usual_force_n();
     vec![rubbing(&turned), round(&Round { information, variance, seconds, normal_n, force_n })]
 }
@@ -197,7 +85,7 @@ pub(super) fn rubbing(seen: &Turned) -> Problem {
     if let Some(error) = seen.bias_error {
         information[(bias, bias)] += error.powi(-2);
     }
-    let rows_per_s = Rubbing::rows_per_s();
+    let rows_per_s = Laws::rows_per_s();
     let seconds = seen.seconds.max(1.0 / rows_per_s);
     let (normal, radius) = (seen.normal_n, seen.radius_m);
     let (speed, pull) = (seen.speed_m_s.max(0.01), seen.pull_n.max(0.1));
@@ -254,7 +142,7 @@ pub(super) fn rubbing(seen: &Turned) -> Problem {
 
 pub(super) fn round(seen: &Round) -> Problem {
     let (information, variance) = (seen.information.clone(), seen.variance);
-    let rows_per_s = Found::rows_per_s();
+    let rows_per_s = Circle::rows_per_s();
     let seconds = seen.seconds.max(1.0 / rows_per_s);
     let (normal, force) = (seen.normal_n, seen.force_n.max(0.05));
     let turn = |radial: &dyn Fn(f64) -> f64, along: f64| {

@@ -1,9 +1,9 @@
 //! Everything that is collected of one object that is carried.
 
-use super::block::pull::{Hold, Left};
-use super::change::ChangeDetector;
-use super::decimating_store::Store;
-use super::recursive::Recursive;
+use super::super::change::ChangeDetector;
+use super::super::decimating_store::Store;
+use super::super::recursive::Recursive;
+use super::pull::{Hold, Left};
 use haptics::Vec2;
 
 /// Rows of a reading that are kept for judging a leak.
@@ -82,7 +82,7 @@ impl Grasp {
     }
 
     /// Takes in a row and, where it is known, what weight and inertia leave of its force; says when the weight jumped, with the weight before, bias in.
-    pub(super) fn take(&mut self, row: &Row, left: Option<&Left>) -> Option<(super::change::Change, f64)> {
+    pub(super) fn take(&mut self, row: &Row, left: Option<&Left>) -> Option<(super::super::change::Change, f64)> {
         self.held_rows += 1;
         let share = 1.0 / self.held_rows as f64;
         self.grip[0] += share * (row.grip_n - self.grip[0]);

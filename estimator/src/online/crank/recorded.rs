@@ -2,12 +2,13 @@
 //! tells when it is held. The circle is that of the fit; rows are made by the same laws; how much a row counts follows from the errors
 //! that the fit states.
 
-use super::super::crank::{Found, Rubbing};
-use super::Problem;
 use super::candidates::{Round, Turned, round, rubbing};
+use super::geometry::Circle;
+use super::laws::Laws;
 use crate::estimate::Fit;
 use crate::identify::crank::frame::{Frame, Handled};
 use crate::identify::crank::laws::{INERTIA, LAWS, NAMES, WEIGHT, column};
+use crate::online::information::problem::Problem;
 use crate::signal::task::{is_two_fingered, task_signals, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
@@ -26,7 +27,7 @@ const RIDGE: f64 = 1e-10;
 type Course = Vec<(f64, Vec2, Vec2, Vec2)>;
 
 /// Problems of a crank's recordings; none without a clock, a force or a circle.
-pub(in super::super) fn crank_problems_of(recordings: &[Recording], fit: &Fit, free_row_s: f64) -> Vec<Problem> {
+pub(crate) fn crank_problems_of(recordings: &[Recording], fit: &Fit, free_row_s: f64) -> Vec<Problem> {
     let value = |name: &str| fit.value("crank", name);
     let (Some(x), Some(y), Some(radius_m)) = (value("center_x_m"), value("center_y_m"), value("radius_m")) else {
         return Vec::new();
@@ -42,7 +43,7 @@ pub(in super::super) fn crank_problems_of(recordings: &[Recording], fit: &Fit, f
     let mut laws = Rows::default();
     let mut circle = Rows::default();
     for course in &courses {
-        laws.take(course, 1.0 / Rubbing::rows_per_s(), |part| {
+        laws.take(course, 1.0 / Laws::rows_per_s(), |part| {
             let middle = part.get(part.len() / 2).filter(|m| turns(m))?;
             let (first, last) = (part.first()?, part.last()?);
             let acceleration = (last.2 - first.2) / (last.0 - first.0).max(1e-9);
@@ -52,7 +53,7 @@ pub(in super::super) fn crank_problems_of(recordings: &[Recording], fit: &Fit, f
             let columns = LAWS.iter().map(|law| column(*law, &motion)).collect();
             Some((columns, [motion.normal_force_n, motion.velocity.abs()]))
         });
-        circle.take(course, 1.0 / Found::rows_per_s(), |part| {
+        circle.take(course, 1.0 / Circle::rows_per_s(), |part| {
             let middle = part.get(part.len() / 2).filter(|m| turns(m))?;
             let n = frame.outward(middle.1, middle.3);
             Some((vec![1.0, n.x, n.y, n.x * middle.3.x, n.y * middle.3.y], [middle.3.norm(), 0.0]))
