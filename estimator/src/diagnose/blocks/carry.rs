@@ -15,7 +15,7 @@ use crate::diagnose::report::CauseParameter;
 use crate::diagnose::select::Chosen;
 use crate::diagnose::shifted::Late;
 use crate::estimate::EstimateError;
-use crate::identify::block::object;
+use crate::identify::block::signals::object;
 use crate::segment::SystemState;
 use haptics::world::{Cable, World};
 

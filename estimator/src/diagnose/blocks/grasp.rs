@@ -8,7 +8,7 @@ use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
 use crate::diagnose::rollout::Pads;
 use crate::estimate::EstimateError;
-use crate::identify::block::object;
+use crate::identify::block::signals::object;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;

@@ -7,7 +7,7 @@ use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Cause, Gain};
 use crate::diagnose::rollout::AT_ONCE;
-use crate::identify::block::object;
+use crate::identify::block::signals::object;
 use crate::identify::block::slip_detection::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;

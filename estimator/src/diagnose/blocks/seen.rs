@@ -2,7 +2,7 @@
 
 use crate::estimate::EstimateError;
 use crate::identify::block::placement_time::{stands_from, usual_lift};
-use crate::identify::block::{Blocks, MAIN, object};
+use crate::identify::block::signals::{Blocks, MAIN, object};
 use crate::segment::{Method, SystemState};
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};

@@ -9,9 +9,12 @@
 //! That the ratio is one must be shown, not only be possible: a grip that is let go of while the block stands has a pinch that falls beside a
 //! shear that stays, and in a short window the noise allows for that, too.
 
-use super::Blocks;
+use super::signals::{Blocks, MAIN, mean_and_spread, object};
+use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::least_squares;
+use crate::segment::threshold::percentile;
+use haptics::Vec2;
 
 /// Length of the windows that are looked at, and their distance, s.
 const WINDOW_S: f64 = 0.05;
@@ -34,6 +37,93 @@ const OF_THE_PINCH: f64 = 0.5;
 const DOUBT: f64 = 2.0;
 /// Onset: the first part of a slip, s; later the friction is that of motion.
 const ONSET_S: f64 = 0.1;
+
+impl Blocks<'_> {
+    /// Largest ratio of tangential to normal tip force while grasped: a lower bound of the friction coefficient.
+    pub(super) fn friction(&self, number: usize) -> [Parameter; 2] {
+        let name = object(number);
+        if let Some(why) = self.unshown("friction_lower_bound") {
+            return ["friction_lower_bound", "friction"].map(|f| Parameter::unidentified(&name, f, 0, &why));
+        }
+        let samples = self.shown("friction_lower_bound", number);
+        let (mean_grip, _) = mean_and_spread(&samples.iter().map(|i| self.grip[*i]).collect::<Vec<_>>());
+        let noise = self.levels.force_noise_n;
+        // Below this grip the ratio is noise.
+        let least = (10.0 * noise).max(0.25 * mean_grip);
+        let mut best: Option<(f64, f64)> = None;
+        for finger in 0..2 {
+            for i in &samples {
+                let force = self.mean_force(finger, *i);
+                let normal = if finger == 0 { force.x } else { -force.x };
+                if normal > least {
+                    let ratio = force.y.abs() / normal;
+                    let error = noise * ratio.hypot(1.0) / normal;
+                    // What is certainly reached counts: the largest of many noisy ratios would overshoot.
+                    if best.is_none_or(|(r, e)| ratio - 2.0 * error > r - 2.0 * e) {
+                        best = Some((ratio, error));
+                    }
+                }
+            }
+        }
+        let held = best.map_or(0.0, |(ratio, error)| ratio - 2.0 * error);
+        let slip = match self.slip(number, held) {
+            Some(slip) => {
+                let how = format!(
+                    "shear over normal force of both fingers at the onset of a slip, the first at {:.2} s",
+                    slip.at_s
+                );
+                Parameter::identified(&name, "friction", slip.coefficient, slip.error, slip.samples, &how)
+                    .with_bootstrap(slip.resampled)
+            }
+            None => Parameter::unidentified(
+                &name,
+                "friction",
+                samples.len(),
+                "the fingers never slipped: only a lower bound is given; loosen the pinch until the block slides",
+            ),
+        };
+        let bound = match best {
+            Some((ratio, error)) => Parameter::identified(
+                &name,
+                "friction_lower_bound",
+                // The largest of many noisy ratios lies about one error too high.
+                (ratio - error).max(0.0),
+                error,
+                samples.len(),
+                "largest ratio of vertical to horizontal tip force while grasped; true friction is at least this",
+            ),
+            None => Parameter::unidentified(&name, "friction_lower_bound", 0, "the grip was never firm enough to tell"),
+        };
+        [bound, slip]
+    }
+
+    /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
+    fn slip(&self, number: usize, ratio: f64) -> Option<Slip> {
+        const NOISES: f64 = 8.0;
+        const AFTER_S: f64 = 0.3;
+        let carried = self.shown(MAIN, number);
+        let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
+        // The middle one: a slip at the end of the carry does not count.
+        let weight_n = percentile(&mut lifts, 0.5);
+        let grasp = self.shown("friction", number);
+        let time = &self.signals.time_s;
+        let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
+        let least_grip_n = NOISES * self.levels.force_noise_n;
+        slip(self, *grasp.first()?, end, Held { weight_n, least_grip_n, ratio })
+    }
+
+    /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.
+    pub(super) fn mean_force(&self, finger: usize, i: usize) -> Vec2 {
+        const HALF_S: f64 = 0.03;
+        let time = &self.signals.time_s;
+        let first = time[..i].partition_point(|t| *t < time[i] - HALF_S);
+        let mut end = i + 1;
+        while end < time.len() && time[end] <= time[i] + HALF_S {
+            end += 1;
+        }
+        (first..end).map(|j| self.force(finger, j)).sum::<Vec2>() / (end - first) as f64
+    }
+}
 
 /// Friction at the onset of slips.
 pub(super) struct Slip {

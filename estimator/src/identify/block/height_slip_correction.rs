@@ -2,8 +2,8 @@
 
 use super::heights::Rest;
 use super::placement_time::stands_from;
+use super::signals::{Blocks, MAIN, object};
 use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
-use super::{Blocks, MAIN, object};
 use crate::identify::linear::least_squares;
 use crate::signal::task::half_width;
 

@@ -12,7 +12,7 @@
 //! left alone in another is then known in both.
 
 use super::height_slip_correction::{Slipped, slips};
-use super::{Blocks, MAIN, object};
+use super::signals::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::bootstrap::{Resampled, block_bootstrap_within};
 use crate::identify::linear::{LinearFit, least_squares};

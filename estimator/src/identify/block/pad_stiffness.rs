@@ -1,20 +1,34 @@
 //! How far pads give: one stiffness out of several measurements.
 
+use super::signals::Blocks;
 use crate::estimate::Parameter;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A measured give of a pad, m/N, with its standard error by covariance and by resampling.
-pub(super) struct Give {
-    pub m_per_n: f64,
-    pub error: f64,
-    pub resampled: Option<f64>,
-    pub rows: usize,
+struct Give {
+    m_per_n: f64,
+    error: f64,
+    resampled: Option<f64>,
+    rows: usize,
+}
+
+impl Blocks<'_> {
+    /// Stiffness of one pad: both give under the grip, so the width falls by 2 F / k. Blocks averaged by their errors.
+    pub(super) fn pad_stiffness(&self, count: usize) -> Parameter {
+        let gives = (1..=count).filter_map(|number| self.pads(number).ok()?).map(|pads| Give {
+            m_per_n: pads.give_m_per_n,
+            error: pads.give_error,
+            resampled: pads.resampled.map(|(_, give)| give),
+            rows: pads.rows,
+        });
+        pad_parameter("stiffness_N_m", gives, "the grip varied too little to tell the pads' give")
+    }
 }
 
 /// A stiffness from several measurements of a give, averaged by their errors.
 ///
 /// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
-pub(super) fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
+fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
     const SIGNIFICANT: f64 = 3.0;
     let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();
     let weights: f64 = gives.iter().map(|g| g.error.powi(-2)).sum();

@@ -1,7 +1,7 @@
 //! When a carried block stands again: the load goes over from the fingers to what is below. Nothing but the load tells what the fingers do from
 //! then on (pads that give, a slip of the grip) from lowering, so the earlier it is seen the better.
 
-use super::Blocks;
+use super::signals::Blocks;
 use crate::segment::threshold::percentile;
 use std::ops::Range;
 

@@ -1,7 +1,6 @@
 //! Weighted regression of the tangential force on the laws; what it shows and what it does not.
 
-use super::SIGNIFICANT;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, SIGNIFICANT};
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
 use super::path_coordinate::{Along, Rows};
 use super::signals::Held;

@@ -5,7 +5,7 @@
 
 use super::friction::{Friction, Sensed, friction};
 use super::path_coordinate::Rows;
-use super::{Prepared, Seen, describe, see};
+use super::single_fit::{Prepared, Seen, describe, see};
 use crate::estimate::{Correlated, EstimateError, Fit, Parameter};
 use crate::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::Recording;

@@ -10,14 +10,14 @@ use haptics::recording::Recording;
 use rayon::prelude::*;
 
 /// Turns the motion of a held handle into motion along its circle, sample by sample.
-pub(super) struct Along<'a> {
+pub(crate) struct Along<'a> {
     held: &'a Grasped,
     position: &'a [Vec2],
     frame: Frame,
 }
 
 impl<'a> Along<'a> {
-    pub(super) fn new(recording: &Recording, held: &'a Held, geometry: &'a Geometry) -> Self {
+    pub(crate) fn new(recording: &Recording, held: &'a Held, geometry: &'a Geometry) -> Self {
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
         let (center_m, give_m_per_n) = (geometry.center_m, geometry.give_m_per_n);
         Self {
@@ -43,12 +43,12 @@ impl<'a> Along<'a> {
 }
 
 /// The handle's motion along the circle and the tangential force, N, at every sample (they mean something while it is held).
-pub(super) fn motions(recording: &Recording, held: &Held, geometry: &Geometry) -> (Vec<Motion>, Vec<f64>) {
+pub(crate) fn motions(recording: &Recording, held: &Held, geometry: &Geometry) -> (Vec<Motion>, Vec<f64>) {
     motions_at(recording, held, geometry, 0..held.time_s.len())
 }
 
 /// [`motions`] at chosen samples, less than half a turn apart.
-pub(super) fn motions_at(
+pub(crate) fn motions_at(
     recording: &Recording,
     held: &Held,
     geometry: &Geometry,
@@ -74,10 +74,10 @@ pub(super) fn motions_at(
 /// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out what the
 /// equation does not hold for: the noise of accelerations, which would flatten the inertia, and the tremor of the hand, which
 /// the handle does not quite follow because of the pads.
-pub(super) struct Rows {
-    pub(super) columns: [Vec<f64>; LAWS.len()],
-    pub(super) tangential: Vec<f64>,
-    pub(super) weights: Vec<f64>,
+pub(crate) struct Rows {
+    pub(crate) columns: [Vec<f64>; LAWS.len()],
+    pub(crate) tangential: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
 }
 
 fn half(time_s: &[f64]) -> usize {
@@ -106,12 +106,12 @@ fn inside(held: &Grasped, half: usize) -> Vec<usize> {
 }
 
 impl Rows {
-    pub(super) fn new(along: &Along<'_>) -> Self {
+    pub(crate) fn new(along: &Along<'_>) -> Self {
         Self::thinned(along, 1)
     }
 
     /// The same from about `taps` samples in each window of the low-pass: enough to see what a small change of the geometry does.
-    pub(super) fn coarse(along: &Along<'_>, taps: usize) -> Self {
+    pub(crate) fn coarse(along: &Along<'_>, taps: usize) -> Self {
         Self::thinned(along, (2 * half(&along.held.time_s) / taps).max(1))
     }
 
@@ -145,12 +145,12 @@ impl Rows {
         }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.tangential.len()
     }
 
     /// The rows of several recordings, one after the other.
-    pub(super) fn join<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
+    pub(crate) fn join<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
         let mut joined = Self { columns: Default::default(), tangential: Vec::new(), weights: Vec::new() };
         for rows in all {
             for (column, more) in joined.columns.iter_mut().zip(&rows.columns) {
@@ -163,7 +163,7 @@ impl Rows {
     }
 
     /// The first rows, as they come in time.
-    pub(super) fn head(&self, rows: usize) -> Self {
+    pub(crate) fn head(&self, rows: usize) -> Self {
         Self {
             columns: std::array::from_fn(|law| self.columns[law][..rows].to_vec()),
             tangential: self.tangential[..rows].to_vec(),

@@ -1,8 +1,7 @@
 //! Parameters, constraint and warnings in the words of a fit.
 
-use super::SIGNIFICANT;
 use super::friction::Friction;
-use super::geometry::{Drawn, Geometry};
+use super::geometry::{Drawn, Geometry, SIGNIFICANT};
 use super::laws::WEIGHT;
 use super::signals::{Held, Smooth};
 use crate::constraint::existence::{Rows, existence, sentence};

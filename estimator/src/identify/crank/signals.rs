@@ -18,35 +18,35 @@ const LEAST_FREE_S: f64 = 0.25;
 
 /// The handle's motion and force, all channels through the same smoothing filter. One entry a sample. Nothing in here depends on
 /// the segmentation, so that refits of the same recording share it.
-pub(super) struct Smooth {
-    pub(super) time_s: Vec<f64>,
+pub(crate) struct Smooth {
+    pub(crate) time_s: Vec<f64>,
     /// Mean of the tips, m.
     mean_of_tips: Vec<Vec2>,
-    pub(super) velocity: Vec<Vec2>,
+    pub(crate) velocity: Vec<Vec2>,
     /// Derivative of the velocity, m/s².
-    pub(super) acceleration: Vec<Vec2>,
+    pub(crate) acceleration: Vec<Vec2>,
     /// Net force on the handle as measured, not smoothed and smoothed, N, …
     measured_force: Vec<Vec2>,
     filtered_force: Vec<Vec2>,
     /// … and its first two derivatives, N/s and N/s².
-    pub(super) force_rate: Vec<Vec2>,
-    pub(super) force_bend: Vec<Vec2>,
+    pub(crate) force_rate: Vec<Vec2>,
+    pub(crate) force_bend: Vec<Vec2>,
     /// Noise of one velocity component after smoothing, m/s.
-    pub(super) velocity_noise: f64,
+    pub(crate) velocity_noise: f64,
     /// Error by the resolution of the log, m and N.
-    pub(super) resolution_m: f64,
-    pub(super) resolution_n: f64,
+    pub(crate) resolution_m: f64,
+    pub(crate) resolution_n: f64,
 }
 
 /// The handle's motion and force while it is held, with what the states say of them. Fits by the same states share it.
-pub(super) struct Grasped {
+pub(crate) struct Grasped {
     smooth: Arc<Smooth>,
     /// Net force on the handle, N, bias taken out.
-    pub(super) force: Vec<Vec2>,
+    pub(crate) force: Vec<Vec2>,
     /// Samples that turn (the rest is held still or let go).
-    pub(super) turning: Vec<usize>,
+    pub(crate) turning: Vec<usize>,
     /// Standard error of the vertical force bias that was taken out, N; `None` without a free phase to see it in.
-    pub(super) bias_error_n: Option<f64>,
+    pub(crate) bias_error_n: Option<f64>,
 }
 
 impl Deref for Grasped {
@@ -58,24 +58,24 @@ impl Deref for Grasped {
 }
 
 /// [`Grasped`], and the slips of one fit taken out.
-pub(super) struct Held {
+pub(crate) struct Held {
     grasped: Arc<Grasped>,
     /// Positions without slips; `None` where there were none.
     without_slips: Option<Vec<Vec2>>,
 }
 
 impl Held {
-    pub(super) fn new(grasped: &Arc<Grasped>) -> Self {
+    pub(crate) fn new(grasped: &Arc<Grasped>) -> Self {
         Self { grasped: Arc::clone(grasped), without_slips: None }
     }
 
     /// Mean of the tips, m; slips are taken out of it.
-    pub(super) fn position(&self) -> &[Vec2] {
+    pub(crate) fn position(&self) -> &[Vec2] {
         self.without_slips.as_deref().unwrap_or(&self.grasped.smooth.mean_of_tips)
     }
 
     /// Takes a slip by `shift` out of the positions from `sample` on.
-    pub(super) fn move_back(&mut self, sample: usize, shift: Vec2) {
+    pub(crate) fn move_back(&mut self, sample: usize, shift: Vec2) {
         let positions = self.without_slips.get_or_insert_with(|| self.grasped.smooth.mean_of_tips.clone());
         positions.iter_mut().skip(sample).for_each(|p| *p -= shift);
     }
@@ -89,7 +89,7 @@ impl Deref for Held {
     }
 }
 
-pub(super) fn grasped(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Grasped {
+pub(crate) fn grasped(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Grasped {
     let force = &smooth.measured_force;
     let free: Vec<usize> = segmentation
         .states
@@ -118,7 +118,7 @@ pub(super) fn grasped(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Gras
     }
 }
 
-pub(super) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
+pub(crate) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
     let time_s = times(recording);
     let (position, velocity, force) = if is_two_fingered(recording) {
         let TaskSignals { position, velocity, net_force_n, .. } = task_signals(recording)?;

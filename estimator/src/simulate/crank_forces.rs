@@ -1,13 +1,13 @@
 //! The forces that a motion of a crank's handle needs, for a replay.
 
-use super::geometry::Geometry;
-use super::path_coordinate::motions;
-use super::signals::{Held, Smooth, grasped, smooth};
 use crate::estimate::EstimateError;
+use crate::identify::crank::geometry::Geometry;
+use crate::identify::crank::path_coordinate::motions;
+use crate::identify::crank::signals::{Held, Smooth, grasped, smooth};
 use crate::segment::threshold::percentile;
 use crate::segment::{SystemState, segment};
 use crate::signal::task::is_two_fingered;
-use crate::simulate::{Needed, PredictedPart, resting_level, rms};
+use crate::simulate::prediction::{NeededForces, PredictedPart, resting_level, rms};
 use haptics::Vec2;
 use haptics::law::drive_forces;
 use haptics::recording::{Channel, Recording, Task};
@@ -24,7 +24,7 @@ const TURNS: f64 = 0.1;
 ///
 /// Along the circle the world's laws say what it takes; the pull along the arm and the grip are the operator's own and stay as
 /// measured. Where nothing is held nothing is felt but what the sensor reads at rest.
-pub(crate) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Needed, EstimateError> {
+pub(super) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<NeededForces, EstimateError> {
     let names = names(recording);
     let is_felt = names.iter().any(|name| recording.channel(name).is_some_and(|f| f.iter().any(|v| *v != f[0])));
     let recording = if is_felt { Cow::Borrowed(recording) } else { Cow::Owned(without_forces(recording, &names)) };
@@ -76,7 +76,7 @@ pub(crate) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Need
         left_open: None,
     };
     let is_predicted = states.iter().map(|s| matches!(s, SystemState::Turning | SystemState::FreeMotion)).collect();
-    Ok(Needed { channels, is_predicted, part, inputs: inputs(is_felt), bias_n })
+    Ok(NeededForces { channels, is_predicted, part, inputs: inputs(is_felt), bias_n })
 }
 
 /// Channels of force.

@@ -1,11 +1,11 @@
 //! The forces that a motion of blocks needs, for a replay.
 
-use super::MAIN;
 use crate::estimate::EstimateError;
+use crate::identify::block::signals::MAIN;
 use crate::segment::definition::Definition;
 use crate::segment::{Interval, Method, SystemState, segment_signals_by};
 use crate::signal::task::{smooth, task_signals};
-use crate::simulate::{Needed, PredictedPart, resting_level, rms};
+use crate::simulate::prediction::{NeededForces, PredictedPart, resting_level, rms};
 use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::World;
@@ -14,7 +14,7 @@ use haptics::world::World;
 ///
 /// In the air the net force is m (g + a), shared by both fingers; grip and leaning are the operator's own and stay as measured,
 /// as does everything while a block rests. Free fingers feel nothing but what their sensors read at rest.
-pub(crate) fn needed_forces(world: &World, recording: &Recording) -> Result<Needed, EstimateError> {
+pub(super) fn needed_forces(world: &World, recording: &Recording) -> Result<NeededForces, EstimateError> {
     let signals = task_signals(recording)?;
     let task = Definition::of(recording, Task::BlockStack)?;
     let segmentation = segment_signals_by(Method::Threshold, &signals, &task, None)?;
@@ -61,7 +61,7 @@ pub(crate) fn needed_forces(world: &World, recording: &Recording) -> Result<Need
         samples: is_carried.iter().filter(|c| **c).count(),
         left_open: None,
     };
-    Ok(Needed {
+    Ok(NeededForces {
         channels,
         is_predicted: is_carried.iter().zip(&is_free).map(|(carried, free)| *carried || *free).collect(),
         part,

@@ -3,7 +3,8 @@
 use crate::calibrate;
 use crate::identify::crank;
 use crate::segment::resting::tests::{HELD_S, recording};
-use crate::simulate::{Simulation, simulate};
+use crate::simulate::prediction::Simulation;
+use crate::simulate::simulate;
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
