@@ -1,7 +1,7 @@
 //! Gaps, dropped samples and jumps of the clock.
 
+use super::findings::{is_position, limited, place};
 use super::profile::thinned;
-use super::{is_position, limited, place};
 use haptics::recording::{Recording, Span, Warning};
 
 /// A step of more than this many periods is a gap, below it a few samples were dropped.

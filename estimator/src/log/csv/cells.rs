@@ -133,6 +133,14 @@ pub fn length_ahead(bytes: &[u8], delimiter: u8) -> usize {
     memchr2(delimiter, b'\n', bytes).unwrap_or(bytes.len())
 }
 
+/// Rows that are read before they are distributed to the columns.
+pub const BATCH: usize = 64;
+
+/// True for a cell that need not be read: no quote hides a delimiter, and it starts no comment.
+pub fn is_skippable(cell: &[u8]) -> bool {
+    cell.first() != Some(&b'#') && memchr(b'"', cell).is_none()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,9 @@
 //! Which clock the table gets, and how topics with different clocks come onto one.
 
 use super::names::{self, Name};
+use super::resample;
+use super::source::{Source, note};
 use super::topic::Topic;
-use super::{Source, note, resample};
 use crate::log::errors::LogError;
 use crate::log::raw::{Cells, Raw};
 use haptics::recording::{Meta, Warning};
