@@ -1,7 +1,5 @@
 //! The Markov chain of the hidden states.
 
-use super::MOST_STATES;
-
 /// Why a model cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HmmError {
@@ -92,3 +90,6 @@ fn normalise(row: &mut [f64]) -> Option<()> {
     let fair = row.iter().all(|p| p.is_finite() && *p >= 0.0) && (total - 1.0).abs() <= ROUNDING;
     fair.then(|| row.iter_mut().for_each(|p| *p /= total))
 }
+
+/// Most states of a model: paths are kept in one byte a sample.
+pub const MOST_STATES: usize = 255;

@@ -1,6 +1,9 @@
 //! Baum–Welch: the model that explains a sequence best, near a prior.
 
-use super::{Chain, Covariance, Expectation, Gaussian, HmmError, Model, forward_backward};
+use super::chain::{Chain, HmmError};
+use super::forward::{Expectation, forward_backward};
+use super::gaussian::{Covariance, Gaussian};
+use super::model::Model;
 use crate::cancellation;
 use nalgebra::DMatrix;
 
