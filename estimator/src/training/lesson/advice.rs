@@ -1,6 +1,6 @@
 //! What to do better next, in one sentence: drawn from what went wrong, else from the worst measure.
 
-use super::grade::{Figure, Grade};
+use super::graded::{Figure, Grade};
 use crate::training::definitions::Definition;
 
 /// A measure that is worse than the experts' mean by less than this many units needs no advice.

@@ -1,6 +1,8 @@
 //! Any world that was measured becomes a lesson: what can be done with the things that stand in it.
 
-use super::{Base, Goal, Judged, Lesson, Rule, SCHEMA, Step, goal};
+use super::format::{Base, Judged, Lesson, SCHEMA, Step};
+use super::goal;
+use super::goal::{Goal, Rule};
 use crate::estimate::EstimateError;
 use haptics::device::Act;
 use haptics::world::{Block, Shape, World};
@@ -26,7 +28,7 @@ const FACE_M: f64 = 0.016;
 /// When nothing stands in the world that a lesson is known for.
 pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
     let (what, goals, demonstration, judged) = task_of(&world).ok_or_else(|| {
-        super::wrong(
+        super::format::wrong(
             "no lesson is known for what stands in this world; train in it without one, or write a lesson of your own",
         )
     })?;
