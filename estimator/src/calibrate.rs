@@ -7,7 +7,7 @@ use crate::constraint;
 use crate::estimate::{Fit, Parameter};
 use crate::identify::block::width::{Hold, holds, width_under};
 use crate::identify::mechanism;
-use crate::identify::needle::HELD;
+use crate::identify::needle::sheet::HELD;
 use crate::segment::Segmentation;
 use crate::signal::task::{Tip, is_two_fingered, task_signals};
 use haptics::Vec2;

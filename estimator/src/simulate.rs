@@ -9,7 +9,8 @@ pub use prediction::{LeftOpen, PredictedPart, Simulation};
 
 use crate::cancellation;
 use crate::estimate::EstimateError;
-use crate::identify::{mechanism, needle};
+use crate::identify::mechanism;
+use crate::identify::needle::sheet::{HELD, OBJECT};
 use crate::log::{gap_above_s, gaps};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
@@ -89,7 +90,7 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
         });
     };
     // Its sensor feels its weight all the time, with a bias that nothing tells from it.
-    let held = world.provenance.iter().find(|p| p.object == needle::OBJECT && p.name == needle::HELD);
+    let held = world.provenance.iter().find(|p| p.object == OBJECT && p.name == HELD);
     let held_n = held.map_or(0.0, |p| p.value);
     let mut history = MembraneHistory::default();
     let mut values = Vec::with_capacity(position.len());

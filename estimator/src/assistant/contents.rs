@@ -3,7 +3,7 @@
 //! Each kind of content has a range of densities, evenly likely on a logarithmic scale, and all kinds are as likely as each other before
 //! anything is weighed. A density with a normal error makes some of them more likely (Bayes); what no kind explains stays unnamed.
 
-use super::held::Known;
+use super::known::Known;
 use serde::Serialize;
 use statrs::distribution::{Continuous, Normal};
 

@@ -6,7 +6,7 @@
 //! the first, is what is believed of the friction; from it follow what is free now, between which limits, and how likely a jolt would
 //! make it slip.
 
-use super::held::Known;
+use super::known::Known;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, LogNormal};
 

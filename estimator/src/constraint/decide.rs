@@ -4,6 +4,7 @@ mod odds;
 mod report;
 
 use super::circle::{Arc, cost, fit, refine};
+use super::context::Context;
 use super::existence::sentence;
 use super::frame::Frame;
 use super::guided;
@@ -53,19 +54,6 @@ const SCREW_ERRORS: f64 = 5.0;
 const GRIP_SLIP_M: f64 = 2.5e-3;
 /// Stiffness of a hand of which nothing is known, N/m: what is as stiff counts as rigid.
 const RIGID_N_M: f64 = 2000.0;
-
-/// What is known about a path beside its points.
-#[derive(Clone, Debug, Default)]
-pub struct Context {
-    /// Name of the recording or trial.
-    pub recording: Option<String>,
-    /// The path lies in the x-y plane by construction.
-    pub planar: bool,
-    /// Sample times, s, one a point: inertia can then be told from constraint forces.
-    pub time_s: Option<Vec<f64>>,
-    /// Unit vector upwards; zero in a level plane.
-    pub up: Vector3<f64>,
-}
 
 /// Everything measured about the path's shape.
 struct Shape {

@@ -1,6 +1,6 @@
 //! What forces and screws add to a path: whether anything guides it, and the motion it allows.
 
-use super::decide::Context;
+use super::context::Context;
 use super::existence::{Rows, existence};
 use super::frame::Frame;
 use super::screw::Helix;

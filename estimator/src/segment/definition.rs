@@ -1,9 +1,9 @@
 //! What a task is: its states with their rules, its subtasks, and how its thresholds are found. Tasks are JSON files; those that the
 //! program knows are in `assets/tasks`, users add their own (`docs/tasks.md`).
 
-use super::rules::Sign;
-use super::subtasks::Subtask;
-use super::{SystemState, Thresholds};
+use super::sign::Sign;
+use super::state::SystemState;
+use super::threshold::Thresholds;
 use crate::estimate::EstimateError;
 use haptics::recording::{Recording, Task};
 use serde::{Deserialize, Serialize};
@@ -255,13 +255,18 @@ impl Rules {
     }
 }
 
-impl Sign {
-    /// As written in files.
-    pub fn symbol(self) -> char {
-        match self {
-            Self::Plus => '+',
-            Self::Zero => '0',
-            Self::Minus => '-',
-        }
-    }
+/// Most objects carried in one recording.
+pub const MOST_CARRIES: usize = 100;
+
+/// A step of the task: its name and the state the system is then in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subtask {
+    /// E.g. `carry-block-1`.
+    pub name: String,
+    /// The state that holds.
+    pub state: SystemState,
+    /// One may have to begin the object again.
+    pub retry: bool,
+    /// The number of its object, from 1; 0: a step before the first object.
+    pub object: usize,
 }

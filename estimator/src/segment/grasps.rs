@@ -1,8 +1,8 @@
 //! Where the hand gripped and where it let go: whether a grasp takes up again what the one before left lying. A dropped block
 //! lies below the place where it was lost and weighs what it weighed; the next block of the task lies elsewhere.
 
-use super::SystemState;
-use super::subtasks::{LEAST_RUN_S, Run};
+use super::runs::{LEAST_RUN_S, Run};
+use super::state::SystemState;
 use super::threshold::percentile;
 use haptics::Vec2;
 use std::ops::Range;

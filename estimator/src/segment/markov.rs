@@ -5,8 +5,9 @@
 //! own rule goes back to where it started, and a warning says so.
 
 use super::evidence::Evidence;
-use super::subtasks::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
-use super::{Method, Segmentation, StatePosterior, SystemState};
+use super::runs::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
+use super::segmentation::{Method, Segmentation, StatePosterior};
+use super::state::SystemState;
 use crate::cancellation;
 use crate::estimate::EstimateError;
 use crate::hmm::{

@@ -1,7 +1,7 @@
 //! Which parameters a task's states show, and so where fits take their samples from.
 
-use super::SystemState;
 use super::definition::{Definition, StateRule, Step, Subtasks};
+use super::state::SystemState;
 use haptics::recording::Task;
 use std::collections::BTreeMap;
 

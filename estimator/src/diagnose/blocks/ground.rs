@@ -8,7 +8,7 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
-use crate::identify::block::heights::{Rest, rests};
+use crate::identify::block::rests::{Rest, rests};
 use crate::identify::block::signals::object;
 use crate::identify::block::slip_detection::{LEAST_M, may_stand};
 use crate::segment::SystemState;

@@ -6,7 +6,7 @@ use crate::diagnose::compare::stretches;
 use crate::diagnose::shifted::Late;
 use crate::diagnose::track::{Fine, Span};
 use crate::estimate::EstimateError;
-use crate::identify::needle::Sheet;
+use crate::identify::needle::sheet::Sheet;
 use crate::identify::needle::signals::{Along, along};
 use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
 use crate::segment::SystemState;

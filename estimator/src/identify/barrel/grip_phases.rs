@@ -2,8 +2,7 @@
 
 use super::cable::Cable;
 use super::cable_force::{GEOMETRY, Pull, STIFFNESS};
-use super::report::{Seen, Value, error_of};
-use super::{CABLE, OBJECT};
+use super::report::{CABLE, OBJECT, Seen, Value, error_of};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
 use haptics::Vec2;

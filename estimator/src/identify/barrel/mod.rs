@@ -8,7 +8,7 @@ mod cable;
 mod cable_force;
 mod grip_phases;
 mod grip_rotation;
-mod report;
+pub(crate) mod report;
 mod sensor_zero;
 mod signals;
 mod slip;
@@ -20,15 +20,11 @@ use cable_force::{Pull, Rows};
 use grip_rotation::Swing;
 use haptics::Vec2;
 use haptics::recording::Recording;
-use report::Seen;
+use report::{Seen, Taken};
 use sensor_zero::Zero;
 use signals::Signals;
 use wall_stiffness::Grip;
 
-/// The object's name in the results.
-pub const OBJECT: &str = "barrel";
-/// What holds it.
-pub const CABLE: &str = "cable";
 /// Fewer rows while it hangs tell nothing.
 const LEAST_ROWS: usize = 12;
 
@@ -91,19 +87,6 @@ pub fn fit_by(
     };
     let fit = seen.report();
     Ok((fit, signals.segmentation))
-}
-
-/// What was taken for the answer.
-struct Taken {
-    pull: Pull,
-    /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
-    others: Vec<Pull>,
-    /// How far its middle went from that of the fingers by turning in the grip, m.
-    turned_m: f64,
-    /// How far the barrel slid down in the grip while a cable pulled, m.
-    slipped_m: Option<f64>,
-    rows: usize,
-    zero: Zero,
 }
 
 fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {

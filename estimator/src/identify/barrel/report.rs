@@ -2,9 +2,9 @@
 
 use super::cable::Cable;
 use super::cable_force::{GROWTH, MASS, Pull, STIFFNESS};
+use super::sensor_zero::Zero;
 use super::signals::Signals;
 use super::wall_stiffness::Grip;
-use super::{OBJECT, Taken};
 use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
@@ -252,4 +252,23 @@ impl Seen<'_> {
         let how = "largest ratio of vertical to horizontal tip force while held; true friction is at least this";
         self.given(OBJECT, "friction_lower_bound", ((largest - error).max(0.0), error), how)
     }
+}
+
+/// The object's name in the results.
+pub(crate) const OBJECT: &str = "barrel";
+
+/// What holds it.
+pub(crate) const CABLE: &str = "cable";
+
+/// What was taken for the answer.
+pub(super) struct Taken {
+    pub(super) pull: Pull,
+    /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
+    pub(super) others: Vec<Pull>,
+    /// How far its middle went from that of the fingers by turning in the grip, m.
+    pub(super) turned_m: f64,
+    /// How far the barrel slid down in the grip while a cable pulled, m.
+    pub(super) slipped_m: Option<f64>,
+    pub(super) rows: usize,
+    pub(super) zero: Zero,
 }

@@ -1,8 +1,7 @@
 //! What a two-fingered recording says about a barrel: motion, net force and grip, all through one filter, and where it was held.
 
 use crate::estimate::EstimateError;
-use crate::segment::definition::Definition;
-use crate::segment::subtasks::MOST_CARRIES;
+use crate::segment::definition::{Definition, MOST_CARRIES};
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by};
 use crate::signal::noise::{quantum, resolution_error, white_noise};

@@ -1,7 +1,7 @@
 //! Slips of the grip on a block that stands, as the fit takes them out of heights: the thesis's height that was 9 % off.
 
-use super::heights::Rest;
 use super::placement_time::stands_from;
+use super::rests::Rest;
 use super::signals::{Blocks, MAIN, object};
 use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
 use crate::identify::linear::least_squares;

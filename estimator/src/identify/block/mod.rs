@@ -11,6 +11,7 @@ mod joint_fit;
 mod leak;
 mod pad_stiffness;
 pub(crate) mod placement_time;
+pub(crate) mod rests;
 pub(crate) mod signals;
 mod single_fit;
 pub(crate) mod slip_detection;

@@ -2,9 +2,9 @@
 
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
-use crate::segment::definition::Definition;
+use crate::segment::definition::{Definition, MOST_CARRIES};
 use crate::segment::threshold::Levels;
-use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by, subtasks};
+use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -103,7 +103,7 @@ impl<'a> Blocks<'a> {
 
     /// Blocks that were seen carried.
     pub(crate) fn count(&self) -> usize {
-        (1..=subtasks::MOST_CARRIES).take_while(|n| !self.shown(MAIN, *n).is_empty()).count()
+        (1..=MOST_CARRIES).take_while(|n| !self.shown(MAIN, *n).is_empty()).count()
     }
 
     pub(super) fn samples(&self, subtasks: &[String]) -> Vec<usize> {

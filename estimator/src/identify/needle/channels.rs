@@ -1,8 +1,9 @@
 //! A needle recording as a hidden Markov model sees it: depth beyond the surface, force, speed inwards, and how much less than an
 //! untouched sheet presses back.
 
+use super::sheet::{LEAST_LOADING, Sheet};
 use super::strokes::{self, quiet_force};
-use super::{LEAST_LOADING, Sheet, phases, signals};
+use super::{phases, signals};
 use crate::estimate::{EstimateError, StrokePhase};
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, times};

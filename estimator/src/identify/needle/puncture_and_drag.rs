@@ -1,8 +1,8 @@
 //! What a needle shows beyond the loading curve: the force at which it goes through, the drag of the hole, its own weight.
 
+use super::sheet::{HELD, OBJECT, Sheet};
 use super::signals::Along;
 use super::strokes::Push;
-use super::{HELD, OBJECT, Sheet};
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;

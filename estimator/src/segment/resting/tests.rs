@@ -1,7 +1,8 @@
 //! A finger that comes to a crank's handle, turns it to and fro and goes away again, with a sensor that has noise and a bias.
 
 use crate::identify::crank;
-use crate::segment::{Segmentation, SystemState, Thresholds, segment};
+use crate::segment::segmentation::Segmentation;
+use crate::segment::{SystemState, Thresholds, segment};
 use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use rand::{RngExt as _, SeedableRng as _};
