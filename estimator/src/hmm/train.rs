@@ -102,6 +102,17 @@ fn maximised(model: &Model, values: &[f64], expectation: &Expectation, training:
     Model::new(Chain::new(start, transition)?, emissions)
 }
 
+/// Sums of products about a mean that a prior of `n` samples stands for.
+fn prior_products(prior: &Gaussian, n: f64, mean: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_fn(mean.len(), mean.len(), |a, b| {
+        let spread = match prior.covariance() {
+            Covariance::Full(matrix) => matrix[(a, b)],
+            Covariance::Diagonal(variances) => f64::from(u8::from(a == b)) * variances[a],
+        };
+        n * (spread + (prior.mean()[a] - mean[a]) * (prior.mean()[b] - mean[b]))
+    })
+}
+
 /// Mean and covariance of the samples of one state together with those of the prior. `posterior`: the state's probability at every
 /// `step`-th entry.
 fn emission(
@@ -147,13 +158,7 @@ fn emission(
         Covariance::Full(_) => {
             let mut products = DMatrix::zeros(d, d);
             if let Some((g, n)) = believed {
-                products += DMatrix::from_fn(d, d, |a, b| {
-                    let spread = match g.covariance() {
-                        Covariance::Full(matrix) => matrix[(a, b)],
-                        Covariance::Diagonal(variances) => f64::from(u8::from(a == b)) * variances[a],
-                    };
-                    n * (spread + (g.mean()[a] - mean[a]) * (g.mean()[b] - mean[b]))
-                });
+                products += prior_products(g, n, &mean);
             }
             for (x, share) in shares() {
                 for a in 0..d {

@@ -78,6 +78,31 @@ pub(super) struct Round {
 /// One way of turning: time along it from 0 to 1 → speed over the usual one, acceleration over usual speed times 1/s, normal force, N.
 type Way<'a> = &'a dyn Fn(f64) -> (f64, f64, f64);
 
+/// Information a second of turning in one way.
+fn turning(seen: &Turned, way: Way<'_>) -> DMatrix<f64> {
+    let (radius, speed) = (seen.radius_m, seen.speed_m_s.max(0.01));
+    let row = |k: usize| {
+        let phase = (k as f64 + 0.5) / STEPS as f64;
+        let (share, acceleration, normal_force_n) = way(phase);
+        let velocity = share * speed;
+        let angle = TAU * 7.0 * phase;
+        let along = Along {
+            time_s: phase,
+            position: radius * angle,
+            velocity,
+            acceleration: acceleration * speed,
+            direction: velocity.signum(),
+            normal_force_n,
+            up_along: angle.cos(),
+        };
+        let mut columns: Vec<f64> = LAWS.iter().map(|law| column(*law, &along)).collect();
+        columns.push(columns[WEIGHT]);
+        columns
+    };
+    let rows: Vec<Vec<f64>> = (0..STEPS).map(row).collect();
+    per_second(&rows, Laws::rows_per_s()) / seen.variance
+}
+
 pub(super) fn rubbing(seen: &Turned) -> Problem {
     let variance = seen.variance;
     let mut information = with_copy(&seen.information, WEIGHT);
@@ -87,30 +112,8 @@ pub(super) fn rubbing(seen: &Turned) -> Problem {
     }
     let rows_per_s = Laws::rows_per_s();
     let seconds = seen.seconds.max(1.0 / rows_per_s);
-    let (normal, radius) = (seen.normal_n, seen.radius_m);
-    let (speed, pull) = (seen.speed_m_s.max(0.01), seen.pull_n.max(0.1));
-    let turn = |way: Way<'_>| {
-        let row = |k: usize| {
-            let phase = (k as f64 + 0.5) / STEPS as f64;
-            let (share, acceleration, normal_force_n) = way(phase);
-            let velocity = share * speed;
-            let angle = TAU * 7.0 * phase;
-            let along = Along {
-                time_s: phase,
-                position: radius * angle,
-                velocity,
-                acceleration: acceleration * speed,
-                direction: velocity.signum(),
-                normal_force_n,
-                up_along: angle.cos(),
-            };
-            let mut columns: Vec<f64> = LAWS.iter().map(|law| column(*law, &along)).collect();
-            columns.push(columns[WEIGHT]);
-            columns
-        };
-        let rows: Vec<Vec<f64>> = (0..STEPS).map(row).collect();
-        per_second(&rows, rows_per_s) / variance
-    };
+    let (normal, pull) = (seen.normal_n, seen.pull_n.max(0.1));
+    let turn = |way: Way<'_>| turning(seen, way);
     let way = |phase: f64| if phase < 0.5 { 1.0 } else { -1.0 };
     let speeds = |phase: f64| [0.4, 1.0, 2.0][(phase * 6.0) as usize % 3];
     // About one and a half swings of the speed a second.
