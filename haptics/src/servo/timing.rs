@@ -6,5 +6,5 @@
 mod collector;
 mod figures;
 
-pub use collector::{RECENT_S, TimingCollector};
-pub use figures::{Figures, STALL_S, TickTiming, Timing};
+pub use collector::TimingCollector;
+pub use figures::{Figures, RECENT_S, STALL_S, TickTiming, Timing};

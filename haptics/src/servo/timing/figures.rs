@@ -3,13 +3,15 @@
 use crate::servo::histogram::Percentiles;
 use crate::servo::rate::RateReport;
 
+/// What counts as recent, s.
+pub const RECENT_S: f64 = 10.0;
 /// A tick that starts so late, or works so long, is a stall of its own and named, s.
 pub const STALL_S: f64 = 1e-3;
 
 /// How punctual the servo was in a stretch of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct Figures {
-    /// Length of the stretch, s: what has passed, up to [`RECENT_S`](super::RECENT_S).
+    /// Length of the stretch, s: what has passed, up to [`RECENT_S`].
     pub seconds: f64,
     /// Ticks in it.
     pub ticks: u64,
@@ -55,7 +57,7 @@ pub struct Timing {
     pub longest_stall_s: f64,
     /// Age of the newest device sample, s.
     pub sample_age_s: f64,
-    /// The same figures for the last [`RECENT_S`](super::RECENT_S).
+    /// The same figures for the last [`RECENT_S`].
     pub recent: Figures,
 }
 
