@@ -149,7 +149,7 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
         cancellation::check()?;
         prepared.cranks.get_or_init(|| made)
     };
-    let together = crank::refit_together(options.method, recordings, prepared, options.thresholds)?;
+    let together = crank::refit_jointly(options.method, recordings, prepared, options.thresholds)?;
     let mut fit = combine(together.fits);
     if recordings.len() > 1 {
         for shared in together.shared {
@@ -165,7 +165,7 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
 
 /// Several recordings of the same blocks: heights and friction from each, weights, widths and pads from all of them at once.
 fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
-    let together = block::fit_together(options.method, recordings, options.thresholds)?;
+    let together = block::fit_jointly(options.method, recordings, options.thresholds)?;
     let mut fit = combine(together.fits);
     for shared in together.shared {
         // Blocks that are not the same have no common value; the average says how far they lie apart.

@@ -1,5 +1,8 @@
 //! The Markov chain of the hidden states.
 
+/// Most states of a model: paths are kept in one byte a sample.
+pub const MOST_STATES: usize = 255;
+
 /// Why a model cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HmmError {
@@ -90,6 +93,3 @@ fn normalise(row: &mut [f64]) -> Option<()> {
     let fair = row.iter().all(|p| p.is_finite() && *p >= 0.0) && (total - 1.0).abs() <= ROUNDING;
     fair.then(|| row.iter_mut().for_each(|p| *p /= total))
 }
-
-/// Most states of a model: paths are kept in one byte a sample.
-pub const MOST_STATES: usize = 255;

@@ -15,5 +15,5 @@ mod report;
 pub(crate) mod signals;
 mod single_fit;
 
-pub use joint_fit::{Together, fit_together, refit_together};
+pub use joint_fit::{JointFit, fit_jointly, refit_jointly};
 pub use single_fit::{Prepared, fit, fit_by};

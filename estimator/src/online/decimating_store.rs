@@ -2,14 +2,14 @@
 
 /// A store of rows of N numbers, the first one a time.
 #[derive(Clone, Debug)]
-pub(super) struct Store<const N: usize> {
+pub(super) struct DecimatingStore<const N: usize> {
     rows: Vec<[f64; N]>,
     sum: [f64; N],
     summed: u32,
     each: u32,
 }
 
-impl<const N: usize> Store<N> {
+impl<const N: usize> DecimatingStore<N> {
     /// Room for `capacity` rows, allocated here.
     pub(super) fn new(capacity: usize) -> Self {
         Self { rows: Vec::with_capacity(capacity.max(4)), sum: [0.0; N], summed: 0, each: 1 }
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn means_and_times_survive_halving_and_the_space_is_fixed() {
-        let mut store = Store::<2>::new(64);
+        let mut store = DecimatingStore::<2>::new(64);
         let room = store.rows.capacity();
         for i in 0..10_000 {
             store.push([f64::from(i), 3.0 * f64::from(i)]);

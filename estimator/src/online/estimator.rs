@@ -7,7 +7,7 @@ use super::information::problem::Problem;
 use super::information::{Enough, Wanted, judge};
 use super::report::Report;
 use super::settings::Settings;
-use super::state_tracker::{Now, Sense};
+use super::state_tracker::{Now, StateTracker};
 use crate::estimate::{EstimateError, Parameter};
 use haptics::recording::Task;
 
@@ -21,7 +21,7 @@ enum Body {
 #[derive(Clone, Debug)]
 pub struct Online {
     filters: Filters,
-    sense: Sense,
+    sense: StateTracker,
     body: Body,
     settings: Settings,
     now: Option<Now>,
@@ -50,7 +50,7 @@ impl Online {
                 )));
             }
         };
-        Ok(Self { filters, sense: Sense::new(task)?, body, settings, now: None })
+        Ok(Self { filters, sense: StateTracker::new(task)?, body, settings, now: None })
     }
 
     /// Takes a sample; allocates, locks and waits for nothing. A sample with a number that is not finite is left out, after a hole in

@@ -31,7 +31,7 @@ pub(super) struct Now {
 
 /// States and biases while samples come in.
 #[derive(Clone, Debug)]
-pub(super) struct Sense {
+pub(super) struct StateTracker {
     rules: Rules,
     leave: f64,
     turns: bool,
@@ -52,7 +52,7 @@ pub(super) struct Sense {
     learned_s: f64,
 }
 
-impl Sense {
+impl StateTracker {
     pub(super) fn new(task: Task) -> Result<Self, EstimateError> {
         let definition = Definition::built_in(task)?;
         let blank = || Recursive::new([1.0], BIAS_MEMORY_S / FREE_ROW_S, 4);

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Most objects carried in one recording.
+pub const MOST_CARRIES: usize = 100;
+
 /// The key of a sidecar that holds a whole task of its own.
 pub const SIDECAR_KEY: &str = "task_definition";
 
@@ -254,9 +257,6 @@ impl Rules {
         self.0.iter().find(|(_, when)| when.iter().all(meets)).map_or(SystemState::NoState, |(state, _)| *state)
     }
 }
-
-/// Most objects carried in one recording.
-pub const MOST_CARRIES: usize = 100;
 
 /// A step of the task: its name and the state the system is then in.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 //! pieces cut out of a motion, of which the prior does not speak, they are stricter. The figures are in `docs/constraints.md`.
 
 use super::super::noise::PathNoise;
-use super::{HINGE_M, Shape};
+use super::shape::{HINGE_M, Shape};
 
 /// Posterior probability from which on the path of a whole motion is called straight …
 const STRAIGHT_WHOLE: f64 = 0.65;

@@ -17,14 +17,14 @@ const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.
 #[derive(Clone, Debug, Default)]
-pub struct Swing {
+pub struct GripRotation {
     /// Angle against how it stood on the floor, rad, one a sample of the recording; empty where that is not known.
     angle_rad: Vec<f64>,
     /// How far above the barrel's middle the fingers hold it, m, and its standard error.
     pub above_m: (f64, f64),
 }
 
-impl Swing {
+impl GripRotation {
     /// From the samples while it hangs; `give`: of both fingers together along x and y, m/N.
     pub fn of(signals: &Signals, hanging: &[usize], give: Vec2) -> Result<Self, EstimateError> {
         let held = signals.held();

@@ -17,11 +17,11 @@ mod wall_stiffness;
 use crate::estimate::{EstimateError, Fit};
 use crate::segment::{Method, Segmentation, Thresholds};
 use cable_force::{Pull, Rows};
-use grip_rotation::Swing;
+use grip_rotation::GripRotation;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use report::{Seen, Taken};
-use sensor_zero::Zero;
+use sensor_zero::SensorZero;
 use signals::Signals;
 use wall_stiffness::Grip;
 
@@ -47,9 +47,9 @@ pub fn fit_by(
     let gravity = recording.meta.gravity();
     let give = grip.give_m_n();
     let [(give_x, error_x), (give_y, error_y)] = give;
-    let zero = Zero::at(&signals, middle_s(&signals, &hanging))?;
+    let zero = SensorZero::at(&signals, middle_s(&signals, &hanging))?;
     let usual = Vec2::new(give_x, give_y);
-    let swing = Swing::of(&signals, &hanging, usual)?;
+    let swing = GripRotation::of(&signals, &hanging, usual)?;
     let all = rows(&signals, &hanging, usual, &swing, &zero, gravity);
     let turned_m = hanging.iter().map(|i| swing.shift(*i).norm()).fold(0.0, f64::max);
     let pull = Pull::of(&all)?;
@@ -60,14 +60,15 @@ pub fn fit_by(
             let slack = |p: &Vec2| cable.stretch(*p).0 < -way_m.abs();
             let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
             let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
-            let zero = Zero::at(&signals, middle_s(&signals, hanging))?;
+            let zero = SensorZero::at(&signals, middle_s(&signals, hanging))?;
             let rows = rows(&signals, hanging, usual, &swing, &zero, gravity);
             let pull = Pull::without_cable(&rows)?;
             taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: Some(way_m), rows: hanging.len(), zero };
         } else {
             // What else the pads may give changes where the barrel was, and so what the cable looks like.
-            let pull_with =
-                |give: Vec2, swing: &Swing| Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity));
+            let pull_with = |give: Vec2, swing: &GripRotation| {
+                Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity))
+            };
             taken.others = vec![
                 pull_with(Vec2::new(give_x + error_x, give_y), &swing)?,
                 pull_with(Vec2::new(give_x, give_y + error_y), &swing)?,
@@ -94,7 +95,14 @@ fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
 }
 
 /// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
-fn rows(signals: &Signals, hanging: &[usize], give: Vec2, swing: &Swing, zero: &Zero, gravity: f64) -> Rows {
+fn rows(
+    signals: &Signals,
+    hanging: &[usize],
+    give: Vec2,
+    swing: &GripRotation,
+    zero: &SensorZero,
+    gravity: f64,
+) -> Rows {
     let force = |i: &usize| signals.net_n[*i] - zero.net_n;
     Rows {
         time_s: hanging.iter().map(|i| signals.time_s[*i]).collect(),

@@ -2,7 +2,7 @@
 
 use super::cable::Cable;
 use super::cable_force::{GROWTH, MASS, Pull, STIFFNESS};
-use super::sensor_zero::Zero;
+use super::sensor_zero::SensorZero;
 use super::signals::Signals;
 use super::wall_stiffness::Grip;
 use crate::estimate::{Fit, Parameter};
@@ -10,6 +10,11 @@ use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
+
+/// The object's name in the results.
+pub(crate) const OBJECT: &str = "barrel";
+/// What holds it.
+pub(crate) const CABLE: &str = "cable";
 
 /// Width of a barrel whose sides' give could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -254,12 +259,6 @@ impl Seen<'_> {
     }
 }
 
-/// The object's name in the results.
-pub(crate) const OBJECT: &str = "barrel";
-
-/// What holds it.
-pub(crate) const CABLE: &str = "cable";
-
 /// What was taken for the answer.
 pub(super) struct Taken {
     pub(super) pull: Pull,
@@ -270,5 +269,5 @@ pub(super) struct Taken {
     /// How far the barrel slid down in the grip while a cable pulled, m.
     pub(super) slipped_m: Option<f64>,
     pub(super) rows: usize,
-    pub(super) zero: Zero,
+    pub(super) zero: SensorZero,
 }

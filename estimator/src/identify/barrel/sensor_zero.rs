@@ -10,7 +10,7 @@ const LEAST_FREE_S: f64 = 0.2;
 
 /// The zero of both sensors together.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Zero {
+pub struct SensorZero {
     /// What it is at the time asked for, beyond the mean that was already taken out, N.
     pub net_n: Vec2,
     /// Standard error of its vertical part, N.
@@ -19,7 +19,7 @@ pub struct Zero {
     pub drift_n_s: Option<(f64, f64)>,
 }
 
-impl Zero {
+impl SensorZero {
     /// The zero at a time.
     pub fn at(signals: &Signals, time_s: f64) -> Result<Self, EstimateError> {
         let free = &signals.levels.free;

@@ -15,7 +15,7 @@ const SURE: f64 = 50.0;
 const ERRORS: f64 = 5.0;
 
 /// A slip of the grip at one end of a carry.
-pub(super) struct Slipped {
+pub(super) struct HeightSlip {
     /// Index of the rest.
     pub(super) rest: usize,
     slip: Slip,
@@ -26,7 +26,7 @@ pub(super) struct Slipped {
     placed: bool,
 }
 
-impl Slipped {
+impl HeightSlip {
     /// What a row's height must be changed by so that it is that of the grip in the air, m, and the error of that.
     pub(super) fn correction_m(&self, time_s: f64) -> (f64, f64) {
         let done = self.slip.shown(time_s, self.half_s);
@@ -64,13 +64,13 @@ struct Rows {
 }
 
 /// Slips at the ends of carries, one an end at most.
-pub(super) fn slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<Slipped> {
+pub(super) fn height_slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<HeightSlip> {
     let rows = rows(blocks, rests);
     let half_s = half_window_s(blocks);
     let heights = Heights { time_s: &rows.time_s, height_m: &rows.height_m, half_s, rests: &rows.stretches };
     let n = rows.time_s.len();
     let mut model = model(&rows);
-    let mut found: Vec<Slipped> = Vec::new();
+    let mut found: Vec<HeightSlip> = Vec::new();
     while n > model.len() + 1 {
         let left = heights.left(&model);
         let is_open = |stretch: usize| found.iter().all(|f| f.rest != rows.numbers[stretch]);
@@ -89,7 +89,7 @@ pub(super) fn slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<Slipped> {
             break;
         }
         let (rest, slip) = (rows.numbers[best.slip.rest], best.slip);
-        found.push(Slipped { rest, slip, half_s, way_m, error_m: own.hypot(open_m), placed: rest % 2 == 1 });
+        found.push(HeightSlip { rest, slip, half_s, way_m, error_m: own.hypot(open_m), placed: rest % 2 == 1 });
     }
     found
 }

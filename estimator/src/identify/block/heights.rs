@@ -11,7 +11,7 @@
 //! Several recordings of the same blocks share heights and gives; grasps are each one's own. What was restacked in one recording and
 //! left alone in another is then known in both.
 
-use super::height_slip_correction::{Slipped, slips};
+use super::height_slip_correction::{HeightSlip, height_slips};
 use super::rests::{Rest, rests};
 use super::signals::{Blocks, object};
 use crate::estimate::{EstimateError, Parameter};
@@ -46,13 +46,13 @@ pub(super) struct Stacked<'a> {
     blocks: &'a Blocks<'a>,
     weights_n: &'a [f64],
     rests: Vec<Rest>,
-    slips: Vec<Slipped>,
+    slips: Vec<HeightSlip>,
 }
 
 impl<'a> Stacked<'a> {
     pub(super) fn new(blocks: &'a Blocks<'a>, weights_n: &'a [f64]) -> Self {
         let rests = rests(blocks, weights_n.len().min(blocks.count()));
-        let slips = slips(blocks, &rests);
+        let slips = height_slips(blocks, &rests);
         Self { blocks, weights_n, rests, slips }
     }
 

@@ -24,7 +24,7 @@ const LEAST_GRIP_VARIATION: f64 = 0.05;
 const SIGNIFICANT: f64 = 3.0;
 
 /// Every recording's own fit and segmentation, and the shared parameters from all of them at once.
-pub struct Together {
+pub struct JointFit {
     /// In the order of the recordings.
     pub fits: Vec<Fit>,
     /// In the order of the recordings.
@@ -36,11 +36,11 @@ pub struct Together {
 }
 
 /// Fits several recordings of the same blocks, carried in the same order.
-pub fn fit_together(
+pub fn fit_jointly(
     method: Method,
     recordings: &[Recording],
     thresholds: Option<Thresholds>,
-) -> Result<Together, EstimateError> {
+) -> Result<JointFit, EstimateError> {
     let seen = recordings.iter().map(|r| Blocks::of(method, r, thresholds)).collect::<Result<Vec<_>, _>>()?;
     let fits = seen.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
     let mut shared = weights(&seen)?;
@@ -52,7 +52,7 @@ pub fn fit_together(
     let pairs = shared.windows(2).filter(|pair| pair[0].name == "weight_N" && pair[1].name == "mass_kg");
     let correlated = pairs.filter_map(|pair| weight_and_mass(&pair[0], &pair[1])).collect();
     let segmentations = seen.into_iter().map(|s| s.segmentation).collect();
-    Ok(Together { fits, segmentations, shared, correlated })
+    Ok(JointFit { fits, segmentations, shared, correlated })
 }
 
 /// The regression of all lifts. Columns: weight and mass of each block, then the rest of each recording's zero.

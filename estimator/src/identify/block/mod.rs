@@ -18,5 +18,5 @@ pub(crate) mod slip_detection;
 mod weight;
 pub(crate) mod width;
 
-pub use joint_fit::{Together, fit_together};
+pub use joint_fit::{JointFit, fit_jointly};
 pub use single_fit::{fit, fit_by};

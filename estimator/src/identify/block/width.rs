@@ -10,6 +10,11 @@ use crate::signal::task::{half_width, task_signals};
 use haptics::law::contact::Cushion;
 use haptics::recording::Recording;
 
+/// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
+const UNKNOWN_COMPRESSION: f64 = 0.07;
+/// The grip must vary by this share of its mean for the pads' give to be told from the width.
+const LEAST_GRIP_VARIATION: f64 = 0.05;
+
 /// Where the noise of the forces makes more than this share of how the grip varies, the variation tells nothing of the pads.
 const MOSTLY_NOISE: f64 = 0.5;
 /// Of white noise, the parabolic window of `2 h + 1` samples leaves this over their number (6/5: the mean square of its weights).
@@ -158,12 +163,6 @@ pub(crate) fn width_under(pad: &Cushion, hold: &[(f64, f64)]) -> Option<f64> {
     }
     Some(0.5 * (low + high))
 }
-
-/// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
-const UNKNOWN_COMPRESSION: f64 = 0.07;
-
-/// The grip must vary by this share of its mean for the pads' give to be told from the width.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
 
 fn unseen(samples: &[usize]) -> Option<String> {
     samples.is_empty().then(|| "no sample of a state that shows it belongs to this block".to_owned())

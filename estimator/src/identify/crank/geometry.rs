@@ -7,6 +7,9 @@ use crate::identify::linear::{Values, least_squares, least_squares_values};
 use crate::signal::task::half_width;
 use haptics::Vec2;
 
+/// A radial stiffness is reported when its give is this many standard errors above zero.
+pub(crate) const SIGNIFICANT: f64 = 3.0;
+
 /// Circle and give of the pads.
 pub(crate) struct Geometry {
     pub(crate) center_m: Vec2,
@@ -138,6 +141,3 @@ fn common_stiffness(points: &[Vec2], forces: &[Vec2], center: Vec2) -> Result<Op
         resampled: block_bootstrap(&columns, &radius, None, &fit).map(|drawn| of(drawn[3])),
     }))
 }
-
-/// A radial stiffness is reported when its give is this many standard errors above zero.
-pub(crate) const SIGNIFICANT: f64 = 3.0;

@@ -11,7 +11,7 @@ use crate::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::Recording;
 
 /// Every recording's own fit and segmentation, and the shared parameters from all of them at once.
-pub struct Together {
+pub struct JointFit {
     /// In the order of the recordings.
     pub fits: Vec<Fit>,
     /// In the order of the recordings.
@@ -23,22 +23,22 @@ pub struct Together {
 }
 
 /// Fits several recordings of the same crank. What is stated in the first one's sidecar holds for all.
-pub fn fit_together(
+pub fn fit_jointly(
     method: Method,
     recordings: &[Recording],
     thresholds: Option<Thresholds>,
-) -> Result<Together, EstimateError> {
+) -> Result<JointFit, EstimateError> {
     let prepared = recordings.iter().map(Prepared::of).collect::<Result<Vec<_>, _>>()?;
-    refit_together(method, recordings, &prepared, thresholds)
+    refit_jointly(method, recordings, &prepared, thresholds)
 }
 
-/// [`fit_together`] of recordings that were prepared before, one a recording.
-pub fn refit_together(
+/// [`fit_jointly`] of recordings that were prepared before, one a recording.
+pub fn refit_jointly(
     method: Method,
     recordings: &[Recording],
     prepared: &[Prepared],
     thresholds: Option<Thresholds>,
-) -> Result<Together, EstimateError> {
+) -> Result<JointFit, EstimateError> {
     let all = || recordings.iter().zip(prepared);
     let seen = all().map(|(r, p)| see(method, r, p, thresholds)).collect::<Result<Vec<_>, _>>()?;
     let fits = all().zip(&seen).map(|((r, p), s)| describe(r, p, s)).collect::<Result<Vec<_>, _>>()?;
@@ -51,7 +51,7 @@ pub fn refit_together(
         parameter.how = format!("{}, {} recordings in one regression", parameter.how, recordings.len());
     }
     let correlated = joint.correlated(&sensed, &rows);
-    Ok(Together { fits, segmentations: seen.into_iter().map(|s| s.segmentation).collect(), shared, correlated })
+    Ok(JointFit { fits, segmentations: seen.into_iter().map(|s| s.segmentation).collect(), shared, correlated })
 }
 
 /// Each recording pulls at the joint fit with its share of the rows; their errors have nothing to do with each other.

@@ -109,7 +109,7 @@ fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Resu
 
 /// Motion that nothing drives: without what stands in it, where enough is left that moves.
 fn freely(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
-    let (parts, stood) = motion_segments::moving(raws);
+    let (parts, stood) = motion_segments::split_by_motion(raws);
     if stood {
         let of_parts: Vec<Vec<Piece>> = parts.iter().filter_map(|raw| signals::pieces(raw, "").ok()).collect();
         if of_parts.len() == parts.len() {

@@ -14,7 +14,7 @@ const LEAST_WINDOWS: usize = 3;
 
 /// The recordings without what stands in them, each stretch by itself, and whether there was any standstill. As they are, where nothing would be
 /// left.
-pub(super) fn moving(raws: &[Raw]) -> (Vec<Raw>, bool) {
+pub(super) fn split_by_motion(raws: &[Raw]) -> (Vec<Raw>, bool) {
     let mut parts = Vec::new();
     let mut stood = false;
     for raw in raws {
@@ -97,16 +97,16 @@ mod tests {
     #[test]
     fn standstills_are_left_out_and_turns_are_not() {
         let pushed = raw(|t| if t < 1.0 { 0.0 } else { 0.5 - 0.5 * (2.0 - t.min(2.0)).powi(2) });
-        let (parts, stood) = moving(&[pushed]);
+        let (parts, stood) = split_by_motion(&[pushed]);
         let [part] = parts.as_slice() else { panic!("{} parts", parts.len()) };
         assert!(stood && (0.85..=1.0).contains(&part.time_s[0]), "from {}", part.time_s[0]);
         let end = part.time_s[part.time_s.len() - 1];
         assert!((1.95..2.15).contains(&end), "to {end}");
         let swing = raw(|t| 0.1 * (5.0 * t).sin());
-        let (parts, stood) = moving(std::slice::from_ref(&swing));
+        let (parts, stood) = split_by_motion(std::slice::from_ref(&swing));
         assert!(!stood && parts.len() == 1 && parts[0].time_s.len() == 2000);
         // What never moves is handed on for the fit to say so.
         let still = raw(|_| 0.0);
-        assert_eq!(moving(std::slice::from_ref(&still)).0.len(), 1);
+        assert_eq!(split_by_motion(std::slice::from_ref(&still)).0.len(), 1);
     }
 }

@@ -12,7 +12,7 @@ const TOGETHER: f64 = 0.3;
 
 /// Recorded times and the even grid of one piece.
 #[derive(Clone, Debug)]
-pub struct Even {
+pub struct Resampled {
     /// The grid, s; the recorded times themselves where they are even.
     pub grid: Vec<f64>,
     /// Spacing of the grid, s.
@@ -24,7 +24,7 @@ pub struct Even {
 /// Runs of samples taken as one (first, end), and their mean times, s.
 type Groups = (Vec<(usize, usize)>, Vec<f64>);
 
-impl Even {
+impl Resampled {
     /// A grid for samples at `time`, of spacing `period` where they are uneven.
     pub fn new(time: &[f64], period: f64) -> Self {
         if let Some(period_s) = even_period(time) {
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn even_times_pass_untouched() {
         let time: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.1).collect();
-        let even = Even::new(&time, 0.1);
+        let even = Resampled::new(&time, 0.1);
         assert_eq!(even.onto(&time), time);
         assert_eq!(even.through(&[-2.0, 3.0], f64::signum), [-1.0, 1.0]);
     }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn a_made_direction_is_smeared_exactly_like_a_recorded_force() {
         let time: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01 + 0.004 * (f64::from(i) * 2.3).sin()).collect();
-        let even = Even::new(&time, 0.01);
+        let even = Resampled::new(&time, 0.01);
         let friction: Vec<f64> = time.iter().map(|t| (9.0 * t).sin().signum()).collect();
         let velocity: Vec<f64> = even.grid.iter().map(|t| (9.0 * t).sin()).collect();
         let (recorded, made) = (even.onto(&friction), even.through(&velocity, f64::signum));
@@ -116,7 +116,7 @@ mod tests {
         let mut time: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.1 + 0.02 * f64::from(i % 3)).collect();
         time[20] = time[19] + 1e-9;
         let noisy: Vec<f64> = (0..50).map(|i| f64::from(i % 2) * 1e-3).collect();
-        let even = Even::new(&time, 0.1);
+        let even = Resampled::new(&time, 0.1);
         assert!(even.onto(&noisy).iter().all(|v| v.abs() < 0.01), "a slope between twins must not run away");
     }
 }

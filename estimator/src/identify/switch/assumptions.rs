@@ -5,14 +5,14 @@ const FARTHEST_SINE: f64 = 0.95;
 
 /// Give of a pad, and the arc on which the knob moves.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Reading {
+pub struct Assumptions {
     /// Give of the pad between a tip and the knob, m/N.
     pub give_m_n: f64,
     /// One over the lever's length, 1/m.
     pub bend_1_m: f64,
 }
 
-impl Reading {
+impl Assumptions {
     /// Way along the knob's arc at a way across its top, m.
     pub fn arc_m(&self, across_m: f64) -> f64 {
         let sine = (self.bend_1_m * across_m).clamp(-FARTHEST_SINE, FARTHEST_SINE);

@@ -14,11 +14,11 @@ mod throw_curve;
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::{Resampled, median_error_of_few};
 use crate::identify::pads::EVEN;
-use assumptions::Reading;
+use assumptions::Assumptions;
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
 use signals::Signals;
-use throw_curve::{Stop, Way};
+use throw_curve::{Stop, Throw};
 
 /// The object's name in the results.
 pub const OBJECT: &str = "switch";
@@ -44,14 +44,14 @@ const PEAK_SEEN: f64 = 4.0;
 /// Fits one recording.
 pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     let signals = Signals::of(recording)?;
-    let rough = Curves::of(&signals, &Reading::default())?;
+    let rough = Curves::of(&signals, &Assumptions::default())?;
     let give_m_n = rough.give_m_n();
     let travel_m = rough.travel_m().map_or(signals.range_m, |(travel_m, _)| travel_m);
     let bend_1_m = 1.0 / (LEVER_TRAVELS * travel_m);
-    let reading = Reading { give_m_n: PAD_SHARE.0 * give_m_n.map_or(0.0, |g| g.0), bend_1_m };
-    let softer = Reading { give_m_n: reading.give_m_n * (1.0 + PAD_SHARE.1 / PAD_SHARE.0), ..reading };
-    let straighter = Reading { bend_1_m: (1.0 - LEVER_SPREAD) * bend_1_m, ..reading };
-    let of = |reading: &Reading| Curves::of(&signals, reading);
+    let reading = Assumptions { give_m_n: PAD_SHARE.0 * give_m_n.map_or(0.0, |g| g.0), bend_1_m };
+    let softer = Assumptions { give_m_n: reading.give_m_n * (1.0 + PAD_SHARE.1 / PAD_SHARE.0), ..reading };
+    let straighter = Assumptions { bend_1_m: (1.0 - LEVER_SPREAD) * bend_1_m, ..reading };
+    let of = |reading: &Assumptions| Curves::of(&signals, reading);
     let captured = Captured {
         curves: of(&reading)?,
         others: [of(&softer)?, of(&straighter)?],
@@ -68,10 +68,10 @@ pub fn height_m(recording: &Recording) -> Option<f64> {
 
 /// What is seen in both directions, to the right first, with one reading of the samples.
 struct Curves {
-    reading: Reading,
+    reading: Assumptions,
     /// Middle of what was seen, m in the world.
     top_m: f64,
-    ways: [Option<Way>; 2],
+    ways: [Option<Throw>; 2],
     stops: [Option<Stop>; 2],
     /// Width of the knob between the tips, m.
     width_m: Option<f64>,
@@ -91,10 +91,10 @@ struct Captured {
 }
 
 impl Curves {
-    fn of(signals: &Signals, reading: &Reading) -> Result<Self, EstimateError> {
+    fn of(signals: &Signals, reading: &Assumptions) -> Result<Self, EstimateError> {
         let seen = [signals.seen(0, reading), signals.seen(1, reading)];
-        let peaked = |w: &Way| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
-        let ways = [throw_curve::way(&seen[0])?.filter(peaked), throw_curve::way(&seen[1])?.filter(peaked)];
+        let peaked = |w: &Throw| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
+        let ways = [throw_curve::throw(&seen[0])?.filter(peaked), throw_curve::throw(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
             reading: *reading,
@@ -159,11 +159,11 @@ impl Curves {
         self.friction_by(|way| way.resampled.as_ref().map(Resampled::covariance))
     }
 
-    fn friction_by(&self, covariance: impl Fn(&Way) -> Option<&DMatrix<f64>>) -> Option<(f64, f64)> {
+    fn friction_by(&self, covariance: impl Fn(&Throw) -> Option<&DMatrix<f64>>) -> Option<(f64, f64)> {
         let ([Some(there), Some(back)], Some(_)) = (&self.ways, self.width_m) else { return None };
-        let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2];
+        let gone = |w: &Throw| w.values[3] - w.values[0] / w.values[2];
         let middle = 0.5 * (gone(there) - gone(back));
-        let error = |way: &Way, at_m: f64| Some(way.falling_error_n(at_m, covariance(way)?));
+        let error = |way: &Throw, at_m: f64| Some(way.falling_error_n(at_m, covariance(way)?));
         let errors = error(there, middle)?.hypot(error(back, -middle)?);
         let slope = 0.5 * (there.values[2] + back.values[2]).abs();
         let value = 0.5 * (there.falling_n(middle) + back.falling_n(-middle));

@@ -25,7 +25,7 @@ const LEAST_STOP: usize = 8;
 /// Rise and fall. Columns of `around`: force at the peak, rise, fall, place of the peak; then, where they can be told
 /// from the curve, what the knob's own motion asks for: damping, mass.
 #[derive(Clone, Debug)]
-pub struct Way {
+pub struct Throw {
     /// Force, N, slope before and after, N/m, at the peak's place, m along the arc in the direction of travel.
     pub values: [f64; 4],
     /// Linearised fit around the answer.
@@ -49,7 +49,7 @@ pub struct Stop {
     pub end_resampled_m: Option<f64>,
 }
 
-impl Way {
+impl Throw {
     /// A curve whose own damping and mass are unknown.
     fn assumed_slow(self) -> Self {
         Self { unmodelled_n: [MOVING_N, FALLING_N], ..self }
@@ -71,21 +71,21 @@ impl Way {
 }
 
 /// `None` when too little is seen, or no fall after a rise.
-pub fn way(seen: &Seen) -> Result<Option<Way>, EstimateError> {
+pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
     let count = seen.way.len();
     if count < LEAST_ROWS {
         return Ok(None);
     }
     let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_ROWS)).collect();
-    let still = way_with(&rows, None)?;
-    let Some(moving) = way_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Way::assumed_slow)) };
+    let still = throw_with(&rows, None)?;
+    let Some(moving) = throw_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Throw::assumed_slow)) };
     // At one speed all the time, or in few samples, what the motion asks for cannot be told from the curve.
     let told = still.as_ref().is_none_or(|s| moving.around.std_errors[0] < s.around.std_errors[0].hypot(MOVING_N));
-    Ok(if told { Some(moving) } else { still.map(Way::assumed_slow) })
+    Ok(if told { Some(moving) } else { still.map(Throw::assumed_slow) })
 }
 
 /// `noise`: of rate and acceleration, where the knob's own motion takes part.
-fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, EstimateError> {
+fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>, EstimateError> {
     let moving = noise.is_some();
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s.at_m), h.max(s.at_m)));
     let at = |k: usize| low + (high - low) * k as f64 / SEARCH as f64;
@@ -128,7 +128,7 @@ fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, Est
         values = [around.values[0], around.values[1], around.values[2], place + around.values[3]];
     }
     let seen = around.identified.iter().all(|i| *i) && values[1] > 0.0 && values[2] < 0.0;
-    Ok(seen.then_some(Way { values, around, resampled, unmodelled_n: [0.0; 2], samples: rows.len() }))
+    Ok(seen.then_some(Throw { values, around, resampled, unmodelled_n: [0.0; 2], samples: rows.len() }))
 }
 
 /// `None` when no stop was pressed. Place over force, not the other way round: places are the noisy ones on a hard stop.
@@ -187,11 +187,11 @@ mod tests {
                 .collect(),
             ..Seen::default()
         };
-        let found = way(&way_of(0.008)).expect("solves").expect("a peak");
+        let found = throw(&way_of(0.008)).expect("solves").expect("a peak");
         for (k, wanted) in [1.2, 250.0, -280.0, 0.004].into_iter().enumerate() {
             let error = found.around.std_errors[k];
             assert!((found.values[k] - wanted).abs() < 4.0 * error, "{k}: {} ± {error}", found.values[k]);
         }
-        assert!(way(&way_of(0.003)).expect("solves").is_none(), "a rise alone has no peak");
+        assert!(throw(&way_of(0.003)).expect("solves").is_none(), "a rise alone has no peak");
     }
 }

@@ -1,6 +1,6 @@
 //! The information that other motions would add to what is known of a carried object.
 
-use super::grasp_record::Grasp;
+use super::grasp_record::GraspRecord;
 use crate::online::information::matrices::{collected, per_second, with_copy};
 use crate::online::information::motion::Motion;
 use crate::online::information::problem::Problem;
@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 /// Problems of a carried object: weight beside the bias, width beside the pads' give, friction.
 pub(crate) fn block_problems(
     name: &str,
-    object: &Grasp,
+    object: &GraspRecord,
     bias_error: Option<f64>,
     bias_noise_n: f64,
     row_s: f64,
@@ -34,7 +34,7 @@ pub(crate) fn block_problems(
 
 fn weight(
     name: &str,
-    object: &Grasp,
+    object: &GraspRecord,
     bias_error: Option<f64>,
     bias_noise_n: f64,
     row_s: f64,
@@ -67,7 +67,7 @@ fn weight(
     }
 }
 
-fn width(name: &str, object: &Grasp, row_s: f64) -> Problem {
+fn width(name: &str, object: &GraspRecord, row_s: f64) -> Problem {
     let (information, variance) = collected(&object.width);
     let seconds = (object.width.rows() as f64 * row_s).max(row_s);
     let (grip, spread) = object.grip_and_spread();

@@ -1,7 +1,7 @@
 //! Everything that is collected of one object that is carried.
 
 use super::super::change::ChangeDetector;
-use super::super::decimating_store::Store;
+use super::super::decimating_store::DecimatingStore;
 use super::super::recursive::Recursive;
 use super::pull::{Hold, Left};
 use haptics::Vec2;
@@ -37,13 +37,13 @@ pub(super) struct Row {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Grasp {
+pub(super) struct GraspRecord {
     /// Weight with the bias in it, and mass by accelerations.
     pub(super) weight: Recursive<2>,
     pub(super) change: ChangeDetector<2>,
     /// Width at no force, less of it per force, damping of the pads.
     pub(super) width: Recursive<3>,
-    pub(super) reading: Store<READING>,
+    pub(super) reading: DecimatingStore<READING>,
     pub(super) bound: Option<(f64, f64)>,
     /// What else holds it.
     pub(super) hold: Hold,
@@ -55,13 +55,13 @@ pub(super) struct Grasp {
     pub(super) told: bool,
 }
 
-impl Grasp {
+impl GraspRecord {
     pub(super) fn new(memory_rows: f64, block_rows: u32, false_alarms: f64, row_s: f64) -> Self {
         Self {
             weight: Recursive::new([1.0, 0.5], memory_rows, block_rows),
             change: ChangeDetector::new(false_alarms, row_s, MATTERS),
             width: Recursive::new([1.0, 1.0, 0.01], memory_rows, block_rows),
-            reading: Store::new(KEPT),
+            reading: DecimatingStore::new(KEPT),
             bound: None,
             hold: Hold::new(false_alarms, row_s),
             grip: [0.0; 2],

@@ -8,7 +8,7 @@
 //! with the errors of the directions and what biases and the pads' give do to all lines alike.
 
 use super::super::change::ChangeDetector;
-use super::super::decimating_store::Store;
+use super::super::decimating_store::DecimatingStore;
 use haptics::Vec2;
 use nalgebra::{Matrix2, SymmetricEigen};
 use serde::Serialize;
@@ -102,7 +102,7 @@ pub(crate) struct Hold {
     pulls: bool,
     newest: Option<Left>,
     /// Time, place and force of the hand, row by row.
-    lines: Store<5>,
+    lines: DecimatingStore<5>,
 }
 
 impl Hold {
@@ -114,7 +114,7 @@ impl Hold {
             began_s: None,
             pulls: false,
             newest: None,
-            lines: Store::new(LINES),
+            lines: DecimatingStore::new(LINES),
         }
     }
 

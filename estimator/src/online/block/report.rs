@@ -1,8 +1,8 @@
 //! What is known of a carried object, as parameters of a fit.
 
 use super::super::leak::{LeakAnswer, Verdict};
-use super::super::state_tracker::Sense;
-use super::grasp_record::Grasp;
+use super::super::state_tracker::StateTracker;
+use super::grasp_record::GraspRecord;
 use crate::estimate::Parameter;
 
 /// The grip must vary by this share of its mean for the pads' give to show.
@@ -27,12 +27,12 @@ pub(crate) fn leak_parameter(object: &str, answer: &LeakAnswer, samples: usize) 
 }
 
 /// Mean distance of the tips, m.
-pub(super) fn mean_width(object: &Grasp) -> f64 {
+pub(super) fn mean_width(object: &GraspRecord) -> f64 {
     let [width, slope, _] = object.width.values();
     width + slope * object.grip[0]
 }
 
-pub(super) fn width(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn width(name: &str, object: &GraspRecord) -> Parameter {
     let samples = object.held_rows as usize;
     let (mean_grip, spread) = object.grip_and_spread();
     let error = object.width.std_errors()[0];
@@ -55,7 +55,7 @@ pub(super) fn width(name: &str, object: &Grasp) -> Parameter {
 }
 
 /// Pad and wall of one side together.
-pub(super) fn grip_stiffness(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn grip_stiffness(name: &str, object: &GraspRecord) -> Parameter {
     const NAME: &str = "grip_stiffness_N_m";
     let samples = object.held_rows as usize;
     let (mean_grip, spread) = object.grip_and_spread();
@@ -69,7 +69,7 @@ pub(super) fn grip_stiffness(name: &str, object: &Grasp) -> Parameter {
     Parameter::identified(name, NAME, 1.0 / give, error / (give * give), samples, how)
 }
 
-pub(super) fn friction(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn friction(name: &str, object: &GraspRecord) -> Parameter {
     let samples = object.held_rows as usize;
     match object.bound {
         Some((ratio, error)) => {
@@ -83,7 +83,7 @@ pub(super) fn friction(name: &str, object: &Grasp) -> Parameter {
 }
 
 /// Weight and mass while it is carried.
-pub(super) fn weight(name: &str, object: &Grasp, sense: &Sense, gravity: f64) -> Vec<Parameter> {
+pub(super) fn weight(name: &str, object: &GraspRecord, sense: &StateTracker, gravity: f64) -> Vec<Parameter> {
     let samples = object.carried_rows as usize;
     let error = object.weight.std_errors()[0];
     let why = match sense.lift_bias() {

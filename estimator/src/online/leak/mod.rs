@@ -13,12 +13,15 @@
 mod rates;
 #[cfg(test)]
 mod tests;
+mod verdict;
 mod weighing;
 mod words;
 
 use crate::estimate::EstimateError;
 use rates::{Rates, rates};
 use serde::{Deserialize, Serialize};
+use verdict::SIGNIFICANT;
+pub use verdict::Verdict;
 pub use weighing::{Measured, Series, Weighing};
 
 /// A hypothesis must be as probable as this to be the answer.
@@ -27,26 +30,8 @@ pub const CONFIDENT: f64 = 0.95;
 pub const NEGLIGIBLE: f64 = 0.03;
 /// A drift during the carry may differ by this share from the mean one between the readings before and after.
 const UNEVEN: f64 = 0.1;
-/// A change within so many standard errors is no change.
-const SIGNIFICANT: f64 = 4.0;
 /// Before anything is seen: nothing, leak, drift, both.
 const BEFORE: [f64; 4] = [0.25, 0.36, 0.36, 0.03];
-
-/// What a changing reading is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Nothing changes beyond the errors.
-    Steady,
-    /// The weight changes.
-    Leak,
-    /// The sensors' bias changes.
-    SensorDrift,
-    /// Both change.
-    Both,
-    /// Something changes; what it is the recording does not show.
-    CannotTell,
-}
 
 /// The answer of [`leak_or_drift`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

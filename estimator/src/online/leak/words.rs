@@ -1,8 +1,8 @@
 //! The answer in words.
 
 use super::rates::Rates;
+use super::verdict::{SIGNIFICANT, Verdict};
 use super::weighing::Measured;
-use super::{SIGNIFICANT, Verdict};
 
 /// A rate of a force, mN/s.
 fn force(rate: Measured) -> String {

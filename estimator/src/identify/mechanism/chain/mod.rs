@@ -17,8 +17,6 @@ use haptics::recording::Recording;
 use joints::{ANGLES, Joints, TORQUES, joints};
 use solve::{Solution, solve, tried};
 
-/// The object's name in the results.
-pub const OBJECT: &str = "chain";
 /// A joint that moves less than this share of what it moves elsewhere is held: what holds it is not its sliding friction.
 const HELD_SHARE: f64 = 0.05;
 
