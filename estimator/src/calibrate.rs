@@ -5,8 +5,9 @@ mod switch;
 
 use crate::constraint;
 use crate::estimate::{Fit, Parameter};
-use crate::identify::needle::HELD;
-use crate::identify::{block, mechanism};
+use crate::identify::block::width::{Hold, holds, width_under};
+use crate::identify::mechanism;
+use crate::identify::needle::sheet::HELD;
 use crate::segment::Segmentation;
 use crate::signal::task::{Tip, is_two_fingered, task_signals};
 use haptics::Vec2;
@@ -145,11 +146,11 @@ impl Builder<'_> {
         let first = recordings.first().zip(segmentations.first().and_then(Option::as_ref));
         let spots = first.and_then(|(recording, segmentation)| picked_and_placed(recording, segmentation, count));
         let seen = recordings.iter().zip(segmentations);
-        let holds: Vec<Vec<block::Hold>> = seen.filter_map(|(r, s)| block::holds(r, s.as_ref()?, count)).collect();
+        let holds: Vec<Vec<Hold>> = seen.filter_map(|(r, s)| holds(r, s.as_ref()?, count)).collect();
         for number in 1..=count {
             let name = format!("block-{number}");
             let mass = self.take(&name, "mass_kg", 0.03).max(1e-4);
-            let hold: block::Hold = holds.iter().filter_map(|h| h.get(number - 1)).flatten().copied().collect();
+            let hold: Hold = holds.iter().filter_map(|h| h.get(number - 1)).flatten().copied().collect();
             let width = self.width(&name, &hold).max(1e-3);
             let height = self.take(&name, "height_m", ASSUMED_HEIGHT_M).max(1e-3);
             let mut block = Block::upright(&name, mass, width, height, 0.0, 0.0);
@@ -164,7 +165,7 @@ impl Builder<'_> {
     fn width(&mut self, name: &str, hold: &[(f64, f64)]) -> f64 {
         let found = self.fit.parameter(name, "width_m").cloned();
         let is_stated = found.as_ref().is_some_and(|p| p.value.is_some() && p.std_error.unwrap_or(0.0) <= 0.0);
-        let pressed = block::width_under(&self.world.pad.elastic(), hold).filter(|_| !is_stated);
+        let pressed = width_under(&self.world.pad.elastic(), hold).filter(|_| !is_stated);
         let Some(width) = pressed else { return self.take(name, "width_m", ASSUMED_WIDTH_M) };
         let from = format!("{}: distance of the tips while held, and what these pads give under that grip", self.from);
         // It differs from the fit's where the fit knew the pads worse, or otherwise.

@@ -27,6 +27,7 @@
 
 pub mod assistant;
 pub mod calibrate;
+pub mod cancellation;
 pub mod constraint;
 pub mod diagnose;
 pub mod estimate;
@@ -39,5 +40,4 @@ pub mod segment;
 pub mod signal;
 pub mod simulate;
 pub mod training;
-pub mod wanted;
 pub mod words;

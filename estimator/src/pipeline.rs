@@ -1,11 +1,10 @@
 //! The whole way from recordings to a calibrated world, for the command line, the app and the tests alike.
 
-use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::identify::{barrel, block, crank, mechanism, needle, stated, switch};
+use crate::identify::{barrel, block, crank, mechanism, needle, priors, switch};
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, Thresholds, segment_by, task_of};
-use crate::wanted;
+use crate::{calibrate, cancellation};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::OnceLock;
@@ -87,14 +86,14 @@ pub fn analyse_prepared(
         Task::Barrel => each(recordings, |r| barrel::fit_by(options.method, r, options.thresholds))?,
     };
     doubt(&mut fit);
-    stated::apply(&mut fit, &first.meta);
+    priors::apply(&mut fit, &first.meta);
     for (recording, found) in recordings.iter().zip(&mut segmentations) {
         if let Some(found) = found.as_mut().filter(|found| found.score.is_none()) {
             found.score = score(recording, found);
         }
     }
     let world = calibrate::world(task, recordings, &fit, &segmentations);
-    wanted::look()?;
+    cancellation::check()?;
     Ok(Analysis { task, fit, segmentations, world })
 }
 
@@ -147,10 +146,10 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
     } else {
         let made = recordings.iter().map(crank::Prepared::of).collect::<Result<Vec<_>, _>>()?;
         // They are kept for the next fit: only whole ones.
-        wanted::look()?;
+        cancellation::check()?;
         prepared.cranks.get_or_init(|| made)
     };
-    let together = crank::refit_together(options.method, recordings, prepared, options.thresholds)?;
+    let together = crank::refit_jointly(options.method, recordings, prepared, options.thresholds)?;
     let mut fit = combine(together.fits);
     if recordings.len() > 1 {
         for shared in together.shared {
@@ -166,7 +165,7 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
 
 /// Several recordings of the same blocks: heights and friction from each, weights, widths and pads from all of them at once.
 fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
-    let together = block::fit_together(options.method, recordings, options.thresholds)?;
+    let together = block::fit_jointly(options.method, recordings, options.thresholds)?;
     let mut fit = combine(together.fits);
     for shared in together.shared {
         // Blocks that are not the same have no common value; the average says how far they lie apart.

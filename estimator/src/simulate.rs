@@ -1,20 +1,25 @@
 //! Simulation of the forces that would have been felt: the measured motion through a world.
 
+mod block_forces;
+mod crank_forces;
 mod gap;
+mod prediction;
 
+pub use prediction::{LeftOpen, PredictedPart, Simulation};
+
+use crate::cancellation;
 use crate::estimate::EstimateError;
-use crate::identify::{block, crank, mechanism, needle};
+use crate::identify::mechanism;
+use crate::identify::needle::sheet::{HELD, OBJECT};
 use crate::log::{gap_above_s, gaps};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
-use crate::wanted;
 use haptics::Vec2;
 use haptics::law::Coordinate;
 use haptics::law::object::MembraneHistory;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::{Input, Mechanism, Source, State, World, step};
-use schemars::JsonSchema;
-use serde::Serialize;
+use prediction::rms;
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
@@ -22,102 +27,6 @@ const STEP_S: f64 = 1e-3;
 const STEP_M: f64 = 5e-5;
 /// The wish to end is looked at so often, samples.
 const LOOKS: usize = 500;
-
-/// Predicted forces at the recording's sample times.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Simulation {
-    /// Sample times, s (sample numbers for a clockless log).
-    pub time_s: Vec<f64>,
-    /// Predicted channels, named like the measured ones (`fx1_N`, `f_N`, …).
-    pub predicted: Vec<Channel>,
-    /// RMS of measured minus predicted by channel, where it was measured and something is predicted, in the channel's unit.
-    pub residual_rms: Vec<(String, f64)>,
-    /// The part of the forces that laws predict, where that is not all of them.
-    pub part: Option<PredictedPart>,
-    /// Inputs that no law predicts and that are taken from the recording: sentences.
-    pub inputs: Vec<String>,
-    /// Resting values of the sensors, by channel, N: the prediction while nothing is touched.
-    pub bias_n: Vec<(String, f64)>,
-}
-
-/// How well the part of the forces that a world's laws predict agrees with what was measured.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct PredictedPart {
-    /// Which part it is.
-    pub what: String,
-    /// RMS of measured minus predicted, N; absent where no force was measured.
-    #[serde(rename = "rms_N")]
-    pub rms_n: Option<f64>,
-    /// Samples at which it is predicted.
-    pub samples: usize,
-    /// What the laws leave open, and how far off the prediction is there: this says nothing about the laws.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub left_open: Option<LeftOpen>,
-}
-
-/// Samples whose force is written, though no law determines it there.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct LeftOpen {
-    /// Where, and why.
-    pub what: String,
-    /// RMS of measured minus predicted, N; absent where no force was measured.
-    #[serde(rename = "rms_N")]
-    pub rms_n: Option<f64>,
-    /// How many.
-    pub samples: usize,
-}
-
-/// Prediction of laws for a recorded motion that does not drive the world by itself.
-pub(crate) struct Needed {
-    pub(crate) channels: Vec<Channel>,
-    /// True for samples whose forces are predicted; elsewhere they are the operator's own, as measured.
-    pub(crate) is_predicted: Vec<bool>,
-    pub(crate) part: PredictedPart,
-    pub(crate) inputs: Vec<String>,
-    pub(crate) bias_n: Vec<(String, f64)>,
-}
-
-/// Resting value of a sensor: the mean of the samples without a touch, if it is no chance; else 0.
-pub(crate) fn resting_level(values: &[f64], free: &[usize]) -> f64 {
-    /// Standard errors of a mean of white noise; that of noise with a memory is some times larger.
-    const SURE: f64 = 10.0;
-    let count = free.len() as f64;
-    if count < 2.0 {
-        return 0.0;
-    }
-    let mean = free.iter().map(|i| values[*i]).sum::<f64>() / count;
-    let variance = free.iter().map(|i| (values[*i] - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    if mean.abs() > SURE * (variance / count).sqrt() { mean } else { 0.0 }
-}
-
-/// RMS of a residual; `None` without samples.
-pub(crate) fn rms(left: impl Iterator<Item = f64>) -> Option<f64> {
-    let (square, count) = left.fold((0.0, 0_usize), |(sum, n), r| (sum + r * r, n + 1));
-    (count > 0).then(|| (square / count as f64).sqrt())
-}
-
-impl Simulation {
-    /// The prediction as a recording of its own, with the measured channels beside it as `measured_<name>`.
-    pub fn to_recording(&self, recording: &Recording) -> Recording {
-        let mut channels = self.predicted.clone();
-        for channel in &self.predicted {
-            if let Some(measured) = recording.channel(&channel.name) {
-                channels.push(Channel {
-                    name: format!("measured_{}", channel.name),
-                    unit: channel.unit.clone(),
-                    values: measured.to_vec(),
-                });
-            }
-        }
-        Recording {
-            name: format!("simulation of {}", recording.name),
-            time_s: Some(self.time_s.clone()),
-            channels,
-            meta: recording.meta.clone(),
-            ..Recording::default()
-        }
-    }
-}
 
 /// Runs the measured motion of `recording` through `world`.
 ///
@@ -143,7 +52,7 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
         },
         Task::Crank => match &world.crank {
             Some(_) if is_two_fingered(recording) && pads_are_measured(world) => stepped(world, recording),
-            Some(crank) => crank::needed_forces(crank, recording).map(|needed| needed.beside(recording)),
+            Some(crank) => crank_forces::needed_forces(crank, recording).map(|needed| needed.beside(recording)),
             None => mismatch("no crank"),
         },
         Task::Needle if world.membrane.is_none() => mismatch("no membrane"),
@@ -152,7 +61,7 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
         Task::Needle | Task::Switch => stepped(world, recording),
         _ if world.blocks.is_empty() => mismatch("no blocks"),
         _ if pads_are_measured(world) => stepped(world, recording),
-        _ => block::needed_forces(world, recording).map(|needed| needed.beside(recording)),
+        _ => block_forces::needed_forces(world, recording).map(|needed| needed.beside(recording)),
     }
 }
 
@@ -183,7 +92,7 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
         });
     };
     // Its sensor feels its weight all the time, with a bias that nothing tells from it.
-    let held = world.provenance.iter().find(|p| p.object == needle::OBJECT && p.name == needle::HELD);
+    let held = world.provenance.iter().find(|p| p.object == OBJECT && p.name == HELD);
     let held_n = held.map_or(0.0, |p| p.value);
     let mut history = MembraneHistory::default();
     let mut values = Vec::with_capacity(position.len());
@@ -284,24 +193,6 @@ fn assemble_tips(recording: &Recording, forces: &[Vec<Vec2>; 2]) -> Simulation {
     assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))
 }
 
-impl Needed {
-    fn beside(self, recording: &Recording) -> Simulation {
-        let left = |channel: &Channel| {
-            let measured = recording.channel(&channel.name)?;
-            let both = measured.iter().zip(&channel.values).zip(&self.is_predicted);
-            Some((channel.name.clone(), rms(both.filter(|(_, predicted)| **predicted).map(|((m, p), _)| m - p))?))
-        };
-        Simulation {
-            time_s: times(recording),
-            residual_rms: self.channels.iter().filter_map(left).collect(),
-            predicted: self.channels,
-            part: Some(self.part),
-            inputs: self.inputs,
-            bias_n: self.bias_n,
-        }
-    }
-}
-
 fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&str) -> Option<Vec<f64>>) -> Simulation {
     let residual_rms = predicted
         .iter()
@@ -341,7 +232,7 @@ pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) 
         });
     }
     walk_tips(world, &times(recording), &tips, see);
-    wanted::look()
+    cancellation::check()
 }
 
 /// [`walk`] for fingers whose motion is known already: the positions of both at each time, s. Samples that one of the
@@ -357,7 +248,7 @@ pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: 
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
     see(time_s[0], &state);
     for i in 1..n {
-        if i % LOOKS == 0 && !wanted::still() {
+        if i % LOOKS == 0 && !cancellation::is_wanted() {
             return;
         }
         let gap_s = time_s[i] - time_s[i - 1];

@@ -153,7 +153,7 @@ impl Camera {
 
     /// Pixel of a point of the world's plane: for labels and for tests.
     pub fn pixel_of(&self, point_in_world: haptics::Vec2, size: [u32; 2]) -> Vec2 {
-        self.pixel(crate::vec2(point_in_world).extend(0.0), size)
+        self.pixel(crate::coordinates::vec2(point_in_world).extend(0.0), size)
     }
 
     /// The point of the world's plane (z = 0) under a pixel: where the mouse is. `None` when looking along the plane.

@@ -2,9 +2,10 @@
 
 use crate::error::RenderError;
 use crate::frame::Frame;
-use crate::renderer::{Renderer, SAMPLES};
+use crate::renderer::Renderer;
 use crate::scene::SceneView;
 use crate::target::TextureTarget;
+use crate::texture_format::SAMPLES;
 use image::RgbaImage;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -12,6 +12,8 @@
 
 pub mod blit;
 pub mod camera;
+mod composition;
+mod coordinates;
 pub mod draw_data;
 pub mod drawable;
 pub mod error;
@@ -26,6 +28,7 @@ pub mod renderer;
 pub mod scene;
 pub mod shape;
 pub mod target;
+mod texture_format;
 pub mod theme;
 
 pub use blit::Blit;
@@ -35,21 +38,10 @@ pub use error::RenderError;
 pub use frame::Frame;
 pub use headless::Headless;
 pub use material::Material;
-pub use renderer::{DEPTH_FORMAT, Renderer, SAMPLES};
+pub use renderer::Renderer;
 pub use scene::{
     ArrowAnchor, ConstraintMarker, FingerStyle, ForceVector, SceneView, SolidRef, Trajectory, ViewOptions,
 };
 pub use target::TextureTarget;
+pub use texture_format::{DEPTH_FORMAT, SAMPLES};
 pub use theme::{Color, ColorRole, Theme};
-
-use glam::{Vec2, Vec3};
-
-/// The seam from the simulation's `f64` to the pictures' `f32`.
-pub(crate) fn vec2(point: haptics::Vec2) -> Vec2 {
-    Vec2::new(point.x as f32, point.y as f32)
-}
-
-/// A point of the world's plane, lifted to depth `z` (m, towards the viewer).
-pub(crate) fn lift(point: Vec2, z: f32) -> Vec3 {
-    point.extend(z)
-}

@@ -3,7 +3,7 @@
 
 use crate::light::{MAP_TEXELS, SKY_TEXELS, TABLE_TEXELS};
 use crate::pipeline::{Groups, TABLE_LIGHT_FORMAT};
-use crate::renderer::DEPTH_FORMAT;
+use crate::texture_format::DEPTH_FORMAT;
 
 /// Textures and how the shaders read them.
 #[derive(Debug)]

@@ -5,35 +5,13 @@
 //! radius`, with the rims of plates drawn in by `inset · radius.z`. A bevel therefore keeps its radius whatever the
 //! size, and a bar keeps round ends whatever its length.
 
+mod geometry;
 mod round;
 
+pub use geometry::{Mesh, Vertex};
 pub use round::{SHEET_STATIONS, dent};
 
-use bytemuck::{Pod, Zeroable};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
-
-/// One vertex of a stretchable mesh.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Vertex {
-    /// Corner of the solid, components −1 to 1, times the instance's `half`.
-    pub corner: [f32; 3],
-    /// Place on the rounding, times the instance's `radius`.
-    pub offset: [f32; 3],
-    /// Unit normal.
-    pub normal: [f32; 3],
-    /// Direction in x–y in which a bevelled rim is drawn in, times the instance's `radius.z`.
-    pub inset: [f32; 2],
-}
-
-/// Triangles, counter-clockwise seen from outside.
-#[derive(Clone, Debug, Default)]
-pub struct Mesh {
-    /// Vertices.
-    pub vertices: Vec<Vertex>,
-    /// Three for each triangle.
-    pub indices: Vec<u16>,
-}
 
 /// The unit meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -78,34 +56,6 @@ impl MeshKind {
 
 /// Length of an arrow's head and largest radius, in shaft radii.
 pub const ARROW_HEAD: [f32; 2] = [6.5, 2.6];
-
-impl Mesh {
-    fn push(&mut self, corner: [f32; 3], offset: [f32; 3], normal: [f32; 3]) -> u16 {
-        self.vertices.push(Vertex { corner, offset, normal, inset: [0.0; 2] });
-        // The meshes have some hundred vertices each.
-        (self.vertices.len() - 1) as u16
-    }
-
-    fn quad(&mut self, a: u16, b: u16, c: u16, d: u16) {
-        self.indices.extend([a, b, c, a, c, d]);
-    }
-
-    /// Joins two closed rings of `n` vertices that start at `low` and `high`.
-    fn join_rings(&mut self, low: u16, high: u16, n: u16) {
-        for i in 0..n {
-            let j = (i + 1) % n;
-            self.quad(low + i, low + j, high + j, high + i);
-        }
-    }
-
-    /// Closes a ring with a fan; `reversed` when its outside is on the far side.
-    fn cap(&mut self, first: u16, n: u16, reversed: bool) {
-        for i in 1..n - 1 {
-            let (b, c) = if reversed { (first + i + 1, first + i) } else { (first + i, first + i + 1) };
-            self.indices.extend([first, b, c]);
-        }
-    }
-}
 
 /// A cube whose edges and corners are rounded: six faces of a grid, `steps` segments for each eighth of a turn.
 fn rounded_box(steps: u16) -> Mesh {

@@ -8,12 +8,6 @@ use crate::scene::SceneView;
 use crate::target::TextureTarget;
 use wgpu::util::DeviceExt;
 
-/// Format of the depth buffer.
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// Samples a pixel: every driver can do four.
-pub const SAMPLES: u32 = 4;
-
 /// Nearest part of the depth range, reserved for shapes in front of everything.
 const OVERLAY_DEPTH: f32 = 0.05;
 

@@ -1,6 +1,7 @@
 //! Description of a picture by the caller: borrowed world and state, and options in plain data.
 
-use crate::{Camera, ColorRole, Theme};
+use crate::camera::Camera;
+use crate::theme::{ColorRole, Theme};
 use haptics::Vec2;
 use haptics::world::{State, World};
 

@@ -1,6 +1,6 @@
 //! The texture that a scene is drawn into: multisampled colour and depth, resolved into one picture.
 
-use crate::renderer::DEPTH_FORMAT;
+use crate::texture_format::DEPTH_FORMAT;
 
 /// Colour, depth and resolved picture of one view; made again when the size changes.
 #[derive(Debug)]

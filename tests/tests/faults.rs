@@ -1,10 +1,10 @@
 //! Whatever fails, the device ends at zero force within one watchdog time, and the servo says so.
 
 use haptics::Vec2;
-use haptics::device::{Command, Device, DeviceSpec, Sample};
+use haptics::device::{Command, Device, DeviceSpec, ForceGuard, Sample};
 use haptics::servo::rate::{FAST_HZ, SAFE_HZ};
 use haptics::servo::safety::Limits;
-use haptics::servo::{ForceGuard, Loop, Servo, ServoConfig, Snapshot, Swap, TickRecord};
+use haptics::servo::{Loop, Servo, ServoConfig, Snapshot, Swap, TickRecord};
 use haptics::world::presets;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};

@@ -1,7 +1,7 @@
 //! Sufficiency of the data, as a short table.
 
 use crate::ui::format;
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 use std::fmt::Write;
 
 /// One line per parameter: attained share of the target accuracy, and the missing motion. Empty without targets.

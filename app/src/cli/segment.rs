@@ -2,7 +2,7 @@
 
 use super::{LogArgs, Output};
 use clap::{Args, ValueEnum};
-use estimator::segment::score::Score;
+use estimator::segment::agreement::Score;
 use estimator::segment::{Segmentation, Thresholds, segment_by};
 use haptics::recording::Recording;
 use serde_json::{Value, json};

@@ -6,7 +6,7 @@ use super::jobs::{JobKind, Outcome, Replayed};
 use super::plots::Levels;
 use super::prepare::Prepared;
 use super::session::{Session, sentence};
-use estimator::online::enough::{Enough, Wanted};
+use estimator::online::information::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, segment_by};
 use estimator::simulate::Simulation;

@@ -1,6 +1,6 @@
 //! Numbers as people write them: value ± error with sensible units.
 
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 
 /// A quantity on the screen: what it is called, in which unit, and the factor from SI.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,13 +6,13 @@ use super::mapping::preview::Seen;
 use super::plots::{Levels, Recipe};
 use super::prepare::Prepared;
 use crate::video::Video;
+use estimator::cancellation;
 use estimator::diagnose::Worlds;
 use estimator::log::preview::Preview;
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
 use estimator::simulate::Simulation;
-use estimator::wanted;
 use haptics::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -383,7 +383,7 @@ fn done_if_wanted(kind: JobKind, ticket: &Ticket, work: impl FnOnce(&Ticket) -> 
     }
     let asked = ticket.clone();
     let wanted = move || !asked.cancelled().load(Ordering::Relaxed);
-    wanted::while_wanted(wanted, || work(ticket)).unwrap_or(Outcome::Cancelled)
+    cancellation::while_wanted(wanted, || work(ticket)).unwrap_or(Outcome::Cancelled)
 }
 
 #[cfg(test)]
@@ -454,7 +454,7 @@ mod tests {
             let ((go, may_go), (told, heard)) = (channel(), channel());
             jobs.start_watched(&egui::Context::default(), kind, "Working".to_owned(), move |_| {
                 may_go.recv().expect("the test goes on");
-                told.send(wanted::look().is_err()).expect("the test listens");
+                told.send(cancellation::check().is_err()).expect("the test listens");
                 Outcome::Cancelled
             });
             jobs.cancel(kind);

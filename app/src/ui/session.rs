@@ -21,7 +21,7 @@ use super::undo::Undo;
 use super::video::Videos;
 use super::what_if::WhatIf;
 use crate::tasks::Chosen;
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
 use haptics::world::World;

@@ -4,7 +4,7 @@
 //! each other before anything is weighed. A density with a normal error makes some of them more likely (Bayes); a
 //! density of no kind stays unnamed.
 
-use super::held::Known;
+use super::known::Known;
 use serde::Serialize;
 use statrs::distribution::{Continuous, Normal};
 

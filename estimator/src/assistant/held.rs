@@ -1,21 +1,13 @@
 //! Estimates of the object in the hand: each value with its error, or not at all.
 
 use super::contents::{Guess, guess};
+use super::known::Known;
 use super::slip::{Slip, slip};
 use crate::estimate::Parameter;
 use crate::online::Report;
 use crate::online::leak::Verdict;
 use serde::Serialize;
 use std::f64::consts::PI;
-
-/// A value and its standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Known {
-    /// In SI units.
-    pub value: f64,
-    /// One standard error.
-    pub std_error: f64,
-}
 
 /// Properties of a thing that are seen without touching it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

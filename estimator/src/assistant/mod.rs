@@ -8,11 +8,13 @@
 pub mod collision;
 pub mod contents;
 pub mod held;
+mod known;
 pub mod slip;
 pub mod warnings;
 
 pub use collision::Collision;
 pub use contents::{Guess, guess};
-pub use held::{Held, Known, Look};
+pub use held::{Held, Look};
+pub use known::Known;
 pub use slip::{Slip, slip};
 pub use warnings::{Load, Warning, Warnings, warnings};

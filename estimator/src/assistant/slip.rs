@@ -6,7 +6,7 @@
 //! distribution about 0.8). The second, cut off below the first, is the belief about the friction. It leads to the free
 //! share now, its limits, and the probability that a jolt would make it slip.
 
-use super::held::Known;
+use super::known::Known;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, LogNormal};
 

@@ -1,7 +1,7 @@
 //! A fitted barrel as one that can be felt.
 
 use super::Builder;
-use crate::identify::barrel::{CABLE, OBJECT};
+use crate::identify::barrel::report::{CABLE, OBJECT};
 use crate::segment::Segmentation;
 use crate::signal::task::task_signals;
 use haptics::Vec2;

@@ -1,6 +1,6 @@
 //! Circles and lines as one family, by curvature: a line is a circle of curvature zero, so nothing blows up between them.
 
-use crate::wanted;
+use crate::cancellation;
 use haptics::Vec2;
 use nalgebra::{Matrix3, Vector3};
 
@@ -75,7 +75,7 @@ pub fn refine(points: &[Vec2], start: Arc, fixed_curvature: bool, extent_m: f64)
     let scale = Vector3::new(if fixed_curvature { 0.0 } else { 1.0 / extent_m }, 1.0, extent_m);
     let (mut arc, mut best, mut damping) = (start, cost(points, &start), 1e-6);
     for _ in 0..60 {
-        if !wanted::still() {
+        if !cancellation::is_wanted() {
             break;
         }
         let (mut normal, mut slope) = (Matrix3::zeros(), Vector3::zeros());

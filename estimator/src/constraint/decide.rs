@@ -2,8 +2,10 @@
 
 mod odds;
 mod report;
+mod shape;
 
 use super::circle::{Arc, cost, fit, refine};
+use super::context::Context;
 use super::existence::sentence;
 use super::frame::Frame;
 use super::guided;
@@ -15,6 +17,7 @@ use super::surface::{self, Pressed};
 use super::whole::rests_at_both_ends;
 use crate::estimate::{Constraint, ConstraintKind};
 use nalgebra::Vector3;
+use shape::{HINGE_M, Shape};
 
 /// Fewer samples show less surely that a motion begins and ends at rest.
 const FEW_SAMPLES: usize = 100;
@@ -23,8 +26,6 @@ const MIN_POINTS: usize = 8;
 /// The kinds are decided at this level of error, the interval is given at 5 %.
 const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;
-/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm.
-const HINGE_M: (f64, f64) = (0.03, 2.0);
 /// Largest distance from line and plane of a path that may follow them, as a share of the extent.
 const CLOSE_SHARE: f64 = 0.025;
 /// Distance from line and plane above which it certainly does not follow them, as a share of the extent.
@@ -54,38 +55,6 @@ const SCREW_ERRORS: f64 = 5.0;
 const GRIP_SLIP_M: f64 = 2.5e-3;
 /// Stiffness of an unknown hand, N/m: a path as stiff as this counts as rigid.
 const RIGID_N_M: f64 = 2000.0;
-
-/// Knowledge about a path beside its points.
-#[derive(Clone, Debug, Default)]
-pub struct Context {
-    /// Name of the recording or trial.
-    pub recording: Option<String>,
-    /// The path lies in the x-y plane by construction.
-    pub planar: bool,
-    /// Sample times, s, one a point: inertia can then be told from constraint forces.
-    pub time_s: Option<Vec<f64>>,
-    /// Unit vector upwards; zero in a level plane.
-    pub up: Vector3<f64>,
-}
-
-/// Everything measured about the path's shape.
-struct Shape {
-    frame: Frame,
-    arc: Arc,
-    retrace: Retrace,
-    rms_m: f64,
-    /// Curvature interval at 5 %, 1/m, and lower end at the decision level.
-    interval: (f64, f64),
-    decision_low: f64,
-    /// Probability of a straight line against a circle, even odds before.
-    straight_probability: f64,
-    /// The motion begins and ends in this recording, or goes there and back in it.
-    whole: bool,
-    /// Its rest at the ends would be seen in a few samples only.
-    few: bool,
-    curvature_error: f64,
-    angle_error: f64,
-}
 
 /// Decides between revolute, prismatic, free and undecided.
 ///

@@ -1,6 +1,6 @@
 //! Evidence of forces and screws about a path: a guide, if there is one, and the motion it allows.
 
-use super::decide::Context;
+use super::context::Context;
 use super::existence::{Rows, existence};
 use super::frame::Frame;
 use super::screw::Helix;

@@ -2,6 +2,7 @@
 
 mod carried;
 pub(crate) mod circle;
+mod context;
 mod decide;
 pub mod existence;
 pub mod felt;
@@ -18,7 +19,8 @@ mod whole;
 pub mod yielding;
 
 pub use carried::{Carry, carried};
-pub use decide::{Context, detect};
+pub use context::Context;
+pub use decide::detect;
 pub use normals::{THESIS_SAMPLES, normals_center};
 
 use crate::estimate::Constraint;

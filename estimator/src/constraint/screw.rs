@@ -3,7 +3,7 @@
 //! Positions alone show a pitch only while they wind; the body's orientation is not needed. All directions of motion
 //! make one and the same angle with the axis; axis, centre, radius and pitch are then refined together.
 
-use crate::wanted;
+use crate::cancellation;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
 /// A path that winds by less shows no pitch, rad.
@@ -89,30 +89,65 @@ impl Windings {
             if k % 2 == 0 { sizes[i].0 - p[4] } else { sizes[i].1 - p[5] * angles[i] - p[6] }
         })
     }
+
+    /// The helix of refined parameters; `inverse` and `scale` are those of the pitch. `None` for less than a turn.
+    fn helix(
+        &self,
+        points: &[Vector3<f64>],
+        p: &Parameters,
+        best: &DVector<f64>,
+        inverse: f64,
+        scale: f64,
+    ) -> Option<Helix> {
+        let n = points.len() as f64;
+        let (axis, point) = self.axis_of(p);
+        let angles = self.seen(points, p).0;
+        let (low, high) = angles.iter().fold((f64::MAX, f64::MIN), |(l, h), a| (l.min(*a), h.max(*a)));
+        let rms_m = (best.norm_squared() / n).sqrt();
+        // Ten independent blocks, however many samples.
+        let variance = rms_m * rms_m * n / 10.0;
+        let found = Helix {
+            point,
+            axis,
+            radius_m: p[4],
+            pitch_m_rad: p[5],
+            pitch_error: (inverse * variance).max(0.0).sqrt() * scale,
+            turned_rad: high - low,
+            rms_m,
+        };
+        let fine = [rms_m, p[4], p[5]].iter().all(|v| v.is_finite()) && p[4] > 0.0;
+        (fine && found.turned_rad > LEAST_TURN_RAD).then_some(found)
+    }
 }
 
-fn refine(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<Helix> {
+/// An algebraic circle across the axis, and the line of height over angle, as a start.
+fn start(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<(Windings, Parameters)> {
     let n = points.len() as f64;
     let mean = points.iter().sum::<Vector3<f64>>() / n;
     let (u, v) = across(axis);
-    // Algebraic circle across the axis as a start.
     let flat: Vec<(f64, f64)> = points.iter().map(|p| (u.dot(&(p - mean)), v.dot(&(p - mean)))).collect();
     let rows = DMatrix::from_fn(points.len(), 3, |i, j| [2.0 * flat[i].0, 2.0 * flat[i].1, 1.0][j]);
     let right = DVector::from_fn(points.len(), |i, _| flat[i].0.powi(2) + flat[i].1.powi(2));
-    let start = rows.svd(true, true).solve(&right, 1e-12).ok()?;
-    let radius = (start[2] + start[0].powi(2) + start[1].powi(2)).max(0.0).sqrt();
+    let circle = rows.svd(true, true).solve(&right, 1e-12).ok()?;
+    let radius = (circle[2] + circle[0].powi(2) + circle[1].powi(2)).max(0.0).sqrt();
     let wind = Windings { middle: mean, axis, u, v };
-    let mut p: Parameters = [start[0], start[1], 0.0, 0.0, radius, 0.0, 0.0];
+    let mut p: Parameters = [circle[0], circle[1], 0.0, 0.0, radius, 0.0, 0.0];
     let (angles, sizes) = wind.seen(points, &p);
     let (turn, height) = (angles.iter().sum::<f64>() / n, sizes.iter().map(|s| s.1).sum::<f64>() / n);
     let square: f64 = angles.iter().map(|a| (a - turn).powi(2)).sum();
     p[5] = angles.iter().zip(&sizes).map(|(a, s)| (a - turn) * (s.1 - height)).sum::<f64>() / square.max(1e-12);
     p[6] = height - p[5] * turn;
+    Some((wind, p))
+}
+
+fn refine(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<Helix> {
+    let (wind, mut p) = start(points, axis)?;
+    let radius = p[4];
     let scale = [radius, radius, 1.0, 1.0, radius, radius, radius].map(|s: f64| s.max(1e-6));
     let (mut best, mut damping) = (wind.residuals(points, &p), 1e-4);
     let mut inverse = DMatrix::zeros(7, 7);
     for _ in 0..ROUNDS {
-        wanted::look().ok()?;
+        cancellation::check().ok()?;
         let slopes = DMatrix::from_columns(&[0, 1, 2, 3, 4, 5, 6].map(|j: usize| {
             let (mut a, mut b) = (p, p);
             a[j] += 1e-6 * scale[j];
@@ -139,23 +174,7 @@ fn refine(points: &[Vector3<f64>], axis: Vector3<f64>) -> Option<Helix> {
             }
         }
     }
-    let (axis, point) = wind.axis_of(&p);
-    let angles = wind.seen(points, &p).0;
-    let (low, high) = angles.iter().fold((f64::MAX, f64::MIN), |(l, h), a| (l.min(*a), h.max(*a)));
-    let rms_m = (best.norm_squared() / n).sqrt();
-    // Ten independent blocks, however many samples.
-    let variance = rms_m * rms_m * n / 10.0;
-    let found = Helix {
-        point,
-        axis,
-        radius_m: p[4],
-        pitch_m_rad: p[5],
-        pitch_error: (inverse[(5, 5)] * variance).max(0.0).sqrt() * scale[5],
-        turned_rad: high - low,
-        rms_m,
-    };
-    let fine = [rms_m, p[4], p[5]].iter().all(|v| v.is_finite()) && p[4] > 0.0;
-    (fine && found.turned_rad > LEAST_TURN_RAD).then_some(found)
+    wind.helix(points, &p, &best, inverse[(5, 5)], scale[5])
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! is within its noise (thesis, 4.3.1). Least squares as in de Boor 1978, with the places on the curve projected again
 //! each round (Hoschek 1988).
 
-use crate::wanted;
+use crate::cancellation;
 use haptics::Vec2;
 use haptics::world::Guide;
 use nalgebra::{DMatrix, Matrix2xX};
@@ -90,7 +90,7 @@ fn with_size(points: &[Vec2], pass: &[Vec2], closed: bool, size: usize) -> Optio
     let places: Vec<f64> = ways.iter().map(|w| w / total * pieces).collect();
     let mut curve = solve(pass, &places, closed, size)?;
     for _ in 0..ROUNDS {
-        wanted::look().ok()?;
+        cancellation::check().ok()?;
         let places: Vec<f64> = points.iter().map(|p| curve.nearest(*p)).collect();
         curve = solve(points, &places, closed, size)?;
     }

@@ -1,6 +1,7 @@
 //! The Markov chain of the hidden states.
 
-use super::MOST_STATES;
+/// Most states of a model: paths are kept in one byte a sample.
+pub const MOST_STATES: usize = 255;
 
 /// Why a model cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

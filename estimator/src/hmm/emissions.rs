@@ -1,10 +1,11 @@
 //! Log densities of many samples: blocks of samples lie side by side, one channel after the other, so that the processor works on
 //! several at once.
 
+use super::gaussian::Gaussian;
+use super::model::Model;
 use super::vector::for_this_processor;
 #[cfg(target_arch = "x86_64")]
 use super::wide;
-use super::{Gaussian, Model};
 
 /// Samples of a block.
 pub(super) const LANES: usize = 32;
@@ -152,4 +153,18 @@ fn log_densities(emission: &Gaussian, columns: &[Lanes], apart: &mut [Lanes], fi
         *sum = -log_scale - 0.5 * *sum;
     }
     squared
+}
+
+impl Model {
+    /// Logarithm of every state's density at every sample, one row a sample, times `weight`.
+    ///
+    /// A weight below 1 is for samples that come faster than their information: of a channel that is correlated over τ
+    /// and sampled every Δt, each sample counts as Δt/τ of an independent one.
+    pub fn log_emissions(&self, values: &[f64], weight: f64) -> Vec<f64> {
+        let (channels, states) = (self.channels(), self.emissions.len());
+        let samples = values.len() / channels;
+        let mut rows = vec![0.0; samples * states];
+        Job { model: self, weight, stride: states }.fill_together(&values[..samples * channels], &mut rows);
+        rows
+    }
 }

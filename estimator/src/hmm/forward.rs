@@ -1,6 +1,6 @@
 //! Forward–backward: the likelihood of a sequence and the posterior of the state at every sample.
 
-use super::Chain;
+use super::chain::Chain;
 
 /// Posterior expectations over the whole sequence.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Expectation {
 /// A sum of scaled exponentials below this has lost its digits and is made again in the logarithm.
 const LOST: f64 = 1e-280;
 
-/// The procedure on the logarithms of the densities ([`super::Model::log_emissions`]): one row of states a sample, all finite.
+/// The procedure on the logarithms of the densities ([`super::model::Model::log_emissions`]): one row of states a sample, all finite.
 ///
 /// Each step takes one exponential and one logarithm a state. The sum is made exactly if that would lose a path by
 /// underflow (left–right chains with a sample that fits badly).

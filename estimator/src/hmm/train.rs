@@ -1,7 +1,10 @@
 //! Baum–Welch: the model that explains a sequence best, near a prior.
 
-use super::{Chain, Covariance, Expectation, Gaussian, HmmError, Model, forward_backward};
-use crate::wanted;
+use super::chain::{Chain, HmmError};
+use super::forward::{Expectation, forward_backward};
+use super::gaussian::{Covariance, Gaussian};
+use super::model::Model;
+use crate::cancellation;
 use nalgebra::DMatrix;
 
 /// Prior of the model, as if it had been seen in so many samples.
@@ -46,7 +49,7 @@ pub fn baum_welch(start: Model, values: &[f64], training: &Training) -> Result<T
     let mut objective = Vec::new();
     for step in 0..=training.most_steps {
         // The caller looks for the end, too: nothing of it is kept.
-        if !wanted::still() {
+        if !cancellation::is_wanted() {
             break;
         }
         let expectation = forward_backward(&model.chain, &model.log_emissions(values, training.weight));
@@ -99,6 +102,17 @@ fn maximised(model: &Model, values: &[f64], expectation: &Expectation, training:
     Model::new(Chain::new(start, transition)?, emissions)
 }
 
+/// Sums of products about a mean that a prior of `n` samples stands for.
+fn prior_products(prior: &Gaussian, n: f64, mean: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_fn(mean.len(), mean.len(), |a, b| {
+        let spread = match prior.covariance() {
+            Covariance::Full(matrix) => matrix[(a, b)],
+            Covariance::Diagonal(variances) => f64::from(u8::from(a == b)) * variances[a],
+        };
+        n * (spread + (prior.mean()[a] - mean[a]) * (prior.mean()[b] - mean[b]))
+    })
+}
+
 /// Mean and covariance of the samples of one state together with those of the prior. `posterior`: the state's probability at every
 /// `step`-th entry.
 fn emission(
@@ -144,13 +158,7 @@ fn emission(
         Covariance::Full(_) => {
             let mut products = DMatrix::zeros(d, d);
             if let Some((g, n)) = believed {
-                products += DMatrix::from_fn(d, d, |a, b| {
-                    let spread = match g.covariance() {
-                        Covariance::Full(matrix) => matrix[(a, b)],
-                        Covariance::Diagonal(variances) => f64::from(u8::from(a == b)) * variances[a],
-                    };
-                    n * (spread + (g.mean()[a] - mean[a]) * (g.mean()[b] - mean[b]))
-                });
+                products += prior_products(g, n, &mean);
             }
             for (x, share) in shares() {
                 for a in 0..d {

@@ -1,9 +1,9 @@
 //! The single most probable path of states.
 
-use super::Chain;
+use super::chain::{Chain, HmmError};
 use super::emissions::Job;
+use super::model::Model;
 use super::vector::for_this_processor;
-use super::{HmmError, Model};
 
 /// States that lie side by side in one step.
 const LANES: usize = 8;

@@ -3,8 +3,8 @@
 //! Samples are read as they lie, and the result is the row that Viterbi's step wants. Products are added by fused
 //! instructions, so that the last digit may differ from [`super::Gaussian::log_density`].
 
-use super::gaussian::Whitening;
-use super::{Gaussian, Model};
+use super::gaussian::{Gaussian, Whitening};
+use super::model::Model;
 use std::arch::x86_64::{
     __m512d, _CMP_LT_OQ, _mm512_cmp_pd_mask, _mm512_fmadd_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd,
     _mm512_sub_pd,

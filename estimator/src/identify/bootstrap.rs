@@ -5,7 +5,7 @@
 //! difference of running sums: the cost of a draw depends on the number of its blocks, not of its rows.
 
 use super::linear::{LinearFit, least_squares};
-use crate::wanted;
+use crate::cancellation;
 use nalgebra::{DMatrix, DVector};
 use std::ops::{Index, Range};
 
@@ -110,7 +110,7 @@ pub fn block_bootstrap_within(
     let mut values: Vec<DVector<f64>> = Vec::with_capacity(DRAWS);
     let mut total = vec![0.0; sums.width];
     for _ in 0..DRAWS {
-        if !wanted::still() {
+        if !cancellation::is_wanted() {
             return None;
         }
         total.fill(0.0);

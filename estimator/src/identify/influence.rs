@@ -1,12 +1,11 @@
 //! Errors of a regression's values from the influence of every sample on them.
 //!
-//! The influence of sample i on value j is `aᵢⱼ wᵢ rᵢ`, with `a = (XᵀWX)⁻¹ x` and the residual r. The residual of a
-//! sample that pulls the fit towards itself is too small: it is divided by √(1 − leverage) (HC2, `MacKinnon` & White
-//! 1985). A value that depends on few samples is known with few degrees of freedom, however many samples there are: (Σ
-//! a²)²/Σ a⁴ (Bell & `McCaffrey` 2002, in the limit of small leverages). Autocorrelation is counted by
-//! [`super::long_run`].
+//! The influence of sample i on value j is `aᵢⱼ wᵢ rᵢ`, with `a = (XᵀWX)⁻¹ x` and the residual r. The residual of a sample that
+//! pulls the fit towards itself is too small: it is divided by √(1 − leverage) (HC2, `MacKinnon` & White 1985). A value that hangs
+//! on few samples is known with few degrees of freedom, however many samples there are: (Σ a²)²/Σ a⁴ (Bell & `McCaffrey` 2002, in the
+//! limit of small leverages). Autocorrelation is counted by [`super::long_run_variance`].
 
-use super::long_run::{inflation, long_run};
+use super::long_run_variance::{inflation, long_run};
 use nalgebra::DMatrix;
 use std::ops::Range;
 

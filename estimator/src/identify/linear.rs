@@ -1,14 +1,13 @@
 //! Weighted linear least squares with an honest covariance.
 //!
 //! Solved through QR and the singular values of R with columns scaled to unit norm (Golub & Van Loan, §5.3, §5.5). The
-//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its
-//! influence: the series of every sample's contribution to its value (see [`super::influence`] and
-//! [`super::long_run`]).
+//! residuals of a mechanical log are never white, so a parameter's error comes from the long-run variance of its influence: the
+//! series of what every sample adds to its value (see [`super::influence`] and [`super::long_run_variance`]).
 
 use super::influence::Solved;
-use super::long_run::inflation;
+use super::long_run_variance::inflation;
+use crate::cancellation;
 use crate::estimate::EstimateError;
-use crate::wanted;
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this share of the largest (columns scaled to 1) count as zero: the direction is not excited.
@@ -78,7 +77,7 @@ pub fn least_squares_values(
     rhs: &[f64],
     weights: Option<&[f64]>,
 ) -> Result<Values, EstimateError> {
-    wanted::look()?;
+    cancellation::check()?;
     check(columns, rhs, weights)?;
     let (n, p) = (rhs.len(), columns.len());
     let root = |i: usize| weights.map_or(1.0, |w| w[i].max(0.0).sqrt());

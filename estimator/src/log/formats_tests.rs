@@ -18,7 +18,7 @@ fn comparable(recordings: &[Recording]) -> Vec<Recording> {
     for recording in &mut all {
         recording.name.clear();
         recording.warnings.clear();
-        recording.meta = write::portable_meta(&recording.meta);
+        recording.meta = sidecar::portable_meta(&recording.meta);
     }
     all
 }
@@ -182,7 +182,7 @@ fn a_carried_sidecar_holds_and_a_stray_one_is_named() {
         let path = folder.path().join(format!("x.{format}"));
         write(std::slice::from_ref(&recording), &path, &[]).expect("writes");
         let back = load(&path, None).expect("loads").remove(0);
-        assert_eq!(back.meta, write::portable_meta(&recording.meta));
+        assert_eq!(back.meta, sidecar::portable_meta(&recording.meta));
         assert!(back.warnings.iter().all(|w| w.kind != "sidecar"));
         // Beside it lies the sidecar of a CSV with the same stem: its sign is applied already.
         let beside = folder.path().join("x.meta.json");

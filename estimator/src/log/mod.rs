@@ -20,22 +20,23 @@ mod plan;
 pub mod preview;
 pub mod pyramid;
 mod raw;
+mod rows;
 mod sidecar;
 mod table;
 pub mod units;
 mod watch;
 mod write;
 
-pub use checks::warnings as quality;
-pub use checks::{gap_above_s, gaps};
+pub use checks::{gap_above_s, gaps, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
 pub use mcap::attached::attached;
 pub use mcap::stream::McapStream;
 pub use plan::PAIRS;
+pub use rows::Attachment;
 pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
 pub use watch::Watch;
-pub use write::{Attachment, write, write_csv};
+pub use write::{write, write_csv};
 
 /// The kind of the warning that a log has no clock.
 pub(crate) const NO_CLOCK: &str = "no-clock";

@@ -68,7 +68,7 @@ fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
 /// out, everything else is kept.
 pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
     let path = path_for(log);
-    write_as_is(&super::write::portable_meta(&recording.meta), &path)?;
+    write_as_is(&portable_meta(&recording.meta), &path)?;
     Ok(path)
 }
 
@@ -77,6 +77,16 @@ pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
     let failed = |reason: String| LogError::Write { reason, path: path.to_path_buf() };
     let text = serde_json::to_string_pretty(meta).map_err(|e| failed(e.to_string()))?;
     haptics::text_file::write(path, text + "\n").map_err(|e| failed(e.to_string()))
+}
+
+/// Facts of the sidecar without the old file's columns: a written table is in the program's names and SI units already.
+pub(super) fn portable_meta(meta: &Meta) -> Meta {
+    let mut meta = meta.clone();
+    meta.columns.clear();
+    meta.scale.clear();
+    meta.sign.clear();
+    meta.select.clear();
+    meta
 }
 
 #[cfg(test)]

@@ -7,15 +7,15 @@
 //! lowered by the share 1/memory, never by more than the row brings back. Directions that are not excited are not
 //! forgotten at all, and the precision of an excited one never falls through forgetting: nothing winds up.
 //!
-//! **Errors** are those of the estimate as it was made: Λ⁻¹ Γ Λ⁻¹ with Γ the sum of the squared scores x ε (ε the
-//! recursive residuals of Brown, Durbin & Evans 1975, which are independent if the noise is), forgotten along with Λ.
-//! Scores are summed over short blocks, and their correlation from block to block leads to each parameter's long-run
-//! variance of its own influence (AR(1)), as in [`crate::identify::long_run`].
+//! **Errors** are those of the estimate as it was made: Λ⁻¹ Γ Λ⁻¹ with Γ the sum of the squared scores x ε (ε the recursive residuals of
+//! Brown, Durbin & Evans 1975, which are independent where the noise is), forgotten along with Λ. Scores are summed over short blocks,
+//! and their correlation from block to block gives each parameter the long-run variance of its own influence (AR(1)), as in
+//! [`crate::identify::long_run_variance`].
 //!
 //! A row costs about 10 P² operations (with forgetting 10 P³) and allocates nothing.
 
-use super::triangle::{Square, back, between, dot, forward, inverse_times, rotate_in, triangularise};
-use crate::identify::long_run::inflation;
+use super::triangular::{Square, back, between, dot, forward, inverse_times, rotate_in, triangularise};
+use crate::identify::long_run_variance::inflation;
 
 /// Information before the first row, as a share of a typical row's: it decides nothing but keeps R invertible.
 const RIDGE: f64 = 1e-4;

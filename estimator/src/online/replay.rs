@@ -1,9 +1,11 @@
 //! Recordings through the estimator that runs beside the servo.
 
-use super::enough::{Enough, Wanted, crank_problems_of, judge};
+use super::crank::recorded::crank_problems_of;
+use super::estimator::Online;
 use super::filter::Sample;
-use super::sense::FREE_ROW_S;
-use super::{Online, Settings};
+use super::information::{Enough, Wanted, judge};
+use super::settings::Settings;
+use super::state_tracker::FREE_ROW_S;
 use crate::estimate::{EstimateError, Fit};
 use crate::signal::task::task_signals;
 use haptics::Vec2;

@@ -1,8 +1,9 @@
 //! Stage 3's alignment: observed runs of states against the expected order of subtasks, by dynamic programming.
 
-use super::SystemState;
+use super::definition::Subtask;
 use super::grasps::Next;
-use super::subtasks::{Run, Subtask};
+use super::runs::Run;
+use super::state::SystemState;
 
 /// Price of a step that was not seen (a block dropped before it was put down), as a share of the recording's length.
 const MISSED_PENALTY: f64 = 0.01;

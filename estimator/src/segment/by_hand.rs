@@ -1,6 +1,7 @@
 //! Intervals that a person has set take the place of those that a method found (`segments` of the sidecar).
 
-use super::{Interval, Segmentation, SystemState};
+use super::segmentation::{Interval, Segmentation};
+use super::state::SystemState;
 use haptics::recording::{Recording, Segment};
 
 /// Puts the intervals of the recording's sidecar in the place of the found ones. Holes between them are no state.

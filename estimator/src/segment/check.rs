@@ -1,8 +1,7 @@
 //! Faults that make a task unusable, in words.
 
-use super::definition::{Definition, Step, Subtasks, signals};
+use super::definition::{Definition, MOST_CARRIES, Step, Subtasks, signals};
 use super::shows;
-use super::subtasks::MOST_CARRIES;
 use haptics::recording::Task;
 
 impl Definition {

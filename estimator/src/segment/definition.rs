@@ -1,14 +1,17 @@
 //! Definition of a task: its states with their rules, its subtasks, and the choice of its thresholds. Tasks are JSON
 //! files; the built-in ones are in `assets/tasks`, users add their own (`docs/tasks.md`).
 
-use super::rules::Sign;
-use super::subtasks::Subtask;
-use super::{SystemState, Thresholds};
+use super::sign::Sign;
+use super::state::SystemState;
+use super::threshold::Thresholds;
 use crate::estimate::EstimateError;
 use haptics::recording::{Recording, Task};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Most objects carried in one recording.
+pub const MOST_CARRIES: usize = 100;
 
 /// The key of a sidecar that holds a whole task of its own.
 pub const SIDECAR_KEY: &str = "task_definition";
@@ -255,13 +258,15 @@ impl Rules {
     }
 }
 
-impl Sign {
-    /// As written in files.
-    pub fn symbol(self) -> char {
-        match self {
-            Self::Plus => '+',
-            Self::Zero => '0',
-            Self::Minus => '-',
-        }
-    }
+/// A step of the task: its name and the state the system is then in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subtask {
+    /// E.g. `carry-block-1`.
+    pub name: String,
+    /// The state that holds.
+    pub state: SystemState,
+    /// One may have to begin the object again.
+    pub retry: bool,
+    /// The number of its object, from 1; 0: a step before the first object.
+    pub object: usize,
 }

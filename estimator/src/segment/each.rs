@@ -1,8 +1,10 @@
 //! Stage 3 without an expected order: whenever a state of a step lasts, it is the next occurrence of that step.
 
 use super::definition::{Definition, Step};
-use super::subtasks::{LEAST_RUN_S, interval, majority, runs_of};
-use super::{Segmentation, SystemState, Thresholds};
+use super::runs::{LEAST_RUN_S, interval, majority, runs_of};
+use super::segmentation::Segmentation;
+use super::state::SystemState;
+use super::threshold::Thresholds;
 
 /// Intervals of equal state from the state of every sample.
 pub fn assemble(

@@ -2,9 +2,11 @@
 //! answer.
 
 use super::definition::Definition;
-use super::rules::{self, Quality, Sign};
+use super::motion::Motion;
+use super::rules::{self, Quality};
+use super::sign::Sign;
+use super::state::SystemState;
 use super::threshold::{Levels, Thresholds};
-use super::{SystemState, motion::Motion};
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
 

@@ -1,8 +1,8 @@
 //! Places of gripping and letting go: they tell whether a grasp takes up again an object left by the one before. A
 //! dropped block lies below the place of its loss and has the same weight; the next block of the task lies elsewhere.
 
-use super::SystemState;
-use super::subtasks::{LEAST_RUN_S, Run};
+use super::runs::{LEAST_RUN_S, Run};
+use super::state::SystemState;
 use super::threshold::percentile;
 use haptics::Vec2;
 use std::ops::Range;

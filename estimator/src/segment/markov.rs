@@ -5,13 +5,14 @@
 //! longer satisfies its own rule goes back to its start, and a warning says so.
 
 use super::evidence::Evidence;
-use super::subtasks::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
-use super::{Method, Segmentation, StatePosterior, SystemState};
+use super::runs::{ISLAND_S, LEAST_RUN_S, majority, runs_of};
+use super::segmentation::{Method, Segmentation, StatePosterior};
+use super::state::SystemState;
+use crate::cancellation;
 use crate::estimate::EstimateError;
 use crate::hmm::{
     Chain, Covariance, Gaussian, HmmError, Model, Prior, Training, baum_welch, forward_backward, viterbi,
 };
-use crate::wanted;
 
 /// Time over which calmed signals are correlated, s: samples that come faster count less, so that the rate of the log does not
 /// change what a second of it says.
@@ -85,13 +86,13 @@ pub fn decode(time_s: &[f64], evidence: &Evidence) -> Result<Decoded, EstimateEr
         channels: evidence.channels,
     };
     let trained = trainer.train();
-    wanted::look()?;
+    cancellation::check()?;
     let (model, warnings) = trained.map_err(|error| EstimateError::Other(error.to_string()))?;
     let chain = slowed(&model.chain, stride as f64).map_err(|error| EstimateError::Other(error.to_string()))?;
     let log_emissions = model.log_emissions(&evidence.values, weight(1.0));
-    wanted::look()?;
+    cancellation::check()?;
     let (path, _) = viterbi(&chain, &log_emissions);
-    wanted::look()?;
+    cancellation::check()?;
     let known = forward_backward(&chain, &log_emissions).posterior;
     let path = without_passages(time_s, path.iter().map(|s| states[usize::from(*s)]).collect());
     let posterior = StatePosterior { states, values: known.iter().map(|p| *p as f32).collect() };

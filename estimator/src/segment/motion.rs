@@ -1,10 +1,11 @@
 //! Cranks, mechanisms and switches: speed and load, from which the rules tell not touched, held still and moved.
 
-use super::SystemState;
 use super::definition::Definition;
 use super::resting::Resting;
-use super::rules::{Sign, beyond};
-use super::subtasks::LEAST_SAMPLES;
+use super::rules::beyond;
+use super::runs::LEAST_SAMPLES;
+use super::sign::Sign;
+use super::state::SystemState;
 use super::threshold::{Levels, Thresholds, choose, percentile};
 use crate::estimate::EstimateError;
 use crate::signal::task::{

@@ -1,12 +1,13 @@
 //! Needles: free, pressing, through, drawn out. The fit of the strokes tells the times ([`crate::identify::needle`]);
 //! here they become states, and the channels of a hidden Markov model.
 
-use super::SystemState;
 use super::definition::Definition;
 use super::evidence::{Evidence, Judge};
+use super::state::SystemState;
 use super::threshold::{Thresholds, percentile};
 use crate::estimate::{EstimateError, Phase, StrokePhase};
-use crate::identify::needle::{self, Channels};
+use crate::identify::needle;
+use crate::identify::needle::channels::{Channels, channels};
 use haptics::recording::Recording;
 
 /// Threshold of the model's channels, in multiples of the noise, or as a share of the signal's usual size, as for
@@ -53,7 +54,7 @@ pub fn evidence(
     task: &Definition,
     given: Option<Thresholds>,
 ) -> Result<Option<(Evidence, Thresholds)>, EstimateError> {
-    let Some(seen) = needle::channels(recording)? else { return Ok(None) };
+    let Some(seen) = channels(recording)? else { return Ok(None) };
     let usual = |values: &[f64]| percentile(&mut values.iter().map(|v| v.abs()).collect::<Vec<_>>(), 0.95);
     let thresholds = task.thresholds(given, || Thresholds {
         force_n: (NOISES * seen.noise_n).max(SIGNAL_SHARE * usual(&seen.force_n)),

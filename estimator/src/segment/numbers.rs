@@ -1,7 +1,7 @@
 //! Object of a grasp, if the order alone cannot tell: one that was lost, left lying and fetched after another.
 
+use super::definition::Subtask;
 use super::grasps::Grasp;
-use super::subtasks::Subtask;
 use std::collections::BTreeMap;
 
 /// The subtask of every run; none for attempts that failed. An object that was left and fetched later keeps its number, and those

@@ -1,21 +1,11 @@
 //! Stage 2: qualitative values and the rules that name the state (thesis, tables 3.1 and 5.2).
 
-use super::SystemState;
 use super::definition::Rules;
+use super::sign::Sign;
+use super::state::SystemState;
 use super::threshold::{Levels, Thresholds};
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
-
-/// A signal against its threshold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// Above.
-    Plus,
-    /// Within.
-    Zero,
-    /// Below the negative threshold.
-    Minus,
-}
 
 /// The qualitative values of one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Parameters that a task's states show, and so the samples that fits take.
 
-use super::SystemState;
 use super::definition::{Definition, StateRule, Step, Subtasks};
+use super::state::SystemState;
 use haptics::recording::Task;
 use std::collections::BTreeMap;
 

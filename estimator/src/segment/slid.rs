@@ -45,7 +45,8 @@ pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [Sy
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::segment::{Method, segment_by};
+    use crate::segment::segment_by;
+    use crate::segment::segmentation::Method;
     use haptics::recording::{Channel, Recording, Task};
 
     /// Two fingers hold a block and slide it back and forth, lifting a little of its weight now and then. `lift_m`:

@@ -2,7 +2,7 @@
 
 use super::generator::{log, perform};
 use super::{FIRST_SEED, METHODS, SKILLS, in_parallel};
-use estimator::segment::score::Score;
+use estimator::segment::agreement::Score;
 use estimator::segment::{SystemState, segment_by};
 use haptics::device::Skill;
 use haptics::recording::{Labels, Task};

@@ -3,9 +3,9 @@
 //! Only held keys count, never how often the system repeats a key. Speeds come up and go down with a bounded
 //! acceleration, and the fine mode makes everything five times slower.
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::pointer::Pointer;
 use super::steering::Steering;
-use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};

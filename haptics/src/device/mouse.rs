@@ -1,7 +1,7 @@
 //! The mouse as a pair of fingers with adjustable pinch: position only, the force is shown.
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::pointer::{Pointer, tips};
-use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};

@@ -1,7 +1,8 @@
 //! Common part of mouse, touch screen, keyboard and gamepad: two fingertips that follow two goals through the arm's
 //! impedance.
 
-use super::{DeviceSpec, HandImpedance, Sample};
+use super::impedance::HandImpedance;
+use super::interface::{DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 

@@ -3,7 +3,7 @@
 //! A servo that ticks at the recording's own times gets the recorded samples themselves, so that the same world
 //! computes the same forces to the bit. At any other rate positions and velocities are interpolated linearly.
 
-use super::{Command, Device, DeviceSpec, Sample};
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::{Finger, JointAngles};
 use crate::recording::Recording;

@@ -6,6 +6,7 @@ mod builder;
 mod captured;
 mod direct;
 mod eye;
+mod movement;
 mod noise;
 mod patience;
 mod plan;
@@ -16,17 +17,19 @@ mod tests;
 
 pub use acts::Act;
 pub use direct::{Pull, PullSensor, Pulled};
-pub use plan::Goal as HandGoal;
+pub use movement::Goal as HandGoal;
 pub use route::Route;
 pub use skill::{Mistake, Skill};
 
-use super::{Command, Device, DeviceSpec, HandImpedance, Sample};
+use super::impedance::HandImpedance;
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::world::{State, World};
 use eye::Eye;
+use movement::Goal;
 use noise::{Tremor, Wander};
 use patience::Patience;
-use plan::{Goal, Plan};
+use plan::Plan;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 

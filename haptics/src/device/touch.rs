@@ -5,8 +5,8 @@
 //! glass at the same instant, and lifting both must not release the object. With both up, both tips keep their goals
 //! and forces.
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::pointer::{Pointer, towards};
-use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};

@@ -13,7 +13,7 @@
 
 use super::pointer::towards;
 use crate::Vec2;
-use crate::device::DeviceSpec;
+use crate::device::interface::DeviceSpec;
 use crate::servo::passivity::required_damping;
 use crate::world::World;
 

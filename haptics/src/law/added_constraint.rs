@@ -2,8 +2,9 @@
 //! wall, a stop, a cable. Its force is k max(q − place, 0), −k max(place − q, 0), or k (q − place). k ≥ 0; k = 0 adds
 //! nothing. Taken implicitly by the integrator: a hard wall loses some energy at each impact and never makes any.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Added constraint; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

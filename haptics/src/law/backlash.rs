@@ -3,8 +3,9 @@
 //! is no gap. Inertia, gravity and springs stay on the handle's side, so that a gap can only take less energy, never
 //! make any. The memory is the place within the gap, −δ … δ; it starts in the middle.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Backlash; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

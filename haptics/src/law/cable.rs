@@ -3,8 +3,10 @@
 //! when it is longer than L0 and never pushes. The coordinate is the handle's path. The `added-constraint` of worlds
 //! with a crank that is not one of a place along the path.
 
-use super::entry::{ANY, POSITIVE};
-use super::{AddedConstraint, Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::added_constraint::AddedConstraint;
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// A cable to a crank's handle; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

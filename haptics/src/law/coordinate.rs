@@ -1,6 +1,8 @@
 //! One coordinate under a list of effects: their sum, the force for a given motion, and the integrator.
 
-use super::{Effect, Memories, Motion, Role, tame};
+use super::effect::Effect;
+use super::force_law::{Motion, Role, tame};
+use super::memory::Memories;
 
 /// The forces of a list of effects on one coordinate, split the way an integrator needs them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! Coulomb friction: Fc sgn(v), independent of the load (Coulomb 1785). Fc ≥ 0. At rest it holds up to Fc.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Coulomb friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 //! For θ measured from hanging, a alone is the gravity moment m g r. R is the path of one radian: 1 (or 0, unset) when the
 //! coordinate q is the angle itself, the arm's length when it is the path length of a crank's handle.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Eccentric mass; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,9 @@
 //! A law with its values: a world file stores it and the servo runs it.
 
-use super::{Enters, Law, MAX_PARAMETERS, Memory, Motion, Role, law, tame};
+use super::catalogue::law;
+use super::entry::Enters;
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role, tame};
+use super::memory::Memory;
 use serde::{Deserialize, Serialize};
 
 /// A law with its parameter values.

@@ -1,7 +1,7 @@
 //! Force bias: F + b: a constant error of the force channel along the coordinate.
 
-use super::entry::ANY;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Force bias; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! Force drift: F + r t, or F + r τ (1 − exp(−t/τ)) if the sensor settles: a slow error of the force channel along the
 //! coordinate. r = 0 is none, τ = 0 never settles.
 
-use super::entry::{ANY, POSITIVE};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 use super::mass_change::settling;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Force drift; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

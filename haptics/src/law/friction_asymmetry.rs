@@ -2,8 +2,8 @@
 //! negative motion Fc − dFc (and c ± dc, mu ± dmu). dFc therefore acts as a constant while the coordinate moves and vanishes
 //! at rest. Needs friction beside it: the sum of both stays ≥ 0.
 
-use super::entry::ANY;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Direction-dependent friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,9 @@
 //! a positive `length`, p = 1 − exp(−travel/length) with the travel (running in, wear). from ≥ 0, to ≥ 0. tau = 0 is a
 //! step at t0; from = to is Coulomb friction. The memory is the travel. It adds to the friction beside it.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Changing friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 //! and W the carried weight. φ = q/R on a circle (R: path of one radian; 1 if the coordinate is the angle from the
 //! horizontal); R = 0 is a straight path. δ counter-clockwise; δ = 0 adds nothing.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Tilted plane; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

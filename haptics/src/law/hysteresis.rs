@@ -4,8 +4,9 @@
 //! Fc ≥ 0, σ ≥ 0, ½ ≤ β ≤ 1: never generates energy. σ → ∞ is Coulomb friction. The memory is z, solved exactly over
 //! each step.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Presliding hysteresis; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Inertia: m dv/dt. m > 0. The integrator reads m directly; the replay and the fit use the term.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Inertia; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

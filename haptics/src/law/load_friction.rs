@@ -4,7 +4,8 @@
 //! to the other laws of friction, and a released crank feels none of this one.
 //! The coordinate is a length; for an angle the caller passes the normal force times its arm.
 
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Load friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,10 @@
 //! proportion to the normal force whose coefficient changes with time or travel. from ≥ 0, to ≥ 0; it adds to the
 //! friction beside it. The `friction-change` of worlds with load friction.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, FrictionChange, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::friction_change::FrictionChange;
+use super::memory::Memory;
 
 /// Changing friction under a load; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,10 @@
 //! [`Hysteresis`]. It is friction in proportion to the normal force that bends before it slides. mu ≥ 0; way > 0 is the
 //! presliding distance. The memory is z. The `hysteresis` of worlds with load friction.
 
-use super::entry::POSITIVE;
-use super::{Entry, Hysteresis, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::hysteresis::Hysteresis;
+use super::memory::Memory;
 
 /// Presliding hysteresis under a load; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

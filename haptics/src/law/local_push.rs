@@ -2,9 +2,8 @@
 //! climbed and left again. P > 0 pushes towards −q (the drive must supply +P). The `local-resistance` of worlds that does not depend on the
 //! direction; a period makes it come again (2π R on a crank's path).
 
-use super::entry::ANY;
-use super::local_resistance::{hump, parameters};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Local push; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +34,23 @@ impl Law for LocalPush {
         let [push, place, width, period, ..] = *parameters;
         push * hump(motion.position - place, width, period)
     }
+}
+
+/// Parameters of a hump of force at one place: its height, under the name and within the bounds given, where it is, how wide, and how
+/// often it comes.
+pub(super) const fn parameters(name: &'static str, bounds: (f64, f64)) -> [ParameterSpec; 4] {
+    [
+        ParameterSpec::linear(name, "N", "N m", bounds),
+        ParameterSpec::nonlinear("place", "m", "rad", ANY),
+        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
+        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
+    ]
+}
+
+/// A hump of height one and this width around zero, which comes again with a period (0: never).
+pub(super) fn hump(off: f64, width: f64, period: f64) -> f64 {
+    let off = if period > 0.0 { off - period * (off / period).round() } else { off };
+    if off.abs() < 0.5 * width { 0.5 * (1.0 + (std::f64::consts::TAU * off / width).cos()) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 //! F ≥ 0; it resists both ways and holds at rest. A period makes it come again (2π R on a crank's path); 0 is once.
 //! width = 0 adds nothing. For a stop that springs back see `added-constraint`.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, LocalPush, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::local_push::{LocalPush, parameters};
 
 /// Local resistance; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
@@ -38,23 +39,6 @@ impl Law for LocalResistance {
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
         LocalPush.force(motion, parameters) * motion.direction
     }
-}
-
-/// Parameters of a hump of force at one place: its height, under the name and within the bounds given, where it is, how wide, and how
-/// often it comes.
-pub(super) const fn parameters(name: &'static str, bounds: (f64, f64)) -> [ParameterSpec; 4] {
-    [
-        ParameterSpec::linear(name, "N", "N m", bounds),
-        ParameterSpec::nonlinear("place", "m", "rad", ANY),
-        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
-        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
-    ]
-}
-
-/// A hump of height one and this width around zero, which comes again with a period (0: never).
-pub(super) fn hump(off: f64, width: f64, period: f64) -> f64 {
-    let off = if period > 0.0 { off - period * (off / period).round() } else { off };
-    if off.abs() < 0.5 * width { 0.5 * (1.0 + (std::f64::consts::TAU * off / width).cos()) } else { 0.0 }
 }
 
 #[cfg(test)]

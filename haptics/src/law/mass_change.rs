@@ -2,8 +2,8 @@
 //! It adds to the `weight` beside it (W0 = 0 then). duration = 0 is without end. The inertia that leaves with the weight is
 //! neglected: at g/10 it is a hundredth of the force. rate < 0 loses weight; with tau the rate dies away, as a barrel empties.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Changing weight; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

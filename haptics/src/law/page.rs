@@ -1,7 +1,7 @@
 //! The page of a cause for `docs/causes/`, made from the catalogue. `cargo run -p haptics --example causes` writes all
 //! of them; `haptics/tests/causes.rs` fails if the written ones differ.
 
-use super::{Enters, Entry, Kind, ParameterSpec};
+use super::entry::{Enters, Entry, Kind, ParameterSpec};
 use std::fmt::Write as _;
 
 /// First line of every page, so that the copy is not edited by hand.

@@ -1,8 +1,8 @@
 //! Position ripple: A cos(2π q/λ + φ): cogging, gear teeth, an uneven guide. n ripples a turn of radius R: λ = 2π R/n, or 2π/n for
 //! an angle. λ = 0 (unset) adds nothing. A cos φ and −A sin φ are the two linear regressors at φ = 0 and φ = π/2.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Position ripple; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

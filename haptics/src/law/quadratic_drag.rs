@@ -1,7 +1,7 @@
 //! Quadratic drag: k v |v| (Newton 1687, Rayleigh 1876). k ≥ 0: it takes energy out.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Quadratic drag; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

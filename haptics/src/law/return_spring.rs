@@ -1,8 +1,9 @@
 //! Return spring: k (q − q0) + k3 (q − q0)³ + f0 (Hooke 1678; hardening as in Duffing 1918). k ≥ 0, k3 ≥ 0. f0 is a preload; with
 //! q0 = 0 it carries the spring's rest place as −k q0, which keeps the law linear. k3 = 0 is the linear spring.
 
-use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
+use super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
+use super::memory::Memory;
 
 /// Return spring; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

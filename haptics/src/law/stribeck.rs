@@ -2,8 +2,8 @@
 //! Fc ≥ 0 is the excess of the static level over the Coulomb level of the effect beside it. exponential (1947);
 //! measured ones lie between 0.5 and 2 (Armstrong-Hélouvry et al. 1994). vs = 0: friction of rest alone. Holds at rest.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Stribeck friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! Weight of the handle: mg (up · t): the weight carried along the coordinate (thesis, eq. 5.2, the (mg)t term). mg
 //! ≥ 0. Zero along a horizontal path.
 
-use super::entry::POSITIVE;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::{Entry, Kind, POSITIVE, ParameterSpec};
+use super::force_law::{Law, MAX_PARAMETERS, Motion, Role};
 
 /// Weight of the handle; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]

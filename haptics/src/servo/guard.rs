@@ -6,12 +6,10 @@
 //! thread of their own (the Haply boards) guard themselves and provide none.
 
 use super::realtime::raise_guard;
+use crate::device::ForceGuard;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-
-/// A second way to zero force.
-pub type ForceGuard = Box<dyn FnMut() + Send>;
 
 /// A standstill as long as this is told to the user, s; shorter ones are counted as stalls.
 pub const FAULT_AFTER_S: f64 = 0.1;

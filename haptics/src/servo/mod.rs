@@ -10,10 +10,12 @@
 //! prints, waits or panics.
 
 mod clock;
+mod config;
+mod control_loop;
 pub mod coupling;
 pub mod force_test;
 mod guard;
-mod r#loop;
+mod histogram;
 pub mod passivity;
 #[cfg(test)]
 mod protections;
@@ -28,8 +30,10 @@ mod thread;
 pub mod timing;
 
 pub use clock::Deadlines;
-pub use guard::{FAULT_AFTER_S, ForceGuard};
-pub use r#loop::{Loop, Snapshot, TickRecord};
+pub use config::ServoConfig;
+pub use control_loop::{Loop, Snapshot, TickRecord};
+pub use guard::FAULT_AFTER_S;
+pub use histogram::Percentiles;
 pub use realtime::Privileges;
 pub use swap::Swap;
-pub use thread::{Servo, ServoConfig, ServoError};
+pub use thread::{Servo, ServoError};

@@ -1,8 +1,11 @@
 //! Tests of protections of the operator and of the energy account that no other test would miss.
 
+use super::config::ServoConfig;
+use super::control_loop::Loop;
 use super::coupling::{Coupling, Proxy};
 use super::safety::Limits;
-use super::{Loop, Servo, ServoConfig, Swap};
+use super::swap::Swap;
+use super::thread::Servo;
 use crate::Vec2;
 use crate::device::{Command, Device, DeviceSpec, Sample};
 use crate::world::{Input, State, World, presets, step};

@@ -6,7 +6,7 @@
 //! of the deadlines are missed altogether. Single long stalls do not decide: they hurt a slow servo just as much.
 
 use super::clock::Deadlines;
-use super::timing::{Histogram, Timing};
+use super::histogram::Histogram;
 use crate::world::{State, World, step};
 use std::time::{Duration, Instant};
 
@@ -237,14 +237,6 @@ fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateRep
         return RateReport { rate_hz: SAFE_HZ, reason, overloaded: false };
     }
     RateReport { overloaded: true, ..report }
-}
-
-/// True if the timing so far meets the needs of the rate: for verdicts after a run.
-pub fn held(timing: &Timing) -> bool {
-    let period_s = timing.period_s;
-    timing.lateness.p99_s <= LATE_SHARE * period_s
-        && timing.compute.p99_s <= COMPUTE_SHARE * period_s
-        && timing.missed as f64 <= MISSED_SHARE * timing.ticks.max(1) as f64
 }
 
 #[cfg(test)]

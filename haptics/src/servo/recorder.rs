@@ -2,7 +2,7 @@
 //!
 //! [`Rows`] turns one tick after the other into a row, for streams to a disk; [`to_recording`] turns many into a [`Recording`].
 
-use super::r#loop::TickRecord;
+use super::control_loop::TickRecord;
 use crate::Vec2;
 use crate::recording::{Channel, HandMeta, Meta, Recording, Task};
 use crate::world::World;

@@ -1,14 +1,14 @@
 //! Body of the servo's thread.
 
 use super::clock::Deadlines;
+use super::config::ServoConfig;
+use super::control_loop::{Loop, Snapshot, TickRecord};
 use super::force_test::Request;
 use super::guard::Beat;
-use super::r#loop::{Loop, Snapshot, TickRecord};
 use super::rate::{self, RateReport, Watch};
 use super::realtime::acquire;
 use super::swap::Swap;
 use super::tap::TapFiller;
-use super::thread::ServoConfig;
 use super::timing::{TickTiming, Timing, TimingCollector};
 use crate::world::State;
 use rtrb::{Consumer, Producer};

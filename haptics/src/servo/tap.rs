@@ -3,7 +3,7 @@
 //! The ring that the window empties once a frame may overflow when no frame is drawn. A recording must not lose ticks to that, so a
 //! thread of its own empties this one. The servo's side never waits: a tick that finds the ring full is counted and dropped.
 
-use super::r#loop::TickRecord;
+use super::control_loop::TickRecord;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

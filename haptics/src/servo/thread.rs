@@ -1,9 +1,10 @@
 //! The handle of a running servo, for the window.
 
+use super::config::ServoConfig;
+use super::control_loop::{Loop, Snapshot, TickRecord};
 use super::force_test::Request;
 use super::guard::{Beat, FAULT_AFTER_S, watch};
-use super::r#loop::{Loop, Snapshot, TickRecord};
-use super::rate::{RateChoice, RateReport};
+use super::rate::RateReport;
 use super::realtime::Privileges;
 use super::runner::Runner;
 use super::safety::Limits;
@@ -26,32 +27,6 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// Shown while the servo stands still.
 const STANDSTILL: &str = "The servo stands still: the device does not answer or the machine is overloaded. The force was set \
                           to zero; check the cable, or choose the device again.";
-
-/// Settings of the servo.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ServoConfig {
-    /// Choice of the rate.
-    pub rate: RateChoice,
-    /// Safety limits.
-    pub limits: Limits,
-    /// Ask the system for real-time scheduling.
-    pub real_time: bool,
-    /// Largest damping that the passivity controller may add, N s/m; `None`: it only observes.
-    pub passivity_control_n_s_m: Option<f64>,
-}
-
-impl Default for ServoConfig {
-    fn default() -> Self {
-        Self { rate: RateChoice::Auto, limits: Limits::default(), real_time: true, passivity_control_n_s_m: None }
-    }
-}
-
-impl ServoConfig {
-    /// A servo at a fixed rate, Hz.
-    pub fn at(rate_hz: f64) -> Self {
-        Self { rate: RateChoice::Fixed(rate_hz), ..Self::default() }
-    }
-}
 
 /// Why a servo could not be started.
 #[derive(Debug, thiserror::Error)]

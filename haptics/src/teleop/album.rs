@@ -1,6 +1,6 @@
 //! Pictures on their way: taken at even times at one end, seen late at the other. All of them are made once.
 
-use super::Delay;
+use super::delay::Delay;
 use super::picture::Picture;
 use crate::device::channel::line::Line;
 use crate::world::State;

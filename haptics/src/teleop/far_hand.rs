@@ -1,7 +1,7 @@
 //! The hand at the far end: two fingertips on springs and dampers that follow the near hand's earlier positions and
 //! forces.
 
-use super::Delay;
+use super::delay::Delay;
 use crate::Vec2;
 use crate::device::{Command, HandImpedance, Sample};
 use crate::world::Input;

@@ -6,16 +6,16 @@
 //! is therefore stable over any delay.
 
 use super::album::Album;
+use super::delay::{Delay, Ends};
 use super::far_hand::{FarHand, Goal};
 use super::model::Tutor;
 use super::picture::Grasp;
 use super::view::{Knock, ViewInput};
-use super::{Delay, Ends};
 use crate::device::channel::ChannelError;
 use crate::device::channel::line::Line;
-use crate::device::{Command, Device, DeviceSpec, HandImpedance, Sample};
+use crate::device::{Command, Device, DeviceSpec, ForceGuard, HandImpedance, Sample};
 use crate::servo::safety::Limits;
-use crate::servo::{ForceGuard, Loop, Swap};
+use crate::servo::{Loop, Swap};
 use crate::world::{State, World};
 
 /// Salt of the fate of the hand's messages.

@@ -7,12 +7,11 @@
 //! Colgate 1993). The felt force is a share of the exerted one, and said to be one ([`gain`]).
 
 use super::album::Album;
+use super::delay::{Delay, Ends, hand_stiffness_n_m};
 use super::view::{Knock, ViewInput};
-use super::{Delay, Ends, hand_stiffness_n_m};
 use crate::device::channel::line::Line;
 use crate::device::channel::{ChannelConfig, ChannelDevice, ChannelError, Waves};
-use crate::device::{Command, Device, DeviceSpec, Sample};
-use crate::servo::ForceGuard;
+use crate::device::{Command, Device, DeviceSpec, ForceGuard, Sample};
 use crate::world::{State, World};
 
 /// Salt of the impacts' fate.

@@ -1,6 +1,6 @@
 //! Movable bodies: blocks, barrels, needles.
 
-use super::check::{WorldError, finite, not_negative, positive};
+use super::error::{WorldError, finite, not_negative, positive};
 use super::guide::Guide;
 use crate::Vec2;
 use serde::{Deserialize, Serialize};

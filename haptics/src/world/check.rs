@@ -1,101 +1,116 @@
 //! Faults that make a world impossible to run, in one sentence.
 
 use super::block::Block;
-use super::model::{MAX_BLOCKS, SCHEMA, World};
+use super::error::{WorldError, finite, not_negative, positive};
+use super::limits::{MAX_BLOCKS, SCHEMA};
+use super::model::{Crank, Floor, Pad, World};
 use super::rect::{Rect, rect_rect};
 use super::step::{MAX_PARTS, part_rate};
 use crate::Vec2;
 use crate::law::{Effect, MAX_EFFECTS};
 
-/// A world that cannot be run, in one sentence.
-#[derive(Debug, thiserror::Error)]
-pub enum WorldError {
-    /// A number out of its physical range.
-    #[error("{object} has {name} = {value}, which must be {must}; correct it in the world file")]
-    OutOfRange {
-        /// Name of the object.
-        object: String,
-        /// Name of the number.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The condition.
-        must: &'static str,
-    },
-    /// More blocks than the state can hold.
-    #[error("the world has {0} blocks; at most {MAX_BLOCKS} can be simulated")]
-    TooManyBlocks(usize),
-    /// More laws than the state can remember for.
-    #[error("the crank has {0} effects; at most {MAX_EFFECTS} can be simulated")]
-    TooManyEffects(usize),
-    /// A body too light for the contacts around it.
-    #[error(
-        "{who} would need {parts:.0} steps a millisecond to be simulated; make it heavier, or contacts, dampers and springs softer"
-    )]
-    TooStiff {
-        /// Name of the body.
-        who: String,
-        /// Parts of a tick at 1 kHz.
-        parts: f64,
-    },
-    /// Bodies that start inside each other would be thrown apart.
-    #[error("{who} starts {depth_mm:.1} mm inside {other}; move one of them in the world file")]
-    Overlap {
-        /// Name of the first body.
-        who: String,
-        /// Name of the other body or surface.
-        other: String,
-        /// Depth of the overlap, mm.
-        depth_mm: f64,
-    },
-    /// A law's parameter out of its range.
-    #[error(
-        "the effect {law} has {name} = {value}, which must be between {low} and {high}; correct it in the world file"
-    )]
-    Effect {
-        /// Id of the law.
-        law: &'static str,
-        /// Its parameter.
-        name: &'static str,
-        /// The value.
-        value: f64,
-        /// Least.
-        low: f64,
-        /// Most.
-        high: f64,
-    },
-    /// A newer file.
-    #[error("the world file has format {0}, this program reads up to {SCHEMA}; update the program")]
-    NewerSchema(u32),
-    /// Not a world at all.
-    #[error("the file is not a world: {}", crate::text_file::one_line(&.0.to_string()))]
-    Parse(#[from] serde_json::Error),
-    /// The file could not be read.
-    #[error("the world file could not be read ({0})")]
-    Io(#[from] std::io::Error),
-}
-
-pub(super) fn range_error(object: &str, name: &'static str, value: f64, must: &'static str) -> WorldError {
-    WorldError::OutOfRange { object: object.to_owned(), name, value, must }
-}
-
-pub(super) fn positive(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "positive and finite")) }
-}
-
-pub(super) fn not_negative(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "zero or positive")) }
-}
-
-pub(super) fn finite(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "a finite number")) }
-}
-
 /// Overlap at the start that is taken as a contact, m.
 const START_OVERLAP_M: f64 = 1e-3;
 
+impl World {
+    /// Reads and checks a world from JSON.
+    pub fn from_json(text: &str) -> Result<Self, WorldError> {
+        let world: Self = serde_json::from_str(text)?;
+        world.check()?;
+        Ok(world)
+    }
+
+    /// Reads and checks a world file.
+    pub fn load(path: &std::path::Path) -> Result<Self, WorldError> {
+        Self::from_json(&crate::text_file::read(path)?)
+    }
+
+    /// Fault that makes the world impossible to run, if there is one.
+    pub fn check(&self) -> Result<(), WorldError> {
+        if self.schema > SCHEMA {
+            return Err(WorldError::NewerSchema(self.schema));
+        }
+        if self.blocks.len() > MAX_BLOCKS {
+            return Err(WorldError::TooManyBlocks(self.blocks.len()));
+        }
+        self.pad.check()?;
+        finite("the world", "gravity_m_s2", self.gravity_m_s2)?;
+        finite("the world", "tilt_rad", self.tilt_rad)?;
+        for finger in &self.hand.fingers {
+            positive("the hand", "link_m", finger.link_m)?;
+        }
+        if let Some(floor) = &self.floor {
+            floor.check()?;
+        }
+        if let Some(plane) = &self.plane {
+            plane.check()?;
+        }
+        for block in &self.blocks {
+            block.check()?;
+        }
+        if let Some(membrane) = &self.membrane {
+            membrane.check()?;
+        }
+        if let Some(switch) = &self.switch {
+            switch.check()?;
+        }
+        if let Some(crank) = &self.crank {
+            crank.check()?;
+        }
+        if let Some(mechanism) = &self.mechanism {
+            effects(&mechanism.effects)?;
+        }
+        positive("the hand", "workspace.radius_m", self.hand.workspace.radius_m)?;
+        can_be_stepped(self)
+    }
+}
+
+impl Pad {
+    fn check(&self) -> Result<(), WorldError> {
+        positive("pad", "stiffness_n_m", self.stiffness_n_m)?;
+        positive("pad", "thickness_m", self.thickness_m)?;
+        not_negative("pad", "face_m", self.face_m)?;
+        positive("pad", "shear_stiffness_n_m", self.shear_stiffness_n_m)?;
+        not_negative("pad", "damping_n_s_m", self.damping_n_s_m)?;
+        not_negative("pad", "shear_damping_n_s_m", self.shear_damping_n_s_m)?;
+        not_negative("pad", "cubic_n_m3", self.cubic_n_m3)?;
+        not_negative("pad", "hertz_n_m15", self.hertz_n_m15)
+    }
+}
+
+impl Floor {
+    fn check(&self) -> Result<(), WorldError> {
+        finite("the floor", "height_m", self.height_m)?;
+        positive("the floor", "stiffness_n_m", self.stiffness_n_m)?;
+        not_negative("the floor", "friction", self.friction)?;
+        not_negative("the floor", "damping_n_s_m", self.damping_n_s_m)?;
+        if let Some(loss) = &self.loss {
+            not_negative("the floor", "loss.e", loss.e)?;
+            not_negative("the floor", "1 − loss.e", 1.0 - loss.e)?;
+            not_negative("the floor", "loss.mu", loss.mu)?;
+        }
+        Ok(())
+    }
+}
+
+impl Crank {
+    fn check(&self) -> Result<(), WorldError> {
+        if self.effects.len() > MAX_EFFECTS {
+            return Err(WorldError::TooManyEffects(self.effects.len()));
+        }
+        positive("the crank", "radius_m", self.radius_m)?;
+        positive("the crank", "handle_width_m", self.handle_width_m)?;
+        not_negative("the crank", "finger_friction", self.finger_friction)?;
+        positive("the crank", "inertia (effect `inertia`, m)", self.mass_at_handle_kg())?;
+        if let Some(stiffness) = self.constraint_stiffness_n_m {
+            positive("the crank", "constraint_stiffness_n_m", stiffness)?;
+        }
+        effects(&self.effects)
+    }
+}
+
 /// Refuses worlds that would throw bodies about: too light for their contacts, or begun inside each other.
-pub(super) fn can_be_stepped(world: &World) -> Result<(), WorldError> {
+fn can_be_stepped(world: &World) -> Result<(), WorldError> {
     // With both fingertips pressed to the end of their foam.
     let (rate, who) = part_rate(world, f64::INFINITY);
     let parts = 1e-3 * rate;
@@ -131,7 +146,7 @@ fn outline(block: &Block) -> Rect {
 
 /// Refuses values outside the bounds that a law states for them: a damper that generates energy, a stiffness below
 /// zero.
-pub(super) fn effects(list: &[Effect]) -> Result<(), WorldError> {
+fn effects(list: &[Effect]) -> Result<(), WorldError> {
     for effect in list {
         for (spec, value) in effect.law().parameters().iter().zip(effect.values) {
             let (low, high) = spec.bounds;

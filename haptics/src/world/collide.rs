@@ -7,12 +7,13 @@ mod ground;
 
 use super::block::Block;
 use super::contact::{Material, Touch, meeting};
+use super::contact_point::{Contact, Surface};
 use super::driven::handle;
 use super::fixed::{Fixed, cup_wall, switch_base};
 use super::model::World;
 use super::rect::{Rect, point_in_rect, rect_rect};
 use super::scratch::{Scratch, Solid};
-use super::state::{BodyState, Contact, Input, State, Surface};
+use super::state::{BodyState, Input, State};
 use crate::Vec2;
 
 /// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.

@@ -8,7 +8,7 @@
 //! Taken at one point only, an undamped bounce would win or lose a quarter of (ω h)² of its energy, depending on the
 //! phase. With the mean that share is the same at meeting and parting and cancels.
 
-use super::state::{Contact, Surface};
+use super::contact_point::{Contact, Surface};
 use crate::Vec2;
 use crate::law::contact::{Cushion, PadCompliance};
 

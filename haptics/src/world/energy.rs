@@ -40,7 +40,7 @@ impl Stored {
 pub(super) fn bodies_j(world: &World, state: &State) -> f64 {
     let bodies = world.blocks.iter().zip(&state.bodies).map(|(block, body)| {
         let mass_kg = block.mass_kg - body.leaked_kg;
-        let stretch_m = |c: &super::Cable| ((body.center_m - c.anchor_m).norm() - c.length_m).max(0.0);
+        let stretch_m = |c: &super::block::Cable| ((body.center_m - c.anchor_m).norm() - c.length_m).max(0.0);
         0.5 * mass_kg * body.velocity_m_s.norm_squared()
             + 0.5 * block.inertia_kg_m2() * body.rate_rad_s.powi(2)
             + mass_kg * world.gravity_m_s2 * body.center_m.y

@@ -1,9 +1,10 @@
 //! The flat face of a fingertip: a held object that turns presses the foam under it more on one side, and is turned
 //! back.
 
+use super::contact_point::Contact;
 use super::model::Pad;
 use super::rect::Rect;
-use super::state::{BodyState, Contact};
+use super::state::BodyState;
 use std::f64::consts::FRAC_PI_2;
 
 impl Pad {

@@ -1,6 +1,6 @@
 //! Fixed objects of a world that yield: the membrane and the toggle switch.
 
-use super::check::{WorldError, finite, not_negative, positive, range_error};
+use super::error::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
 use crate::law::object::{MembraneLaw, ToggleCurve};
 use serde::{Deserialize, Serialize};

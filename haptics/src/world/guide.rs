@@ -4,7 +4,7 @@
 //! an open one are its first and last point. The place on it is followed from part to part by projecting the body onto
 //! the tangent. The cost of a part therefore does not depend on the length of the curve.
 
-use super::check::{WorldError, finite, not_negative, positive, range_error};
+use super::error::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
 use serde::{Deserialize, Serialize};
 

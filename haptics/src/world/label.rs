@@ -1,8 +1,9 @@
 //! The true contact state of a simulated world: a generator writes it into the `label` column. Never used to estimate.
 
 use super::block::Shape;
+use super::contact_point::Surface;
 use super::model::World;
-use super::state::{State, Surface};
+use super::state::State;
 use crate::law::object::MembranePhase;
 
 /// Speed above which a held block slides rather than rests, m/s.

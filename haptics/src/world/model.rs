@@ -1,21 +1,15 @@
 //! The immutable description of a virtual world: the content of a world file.
 
 use super::block::Block;
-use super::check::{self, WorldError, finite, not_negative, positive};
 use super::fixture::{Membrane, Switch};
+use super::limits::SCHEMA;
 use super::mechanism_path::MechanismPath;
 use super::plane::Plane;
 use crate::Vec2;
 use crate::hand::Hand;
 use crate::law::contact::{Cushion, Densification, FingertipSlip, StiffnessHardening, VelocityLoss};
-use crate::law::{Coordinate, Effect, MAX_EFFECTS};
+use crate::law::{Coordinate, Effect};
 use serde::{Deserialize, Serialize};
-
-/// Version of the file format.
-pub const SCHEMA: u32 = 1;
-
-/// Most blocks that a world may hold: the state's buffers are sized once, the servo never allocates.
-pub const MAX_BLOCKS: usize = 256;
 
 /// A virtual world. Build or load it, then [`World::check`] it; `step` never changes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -244,18 +238,6 @@ impl World {
         }
     }
 
-    /// Reads and checks a world from JSON.
-    pub fn from_json(text: &str) -> Result<Self, WorldError> {
-        let world: Self = serde_json::from_str(text)?;
-        world.check()?;
-        Ok(world)
-    }
-
-    /// Reads and checks a world file.
-    pub fn load(path: &std::path::Path) -> Result<Self, WorldError> {
-        Self::from_json(&crate::text_file::read(path)?)
-    }
-
     /// The world as pretty JSON.
     pub fn to_json(&self) -> String {
         // Serialising plain numbers and strings into memory cannot fail.
@@ -266,70 +248,6 @@ impl World {
     pub fn gravity_vector(&self) -> Vec2 {
         let (sin, cos) = self.tilt_rad.sin_cos();
         Vec2::new(sin, -cos) * self.gravity_m_s2
-    }
-
-    /// Fault that makes the world impossible to run, if there is one.
-    pub fn check(&self) -> Result<(), WorldError> {
-        if self.schema > SCHEMA {
-            return Err(WorldError::NewerSchema(self.schema));
-        }
-        if self.blocks.len() > MAX_BLOCKS {
-            return Err(WorldError::TooManyBlocks(self.blocks.len()));
-        }
-        positive("pad", "stiffness_n_m", self.pad.stiffness_n_m)?;
-        positive("pad", "thickness_m", self.pad.thickness_m)?;
-        not_negative("pad", "face_m", self.pad.face_m)?;
-        positive("pad", "shear_stiffness_n_m", self.pad.shear_stiffness_n_m)?;
-        not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
-        not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;
-        not_negative("pad", "cubic_n_m3", self.pad.cubic_n_m3)?;
-        not_negative("pad", "hertz_n_m15", self.pad.hertz_n_m15)?;
-        finite("the world", "gravity_m_s2", self.gravity_m_s2)?;
-        finite("the world", "tilt_rad", self.tilt_rad)?;
-        for finger in &self.hand.fingers {
-            positive("the hand", "link_m", finger.link_m)?;
-        }
-        if let Some(floor) = &self.floor {
-            finite("the floor", "height_m", floor.height_m)?;
-            positive("the floor", "stiffness_n_m", floor.stiffness_n_m)?;
-            not_negative("the floor", "friction", floor.friction)?;
-            not_negative("the floor", "damping_n_s_m", floor.damping_n_s_m)?;
-            if let Some(loss) = &floor.loss {
-                not_negative("the floor", "loss.e", loss.e)?;
-                not_negative("the floor", "1 − loss.e", 1.0 - loss.e)?;
-                not_negative("the floor", "loss.mu", loss.mu)?;
-            }
-        }
-        if let Some(plane) = &self.plane {
-            plane.check()?;
-        }
-        for block in &self.blocks {
-            block.check()?;
-        }
-        if let Some(membrane) = &self.membrane {
-            membrane.check()?;
-        }
-        if let Some(switch) = &self.switch {
-            switch.check()?;
-        }
-        if let Some(crank) = &self.crank {
-            if crank.effects.len() > MAX_EFFECTS {
-                return Err(WorldError::TooManyEffects(crank.effects.len()));
-            }
-            positive("the crank", "radius_m", crank.radius_m)?;
-            positive("the crank", "handle_width_m", crank.handle_width_m)?;
-            not_negative("the crank", "finger_friction", crank.finger_friction)?;
-            positive("the crank", "inertia (effect `inertia`, m)", crank.mass_at_handle_kg())?;
-            if let Some(stiffness) = crank.constraint_stiffness_n_m {
-                positive("the crank", "constraint_stiffness_n_m", stiffness)?;
-            }
-            check::effects(&crank.effects)?;
-        }
-        if let Some(mechanism) = &self.mechanism {
-            check::effects(&mechanism.effects)?;
-        }
-        positive("the hand", "workspace.radius_m", self.hand.workspace.radius_m)?;
-        check::can_be_stepped(self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The parts that a tick is divided into, for the constraints of a body besides its contacts: numbers computed by hand.
 
-use super::{World, presets, substeps};
+use super::step::substeps;
+use super::{World, presets};
 
 const DT: f64 = 1e-3;
 

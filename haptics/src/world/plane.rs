@@ -1,6 +1,6 @@
 //! A plane that never moves and pushes one way: a table or a wall at any angle, as found in a recording.
 
-use super::check::{WorldError, finite, not_negative, positive, range_error};
+use super::error::{WorldError, finite, not_negative, positive, range_error};
 use crate::Vec2;
 use serde::{Deserialize, Serialize};
 

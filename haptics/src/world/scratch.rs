@@ -1,7 +1,7 @@
 //! Scratch space of one tick. Its buffers are sized once and kept from tick to tick, because the servo never allocates.
 
 use super::contact::Touch;
-use super::model::MAX_BLOCKS;
+use super::limits::MAX_BLOCKS;
 use super::rect::Rect;
 use crate::Vec2;
 

@@ -10,10 +10,11 @@
 use super::block::{Block, Shape};
 use super::collide::collide;
 use super::contact::{RESTING_M_S, Touch};
+use super::contact_point::{Contact, Surface};
 use super::driven::{handle, move_crank, move_switch, pierce};
 use super::model::{Crank, World};
 use super::scratch::{Scratch, Solid};
-use super::state::{BodyState, Contact, Input, State, Surface};
+use super::state::{BodyState, Input, State};
 use crate::Vec2;
 use crate::law::{AddedConstraint, explicit_stiffness};
 
@@ -183,23 +184,11 @@ fn press_all(
     (handle_m, knob_m): (Option<Vec2>, Option<Vec2>),
 ) -> (Vec2, Vec2) {
     let State { scratch: Scratch { touches, solids, .. }, bodies, .. } = state;
+    let driven = (state.crank.handle_velocity, state.switch.knob_velocity);
     let (mut on_handle, mut on_knob) = (Vec2::zeros(), Vec2::zeros());
     for touch in touches {
-        let by = match touch.contact.by {
-            Surface::Block(index) => velocity_at(&bodies[usize::from(index)], touch.arm_by_m),
-            Surface::Handle => state.crank.handle_velocity,
-            Surface::Knob => state.switch.knob_velocity,
-            _ => Vec2::zeros(),
-        };
-        // Velocity for the damper, and the way since the part before, as a velocity, for springs.
-        let (on, way_on) = match touch.contact.on {
-            Surface::Finger(finger) => (part.tip_velocity[usize::from(finger)], part.tip_chord[usize::from(finger)]),
-            Surface::Block(index) => {
-                let velocity = velocity_at(&bodies[usize::from(index)], touch.arm_on_m);
-                (velocity, velocity)
-            }
-            _ => (Vec2::zeros(), Vec2::zeros()),
-        };
+        let by = velocity_by(touch, bodies, driven);
+        let (on, way_on) = velocity_on(touch, bodies, part);
         let normal = touch.contact.normal;
         match (touch.contact.by, handle_m, knob_m) {
             (Surface::Handle, Some(handle_m), _) => on_curve(world, touch, &state.input, handle_m),
@@ -242,6 +231,30 @@ fn press_all(
         }
     }
     (on_handle, on_knob)
+}
+
+/// Velocity of the surface that presses, m/s. `driven` is that of handle and knob.
+#[inline]
+fn velocity_by(touch: &Touch, bodies: &[BodyState], driven: (Vec2, Vec2)) -> Vec2 {
+    match touch.contact.by {
+        Surface::Block(index) => velocity_at(&bodies[usize::from(index)], touch.arm_by_m),
+        Surface::Handle => driven.0,
+        Surface::Knob => driven.1,
+        _ => Vec2::zeros(),
+    }
+}
+
+/// Velocity of the surface that is pressed for the damper, and its way since the part before, as a velocity, for springs, m/s.
+#[inline]
+fn velocity_on(touch: &Touch, bodies: &[BodyState], part: &Part) -> (Vec2, Vec2) {
+    match touch.contact.on {
+        Surface::Finger(finger) => (part.tip_velocity[usize::from(finger)], part.tip_chord[usize::from(finger)]),
+        Surface::Block(index) => {
+            let velocity = velocity_at(&bodies[usize::from(index)], touch.arm_on_m);
+            (velocity, velocity)
+        }
+        _ => (Vec2::zeros(), Vec2::zeros()),
+    }
 }
 
 /// Depth of a finger in handle or knob, whose middle is at `middle_m` now.

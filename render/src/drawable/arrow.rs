@@ -1,13 +1,13 @@
 //! Force arrows: the force that each fingertip exerts on the environment, in front of everything; the slender ones
 //! beside them are the forces of a model.
 
-use super::{Canvas, outwards, thing_scale, tip};
+use super::canvas::{Canvas, outwards, thing_scale, tip};
+use crate::coordinates::vec2;
 use crate::draw_data::Layer;
 use crate::mesh::MeshKind;
 use crate::scene::{ArrowAnchor, FingerStyle, SceneView};
 use crate::shape::Solid;
 use crate::theme::{Color, ColorRole};
-use crate::vec2;
 use glam::Vec2;
 
 /// Forces below this have no direction worth showing, N.

@@ -1,8 +1,8 @@
 //! Barrels: small steel drums with two hoops, a band with a placard between them, and a lid. A broken one shows its
 //! crack; its filling can never be seen.
 
-use super::Canvas;
-use super::block::Body;
+use super::body::Body;
+use super::canvas::Canvas;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;
 use crate::theme::Color;

@@ -1,13 +1,13 @@
 //! Cables from an eyelet to the back of the body that they hold. A slack one hangs as a catenary of its true length,
 //! and lies on the table where it reaches it; a taut one is straight and shows the size of its pull.
 
-use super::{Canvas, Mode, angle};
-use crate::Material;
+use super::canvas::{Canvas, Mode, angle};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
 use crate::theme::{Color, ColorRole};
-use crate::vec2;
 use glam::{Vec2, Vec3};
 
 const RADIUS_M: f32 = 0.00065;

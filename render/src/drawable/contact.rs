@@ -1,12 +1,12 @@
 //! Contacts of bodies: a ring around a point in front of everything, in the warning colour while they slide.
 
-use super::{Canvas, Line, at};
+use super::canvas::{Canvas, Line, at};
+use crate::coordinates::vec2;
 use crate::draw_data::Layer;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
 use crate::theme::ColorRole;
-use crate::vec2;
 
 /// Radius of the point and, for a contact without force, of the ring, m.
 const POINT_M: f32 = 0.0006;

@@ -1,12 +1,12 @@
 //! The crank: a dial behind, an arm about the axis, an upright handle that the pads can hold.
 
-use super::{Canvas, HALF_DEPTH_M, Line, angle, at};
-use crate::Material;
+use super::canvas::{Canvas, HALF_DEPTH_M, Line, angle, at};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::{Solid, Stroke};
 use crate::theme::{Color, ColorRole};
-use crate::vec2;
 use glam::{Vec2, Vec3};
 
 /// Depths, back to front, m.
@@ -16,7 +16,7 @@ const ARM_Z: [f32; 2] = [-0.0125, -0.0085];
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let (Some(crank), Some(handle)) = (&view.world.crank, view.state.handle_in_world(view.world)) else { return };
     let (center, handle, radius) = (vec2(crank.center_m), vec2(handle), crank.radius_m as f32);
-    if canvas.mode == super::Mode::Real {
+    if canvas.mode == super::canvas::Mode::Real {
         stand(canvas, center, radius);
         dial(canvas, center, radius);
     }

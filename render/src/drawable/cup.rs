@@ -1,10 +1,10 @@
 //! Paper cups: a tapering wall with a rolled rim, a sleeve around the middle, and the visible part of the inside from
 //! above. A crushed one shows its tear.
 
-use super::Canvas;
 use super::barrel::crack;
-use super::block::Body;
-use crate::Material;
+use super::body::Body;
+use super::canvas::Canvas;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;
 use crate::theme::Color;

@@ -1,9 +1,9 @@
 //! Force vectors along a path, flat and thin (thesis, figure 5.10).
 
-use super::{Canvas, at, mark_scale};
+use super::canvas::{Canvas, at, mark_scale};
+use crate::coordinates::vec2;
 use crate::scene::SceneView;
 use crate::shape::Stroke;
-use crate::vec2;
 use glam::Vec2;
 
 const WIDTH_PX: f32 = 1.6;

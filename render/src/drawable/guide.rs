@@ -1,11 +1,11 @@
 //! Guides: the slot behind the body that follows it, as two edges with a stop at each open end.
 
-use super::{Canvas, Mode};
-use crate::Material;
+use super::canvas::{Canvas, Mode};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
-use crate::vec2;
 use glam::Vec2;
 
 /// Half the width of the slot and the radius of its edges, m.

@@ -1,12 +1,12 @@
 //! Leaks of a body: a streak below the crack, drops on their way, a puddle that grows on the table.
 
 use super::barrel::{drip_starts, on_front};
-use super::block::{Body, reach};
-use super::{Canvas, Mode, WHITE};
+use super::body::{Body, reach};
+use super::canvas::{Canvas, Mode, WHITE};
+use crate::coordinates::vec2;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
-use crate::vec2;
 use glam::{Vec2, Vec3};
 use haptics::world::{Block, BodyState, Shape};
 

@@ -3,13 +3,13 @@
 //! The linkage is drawn shifted by a constant vector (the wrist above the tip): because the tip does not turn, joint angles and
 //! lengths are exactly those of the kinematics.
 
-use super::{Canvas, outwards, tip};
-use crate::Material;
+use super::canvas::{Canvas, outwards, tip};
+use crate::coordinates::{lift, vec2};
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
 use crate::theme::{Color, ColorRole};
-use crate::{lift, vec2};
 use glam::{Vec2, Vec3};
 
 /// From the tip to the wrist joint: outwards and up, m.
@@ -46,7 +46,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         motor(canvas, &joints, accent);
         pins(canvas, &joints, accent);
     }
-    if canvas.mode == super::Mode::Real {
+    if canvas.mode == super::canvas::Mode::Real {
         rail(canvas, view);
     }
 }

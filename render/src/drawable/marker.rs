@@ -1,12 +1,12 @@
 //! Found constraints: a centre of rotation with its circle and uncertainty, a direction of motion, a curve, a surface.
 
-use super::{Canvas, Line, angle, at, mark_scale};
+use super::canvas::{Canvas, Line, angle, at, mark_scale};
+use crate::coordinates::vec2;
 use crate::draw_data::Layer;
 use crate::mesh::MeshKind;
 use crate::scene::{ConstraintMarker, SceneView};
 use crate::shape::{Solid, Stroke};
 use crate::theme::{Color, ColorRole};
-use crate::vec2;
 use glam::Vec2;
 
 /// Half the size of the cross at a centre, period of dashes, length of barbs, m in a picture of the workspace.

@@ -1,6 +1,6 @@
 //! A mechanism with one degree of freedom: the line or the circle that its tool moves along, in space.
 
-use super::{Canvas, angle};
+use super::canvas::{Canvas, angle};
 use crate::scene::SceneView;
 use crate::shape::Stroke;
 use crate::theme::ColorRole;

@@ -2,13 +2,13 @@
 //!
 //! The sheet dents under the point. Once pierced it springs back, dragged along by the shaft, and the hole stays.
 
-use super::{Canvas, Mode, angle, at};
-use crate::Material;
+use super::canvas::{Canvas, Mode, angle, at};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::{MeshKind, SHEET_STATIONS, dent};
 use crate::scene::SceneView;
 use crate::shape::{Solid, Stroke};
 use crate::theme::Color;
-use crate::vec2;
 use glam::{Vec2, Vec3Swizzles};
 use haptics::world::{Hole, Membrane, MembraneState, Shape, State, World};
 

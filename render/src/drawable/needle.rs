@@ -1,8 +1,8 @@
 //! Needles: a plastic hub that the pads hold and a thin steel shaft whose point is the middle of the body's lower edge.
 
-use super::Canvas;
-use super::block::Body;
-use crate::Material;
+use super::body::Body;
+use super::canvas::Canvas;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;
 use crate::theme::{Color, Theme};

@@ -2,8 +2,8 @@
 //!
 //! The tip position is the middle of the foam's inner face. Pressed foam is drawn as thin as it is compressed.
 
-use super::{Canvas, outwards, tip};
-use crate::Material;
+use super::canvas::{Canvas, outwards, tip};
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;

@@ -1,11 +1,11 @@
 //! A fixed plane at any angle: the edge of the solid as a bar that runs across the picture, its rim on the surface.
 
-use super::{Canvas, HALF_DEPTH_M, Mode};
-use crate::Material;
+use super::canvas::{Canvas, HALF_DEPTH_M, Mode};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
-use crate::vec2;
 use glam::Vec2;
 
 /// Half of the thickness and half of the length of the bar, m.

@@ -2,13 +2,13 @@
 //! of the throw. The marks are a ring at the left end and a bar at the right one, as on real switches; the mark of its
 //! present side is lit.
 
-use super::{Canvas, HALF_DEPTH_M, Mode, at};
-use crate::Material;
+use super::canvas::{Canvas, HALF_DEPTH_M, Mode, at};
+use crate::coordinates::vec2;
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::{Solid, Stroke};
 use crate::theme::{Color, ColorRole, Theme};
-use crate::vec2;
 use glam::{Vec2, Vec3};
 use haptics::world::Switch;
 

@@ -1,6 +1,6 @@
 //! The table: a slab with a grid of 1 cm (stronger every 5 cm).
 
-use super::Canvas;
+use super::canvas::Canvas;
 use crate::draw_data::Layer;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;

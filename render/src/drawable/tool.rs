@@ -1,7 +1,7 @@
 //! A single tool instead of two fingers: a slim probe whose ball end is at the tip of finger 1.
 
-use super::{Canvas, at, thing_scale, tip};
-use crate::Material;
+use super::canvas::{Canvas, at, thing_scale, tip};
+use crate::material::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;

@@ -1,9 +1,9 @@
 //! Curves in the plane: measured, simulated, planned.
 
-use super::{Canvas, at};
+use super::canvas::{Canvas, at};
+use crate::coordinates::vec2;
 use crate::scene::SceneView;
 use crate::shape::Stroke;
-use crate::vec2;
 
 /// Points closer than this to the last one drawn are left out, m: far below a pixel.
 const STEP_M: f32 = 0.0002;

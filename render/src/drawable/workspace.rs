@@ -1,8 +1,8 @@
 //! The outline of the disc that the tips can reach.
 
-use super::{Canvas, Line};
+use super::canvas::{Canvas, Line};
+use crate::coordinates::vec2;
 use crate::scene::SceneView;
-use crate::vec2;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let workspace = &view.world.hand.workspace;

@@ -1,6 +1,6 @@
 //! Round meshes with two radii or a dent: shafts, half a cup, half a sheet.
 
-use super::{Mesh, Vertex};
+use super::geometry::{Mesh, Vertex};
 use std::f32::consts::{PI, TAU};
 
 /// Places between the apex (0) and the rim (1) of a sheet at which its mesh has a ring; closer where it bends most.

@@ -1,7 +1,7 @@
 //! Bind groups of the shaders beside their vertices: numbers of the scene, the shadow map or that of undersides, the
 //! table's light maps.
 
-use super::MapFormat;
+use super::map_format::MapFormat;
 
 /// Layouts of the bind groups, by number.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ mod groups;
 mod map_format;
 
 use crate::mesh::Vertex;
-use crate::renderer::DEPTH_FORMAT;
 use crate::shape::{Solid, Stroke};
+use crate::texture_format::DEPTH_FORMAT;
 pub(crate) use groups::Groups;
 pub(crate) use map_format::MapFormat;
 use wgpu::vertex_attr_array as attributes;
@@ -98,35 +98,9 @@ impl Pipelines {
         let background = make.module("background", BACKGROUND);
 
         let solid_buffers = [Some(vertex_layout()), Some(solid_layout())];
-        let opaque = Spec {
-            label: "solid",
-            module: &solid,
-            vertex: "vs_solid",
-            fragment: "fs_solid",
-            buffers: &solid_buffers,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            ink: Ink::Opaque,
-            depth_write: true,
-            depth_compare: wgpu::CompareFunction::Less,
-            depth_bias: 0,
-            into: Into { format, samples, groups: 3, depth: true },
-            culled: true,
-        };
-        let see_through = wgpu::CompareFunction::LessEqual;
+        let opaque = opaque(&solid, &solid_buffers, Into { format, samples, groups: 3, depth: true });
         let stroke_buffers = [Some(stroke_layout())];
-        let strokes = Spec {
-            label: "stroke",
-            module: &stroke,
-            vertex: "vs_stroke",
-            fragment: "fs_stroke",
-            buffers: &stroke_buffers,
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            ink: Ink::Translucent,
-            depth_write: false,
-            depth_compare: see_through,
-            culled: false,
-            ..opaque
-        };
+        let strokes = strokes(&opaque, &stroke, &stroke_buffers);
         Self {
             cast: make.pipeline(&cast(&opaque, groups.map_format)),
             table_light: make.pipeline(&table_map(&opaque, &table_light, ["vs_table_light", "fs_table_light"])),
@@ -141,18 +115,7 @@ impl Pipelines {
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
             ghost_depth: make.pipeline(&ghost_depth(&opaque)),
             ghost: make.pipeline(&ghost(&opaque)),
-            background: make.pipeline(&Spec {
-                label: "background",
-                module: &background,
-                vertex: "vs_background",
-                fragment: "fs_background",
-                buffers: &[],
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::Always,
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                culled: false,
-                ..opaque
-            }),
+            background: make.pipeline(&backdrop(&opaque, &background)),
             overlay_stroke: make.pipeline(&Spec {
                 label: "overlay stroke",
                 depth_compare: wgpu::CompareFunction::Always,
@@ -161,6 +124,65 @@ impl Pipelines {
             stroke: make.pipeline(&strokes),
             solid: make.pipeline(&opaque),
         }
+    }
+}
+
+/// Solids of the world.
+fn opaque<'a>(
+    module: &'a wgpu::ShaderModule,
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    into: Into,
+) -> Spec<'a> {
+    Spec {
+        label: "solid",
+        module,
+        vertex: "vs_solid",
+        fragment: "fs_solid",
+        buffers,
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        ink: Ink::Opaque,
+        depth_write: true,
+        depth_compare: wgpu::CompareFunction::Less,
+        depth_bias: 0,
+        into,
+        culled: true,
+    }
+}
+
+/// Lines that solids can hide.
+fn strokes<'a>(
+    opaque: &Spec<'a>,
+    module: &'a wgpu::ShaderModule,
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+) -> Spec<'a> {
+    Spec {
+        label: "stroke",
+        module,
+        vertex: "vs_stroke",
+        fragment: "fs_stroke",
+        buffers,
+        topology: wgpu::PrimitiveTopology::TriangleStrip,
+        ink: Ink::Translucent,
+        depth_write: false,
+        depth_compare: wgpu::CompareFunction::LessEqual,
+        culled: false,
+        ..*opaque
+    }
+}
+
+/// The background, behind everything.
+fn backdrop<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule) -> Spec<'a> {
+    Spec {
+        label: "background",
+        module,
+        vertex: "vs_background",
+        fragment: "fs_background",
+        buffers: &[],
+        depth_write: false,
+        depth_compare: wgpu::CompareFunction::Always,
+        topology: wgpu::PrimitiveTopology::TriangleStrip,
+        culled: false,
+        ..*opaque
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::generator::until;
 use crate::online::Online;
-use crate::online::enough::{Enough, Motion};
+use crate::online::information::{Enough, Motion};
 use crate::online::{Settings, replay};
 use haptics::device::Skill;
 use haptics::recording::{Recording, Task};

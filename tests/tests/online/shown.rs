@@ -1,7 +1,7 @@
 //! The motion that is named for a parameter shows it: whoever does it knows the parameter better than who goes on as before.
 
-use crate::online::enough::{Enough, Motion, Wanted};
 use crate::online::enough_for;
+use crate::online::information::{Enough, Motion, Wanted};
 use estimator::pipeline::{Analysis, Options, analyse};
 use haptics::device::Skill;
 use haptics::recording::{Channel, Recording, Task};

@@ -96,7 +96,7 @@ pub fn sentence(limits: &[Limit]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptics::servo::timing::Percentiles;
+    use haptics::servo::Percentiles;
 
     fn timing(rate_hz: f64, p99_s: f64, p999_s: f64) -> Timing {
         let lateness = Percentiles { p99_s, p999_s, ..Percentiles::default() };

@@ -8,7 +8,7 @@ use crate::ui::widgets::{compact, remark};
 use egui::{Align, Layout, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
 use estimator::training::definitions::Definition;
 use estimator::training::lesson::advice::shown;
-use estimator::training::lesson::grade::{Figure, Grade};
+use estimator::training::lesson::{Figure, Grade};
 use haptics::Vec2;
 use render::ColorRole;
 

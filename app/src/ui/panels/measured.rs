@@ -9,7 +9,7 @@ use crate::ui::trainer::{Trainer, Watch, watched_task};
 use crate::ui::widgets::{bar, card, compact, plain_card, remark, segmented};
 use egui::{Align, Layout, RichText, Ui};
 use estimator::estimate::Parameter;
-use estimator::online::enough::Enough;
+use estimator::online::information::Enough;
 use estimator::online::leak::Verdict;
 use estimator::online::{Event, Report};
 

@@ -1,8 +1,7 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
-use super::Panel;
-use super::boundaries;
 use super::rules::parameter;
+use super::{Panel, boundaries};
 use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
@@ -10,7 +9,7 @@ use crate::ui::theme::{self, palette, space, state_color, state_name};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
 use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use estimator::segment::score::Score;
+use estimator::segment::agreement::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 

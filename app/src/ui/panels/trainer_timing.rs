@@ -5,9 +5,9 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
-use haptics::servo::Snapshot;
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
-use haptics::servo::timing::{Percentiles, RECENT_S, Timing};
+use haptics::servo::timing::{RECENT_S, Timing};
+use haptics::servo::{Percentiles, Snapshot};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {

@@ -2,9 +2,9 @@
 
 use super::{cart, performed};
 use crate::ui::trainer::WorldChoice;
+use estimator::cancellation;
 use estimator::pipeline::{self, Prepared};
 use estimator::segment::Method;
-use estimator::wanted;
 use haptics::recording::Recording;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -19,7 +19,7 @@ fn fitted(recording: &Recording, shared: &Prepared, method: Method, wanted_for: 
     };
     let options = pipeline::Options { method, ..pipeline::Options::default() };
     let fit = || pipeline::analyse_prepared(std::slice::from_ref(recording), shared, &options);
-    let done = wanted::while_wanted(still, fit);
+    let done = cancellation::while_wanted(still, fit);
     (done.map(|found| format!("{:?}", found.expect("a fit").fit)), looks.get())
 }
 

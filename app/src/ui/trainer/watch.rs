@@ -5,7 +5,7 @@
 //! thread cannot take are dropped, and the estimator restarts its windows after the gap. With a manual clock everything
 //! happens at once, on one thread.
 
-use estimator::online::enough::Wanted;
+use estimator::online::information::Wanted;
 use estimator::online::{Online, Report, Settings};
 use haptics::recording::Task;
 use haptics::servo::TickRecord;

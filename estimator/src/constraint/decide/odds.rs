@@ -5,7 +5,7 @@
 //! `docs/constraints.md`.
 
 use super::super::noise::PathNoise;
-use super::{HINGE_M, Shape};
+use super::shape::{HINGE_M, Shape};
 
 /// Least posterior probability for a straight path of a whole motion.
 const STRAIGHT_WHOLE: f64 = 0.65;

@@ -1,6 +1,7 @@
 //! Numbers of a decided shape: the content of a constraint beside its kind.
 
-use super::{CLOSE_SHARE, COMPACT_NOISES, COMPACT_SHARE, GUIDE_ALONG, RIGID_N_M, Shape};
+use super::shape::Shape;
+use super::{CLOSE_SHARE, COMPACT_NOISES, COMPACT_SHARE, GUIDE_ALONG, RIGID_N_M};
 use crate::constraint::spline;
 use crate::constraint::yielding::{Manipulator, yielding};
 use crate::estimate::{Constraint, ConstraintKind, Guide, Leaning};

@@ -69,7 +69,11 @@ pub(super) fn existence(pressed: &Pressed<'_>, split: &Split, plane: &Plane) -> 
     }
     let (pushed, nothing) = (Group::of(&on)?, Group::of(&off)?);
     let rms = (push.iter().map(|f| f * f).sum::<f64>() / push.len() as f64).sqrt();
-    // Welch (1947): two groups of unlike scatter.
+    compared(&pushed, &nothing, rms)
+}
+
+/// The mean push on the plane against that off it: Welch (1947), two groups of unlike scatter. `rms`: of the push, N.
+fn compared(pushed: &Group, nothing: &Group, rms: f64) -> Option<Existence> {
     let variance = pushed.variance + nothing.variance;
     let freedom = variance * variance
         / (pushed.variance.powi(2) / (pushed.count - 1.0) + nothing.variance.powi(2) / (nothing.count - 1.0))

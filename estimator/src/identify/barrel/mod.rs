@@ -1,36 +1,31 @@
 //! A barrel of unknown contents, lifted by two fingers: its weight, width and stiffness, a leak, and a cable that holds
 //! it.
 //!
-//! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share is
-//! identifiable if the pads' own stiffness is stated. A leak and a drift of the sensors look alike while the barrel
-//! hangs; the free phases before and after tell them apart. The cable is searched for (`pull.rs`); a pull that turns as
-//! the barrel moves shows its anchor.
+//! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share shows where the
+//! pads' own stiffness is stated. A leak and a drift of the sensors look alike while it hangs; the free phases before and after
+//! tell them apart. The cable is searched for (`cable_force.rs`); where its pull turns as the barrel moves, it shows where it is tied.
 
 mod cable;
-mod holding;
-mod pull;
-mod report;
+mod cable_force;
+mod grip_phases;
+mod grip_rotation;
+pub(crate) mod report;
+mod sensor_zero;
 mod signals;
 mod slip;
-mod swing;
-mod wall;
-mod zero;
+mod wall_stiffness;
 
 use crate::estimate::{EstimateError, Fit};
 use crate::segment::{Method, Segmentation, Thresholds};
+use cable_force::{Pull, Rows};
+use grip_rotation::GripRotation;
 use haptics::Vec2;
 use haptics::recording::Recording;
-use pull::{Pull, Rows};
-use report::Seen;
+use report::{Seen, Taken};
+use sensor_zero::SensorZero;
 use signals::Signals;
-use swing::Swing;
-use wall::Grip;
-use zero::Zero;
+use wall_stiffness::Grip;
 
-/// The object's name in the results.
-pub const OBJECT: &str = "barrel";
-/// Object name of the cable that holds it.
-pub const CABLE: &str = "cable";
 /// Fewer rows while it hangs tell nothing.
 const LEAST_ROWS: usize = 12;
 
@@ -53,9 +48,9 @@ pub fn fit_by(
     let gravity = recording.meta.gravity();
     let give = grip.give_m_n();
     let [(give_x, error_x), (give_y, error_y)] = give;
-    let zero = Zero::at(&signals, middle_s(&signals, &hanging))?;
+    let zero = SensorZero::at(&signals, middle_s(&signals, &hanging))?;
     let usual = Vec2::new(give_x, give_y);
-    let swing = Swing::of(&signals, &hanging, usual)?;
+    let swing = GripRotation::of(&signals, &hanging, usual)?;
     let all = rows(&signals, &hanging, usual, &swing, &zero, gravity);
     let turned_m = hanging.iter().map(|i| swing.shift(*i).norm()).fold(0.0, f64::max);
     let pull = Pull::of(&all)?;
@@ -66,14 +61,15 @@ pub fn fit_by(
             let slack = |p: &Vec2| cable.stretch(*p).0 < -way_m.abs();
             let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
             let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
-            let zero = Zero::at(&signals, middle_s(&signals, hanging))?;
+            let zero = SensorZero::at(&signals, middle_s(&signals, hanging))?;
             let rows = rows(&signals, hanging, usual, &swing, &zero, gravity);
             let pull = Pull::without_cable(&rows)?;
             taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: Some(way_m), rows: hanging.len(), zero };
         } else {
             // A different give of the pads changes the place of the barrel, and so the estimate of the cable.
-            let pull_with =
-                |give: Vec2, swing: &Swing| Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity));
+            let pull_with = |give: Vec2, swing: &GripRotation| {
+                Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity))
+            };
             taken.others = vec![
                 pull_with(Vec2::new(give_x + error_x, give_y), &swing)?,
                 pull_with(Vec2::new(give_x, give_y + error_y), &swing)?,
@@ -95,25 +91,19 @@ pub fn fit_by(
     Ok((fit, signals.segmentation))
 }
 
-/// Estimates on which the report is based.
-struct Taken {
-    pull: Pull,
-    /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
-    others: Vec<Pull>,
-    /// Displacement of its middle from that of the fingers by turning in the grip, m.
-    turned_m: f64,
-    /// Slip of the barrel down in the grip while a cable pulled, m.
-    slipped_m: Option<f64>,
-    rows: usize,
-    zero: Zero,
-}
-
 fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
     samples.iter().map(|i| signals.time_s[*i]).sum::<f64>() / samples.len().max(1) as f64
 }
 
 /// The samples while it hangs, behind pads of this `give` along x and y, m/N for both fingers together.
-fn rows(signals: &Signals, hanging: &[usize], give: Vec2, swing: &Swing, zero: &Zero, gravity: f64) -> Rows {
+fn rows(
+    signals: &Signals,
+    hanging: &[usize],
+    give: Vec2,
+    swing: &GripRotation,
+    zero: &SensorZero,
+    gravity: f64,
+) -> Rows {
     let force = |i: &usize| signals.net_n[*i] - zero.net_n;
     Rows {
         time_s: hanging.iter().map(|i| signals.time_s[*i]).collect(),

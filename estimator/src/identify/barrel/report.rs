@@ -1,15 +1,20 @@
 //! Report of a barrel's parameters from its recording, as a fit.
 
 use super::cable::Cable;
-use super::pull::{GROWTH, MASS, Pull, STIFFNESS};
+use super::cable_force::{GROWTH, MASS, Pull, STIFFNESS};
+use super::sensor_zero::SensorZero;
 use super::signals::Signals;
-use super::wall::Grip;
-use super::{OBJECT, Taken};
+use super::wall_stiffness::Grip;
 use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
+
+/// The object's name in the results.
+pub(crate) const OBJECT: &str = "barrel";
+/// Object name of the cable that holds it.
+pub(crate) const CABLE: &str = "cable";
 
 /// Width of a barrel whose sides' give could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -252,4 +257,17 @@ impl Seen<'_> {
         let how = "largest ratio of vertical to horizontal tip force while held; true friction is at least this";
         self.given(OBJECT, "friction_lower_bound", ((largest - error).max(0.0), error), how)
     }
+}
+
+/// Estimates on which the report is based.
+pub(super) struct Taken {
+    pub(super) pull: Pull,
+    /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
+    pub(super) others: Vec<Pull>,
+    /// Displacement of its middle from that of the fingers by turning in the grip, m.
+    pub(super) turned_m: f64,
+    /// Slip of the barrel down in the grip while a cable pulled, m.
+    pub(super) slipped_m: Option<f64>,
+    pub(super) rows: usize,
+    pub(super) zero: SensorZero,
 }

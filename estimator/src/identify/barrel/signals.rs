@@ -2,8 +2,7 @@
 //! in which it was held.
 
 use crate::estimate::EstimateError;
-use crate::segment::definition::Definition;
-use crate::segment::subtasks::MOST_CARRIES;
+use crate::segment::definition::{Definition, MOST_CARRIES};
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by};
 use crate::signal::noise::{quantum, resolution_error, white_noise};

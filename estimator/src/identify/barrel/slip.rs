@@ -6,7 +6,7 @@
 //! that cancels.
 
 use super::signals::Signals;
-use super::wall::weight_n;
+use super::wall_stiffness::weight_n;
 
 /// Least way of a slip, m: pads creep, and a floor is not quite even.
 const CREEP_M: f64 = 4e-5;

@@ -1,6 +1,6 @@
 //! Change of a block's weight while it was carried: a leak or the sensors (see [`crate::online::leak`]).
 
-use super::Blocks;
+use super::signals::Blocks;
 use crate::estimate::Parameter;
 use crate::online::block::leak_parameter;
 use crate::online::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
@@ -20,7 +20,7 @@ pub(super) fn leak(blocks: &Blocks<'_>, number: usize, count: usize, masses_kg: 
     let rows = carried(blocks, number);
     let answer = judge(blocks, &rows, number, count, masses_kg)?;
     let changes = answer.verdict != Verdict::Steady;
-    changes.then(|| leak_parameter(&super::object(number), &answer, rows.len()))
+    changes.then(|| leak_parameter(&super::signals::object(number), &answer, rows.len()))
 }
 
 fn carried(blocks: &Blocks<'_>, number: usize) -> Vec<usize> {

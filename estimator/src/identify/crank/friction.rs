@@ -1,10 +1,9 @@
 //! Weighted regression of the tangential force on the laws, and the identifiability of their parameters.
 
-use super::SIGNIFICANT;
-use super::geometry::Geometry;
-use super::held::Held;
+use super::geometry::{Geometry, SIGNIFICANT};
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
-use super::motion::{Along, Rows};
+use super::path_coordinate::{Along, Rows};
+use super::signals::Held;
 use crate::estimate::{Correlated, EstimateError, Parameter, Quality};
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::LinearFit;

@@ -1,47 +1,49 @@
 //! Circle and give of the pads, from the radius residual.
 
-use super::SIGNIFICANT;
-use super::held::Held;
+use super::signals::Held;
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{Values, least_squares, least_squares_values};
 use crate::signal::task::half_width;
 use haptics::Vec2;
 
+/// A radial stiffness is reported when its give is this many standard errors above zero.
+pub(crate) const SIGNIFICANT: f64 = 3.0;
+
 /// Circle and give of the pads.
-pub(super) struct Geometry {
-    pub(super) center_m: Vec2,
-    pub(super) radius_m: f64,
+pub(crate) struct Geometry {
+    pub(crate) center_m: Vec2,
+    pub(crate) radius_m: f64,
     /// Displacement of the tips against the handle per force, x and y, m/N.
-    pub(super) give_m_per_n: Vec2,
+    pub(crate) give_m_per_n: Vec2,
     /// Its standard errors, m/N.
-    pub(super) give_errors: Vec2,
+    pub(crate) give_errors: Vec2,
     /// Standard errors of centre x, centre y, radius, m.
-    pub(super) errors_m: [f64; 3],
+    pub(crate) errors_m: [f64; 3],
     /// The errors of centre, radius and gives by resampling; `None` where the turning is too short.
-    pub(super) resampled: Option<Drawn>,
+    pub(crate) resampled: Option<Drawn>,
     /// Radial stiffness from one common give.
-    pub(super) stiffness: Option<Stiffness>,
-    pub(super) rms_m: f64,
+    pub(crate) stiffness: Option<Stiffness>,
+    pub(crate) rms_m: f64,
 }
 
 /// Standard errors by resampling, as in [`Geometry`].
 #[derive(Clone, Copy)]
-pub(super) struct Drawn {
-    pub(super) errors_m: [f64; 3],
-    pub(super) give_errors: Vec2,
+pub(crate) struct Drawn {
+    pub(crate) errors_m: [f64; 3],
+    pub(crate) give_errors: Vec2,
 }
 
 /// Radial stiffness, N/m, with its standard error by covariance and by resampling.
 #[derive(Clone, Copy)]
-pub(super) struct Stiffness {
-    pub(super) n_m: f64,
-    pub(super) error: f64,
-    pub(super) resampled: Option<f64>,
+pub(crate) struct Stiffness {
+    pub(crate) n_m: f64,
+    pub(crate) error: f64,
+    pub(crate) resampled: Option<f64>,
 }
 
 /// Circle through the positions: Kåsa's linear fit as a start, then Gauss–Newton on the radius residual with the pads' give.
-pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
+pub(crate) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
     // Smoothed samples closer than half their window say nothing new.
     let rows: Vec<usize> = held.turning.iter().copied().step_by(half_width(&held.time_s)).collect();
     let points: Vec<Vec2> = rows.iter().map(|i| held.position()[*i]).collect();

@@ -1,10 +1,9 @@
 //! Parameters, constraint and warnings in the words of a fit.
 
-use super::SIGNIFICANT;
 use super::friction::Friction;
-use super::geometry::{Drawn, Geometry};
-use super::held::{Held, Smooth};
+use super::geometry::{Drawn, Geometry, SIGNIFICANT};
 use super::laws::WEIGHT;
+use super::signals::{Held, Smooth};
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};

@@ -1,10 +1,10 @@
 //! Motion without a force column: nothing drives the mechanism, so only the ratios of its parameters are identifiable.
 //! One known parameter sets the scale of all.
 
+use super::parameters::{CLOCK_TOLERANCE, Known, Term};
 use super::regress::{System, shown};
 use super::report::{OBJECT, PHASE, push_known};
 use super::signals::{Piece, Raw};
-use super::terms::{CLOCK_TOLERANCE, Known, Term};
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{LinearFit, least_squares};
@@ -77,7 +77,7 @@ pub fn fit(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, Estimat
     let samples = pieces.iter().map(|p| p.usable.iter().filter(|u| **u).count()).sum();
     let mut ratios = ratios(pieces, known, coordinate)?;
     if ratios.fit.identified.iter().all(|i| *i)
-        && let Some(refined) = super::swing::refine(raws, pieces, &ratios.terms, &ratios.fit.values)
+        && let Some(refined) = super::pendulum::refine(raws, pieces, &ratios.terms, &ratios.fit.values)
     {
         (ratios.fit, ratios.drawn) = refined;
     }

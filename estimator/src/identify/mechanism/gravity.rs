@@ -3,9 +3,9 @@
 //! All models are judged with the noise of the richest one. Without gravity, its effect is a slow residual, which looks
 //! like few independent samples and hides the very effect in question (`facts/diagnosis.md`, step 5).
 
+use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
-use super::terms::{Known, Term};
 use crate::estimate::EstimateError;
 use crate::identify::linear::LinearFit;
 

@@ -6,18 +6,18 @@
 //! clock, which shows its constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
 mod chain;
-mod constant;
-mod even;
 mod free;
 mod gravity;
-mod moving;
+mod motion_segments;
+mod offset;
+mod parameters;
 pub mod path;
+mod pendulum;
 mod regress;
 mod report;
+mod resampling;
 mod signals;
 mod surface;
-mod swing;
-mod terms;
 mod transmission;
 mod world;
 
@@ -33,11 +33,10 @@ use gravity::Gravity;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
+use parameters::{CLOCK_TOLERANCE, Known, Term};
 use regress::{Shown, System, shown};
 use report::Material;
-pub use signals::Piece;
-pub use signals::Raw;
-use terms::{CLOCK_TOLERANCE, Known, Term};
+pub use signals::{Piece, Raw};
 
 /// Share of each recording's end that the quality figures hold out.
 const HELD_OUT: f64 = 0.3;
@@ -110,7 +109,7 @@ fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Resu
 
 /// Motion that nothing drives: without its standstills, if enough motion remains.
 fn freely(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
-    let (parts, stood) = moving::moving(raws);
+    let (parts, stood) = motion_segments::split_by_motion(raws);
     if stood {
         let of_parts: Vec<Vec<Piece>> = parts.iter().filter_map(|raw| signals::pieces(raw, "").ok()).collect();
         if of_parts.len() == parts.len() {
@@ -196,7 +195,7 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     let coordinate = raws[0].coordinate;
     let base = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset];
     let mut seen = shown(pieces, known, &base, Term::Coulomb);
-    if let Some(nothing) = constant::told_nothing(raws, pieces, &seen, known) {
+    if let Some(nothing) = offset::told_nothing(raws, pieces, &seen, known) {
         return Ok(nothing);
     }
     let can_hang =

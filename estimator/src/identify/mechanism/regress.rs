@@ -1,7 +1,7 @@
 //! The fit itself: stacked segments, effective-variance weights, and the terms that the motion can show.
 
+use super::parameters::{Known, Term};
 use super::signals::{Piece, StateNoise};
-use super::terms::{Known, Term};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
 use nalgebra::DMatrix;

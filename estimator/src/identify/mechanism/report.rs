@@ -1,8 +1,8 @@
 //! From a solved system to the named parameters of the result.
 
 use super::gravity::Gravity;
+use super::parameters::{Known, Term};
 use super::regress::Shown;
-use super::terms::{Known, Term};
 use crate::estimate::{Correlated, Fit, Parameter};
 use crate::identify::bootstrap::Resampled;
 use crate::identify::linear::LinearFit;

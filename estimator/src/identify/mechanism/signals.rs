@@ -1,6 +1,6 @@
 //! From a recording to the coordinate of a mechanism, its derivatives and the force along it: one zero-phase filter for all.
 
-use super::even::Even;
+use super::resampling::Resampled;
 use crate::estimate::EstimateError;
 use crate::identify::linear::COLUMN_NOISE_UNCERTAINTY;
 use crate::signal::derive::{central_differences, stencil};
@@ -202,7 +202,7 @@ fn too_few(name: &str, samples: usize) -> EstimateError {
 
 fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
     let time = &raw.time_s[first..end];
-    let even = Even::new(time, period);
+    let even = Resampled::new(time, period);
     let onto = |values: &[f64]| even.onto(&values[first..end]);
     let position = onto(&raw.position);
     let measured_rate = raw.rate.as_ref().map(|r| Noisy { values: onto(r), noise: even.noise(&r[first..end]) });

@@ -96,7 +96,7 @@ fn together(values: &[Value]) -> Option<Value> {
     let scatter = (values.iter().map(|v| (v.best - plain).powi(2)).sum::<f64>() / (n * (n - 1.0)).max(1.0)).sqrt();
     if n > 1.0 && scatter > sum.powf(-0.5) {
         // Recordings that differ by more than their errors count alike.
-        let few = crate::identify::long_run::inflation(n - 1.0).sqrt();
+        let few = crate::identify::long_run_variance::inflation(n - 1.0).sqrt();
         return Some(Value { best: plain, error: scatter * few, resampled: None });
     }
     // The same weighted mean with each one's own resampled error.

@@ -1,8 +1,9 @@
 //! Channels of a needle recording for a hidden Markov model: depth beyond the surface, force, speed inwards, and the
 //! deficit of the force against an untouched sheet.
 
+use super::sheet::{LEAST_LOADING, Sheet};
 use super::strokes::{self, quiet_force};
-use super::{LEAST_LOADING, Sheet, phases, signals};
+use super::{phases, signals};
 use crate::estimate::{EstimateError, StrokePhase};
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, times};

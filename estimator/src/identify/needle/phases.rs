@@ -1,13 +1,13 @@
 //! Phases of the needle, and stiffness of the sheet against its history (thesis, figures 5.13 and 5.14); and a test for
 //! a sheet at all: force along the motion that nothing else explains.
 
-use super::loading::Loading;
+use super::loading_curve::Loading;
 use super::signals::Along;
 use super::strokes::{Push, quiet_force};
 use crate::constraint::existence::FALSE_ALARMS;
 use crate::estimate::{Existence, Phase, StrokePhase};
 use crate::identify::linear::least_squares;
-use crate::identify::long_run::student_quantile_975;
+use crate::identify::long_run_variance::student_quantile_975;
 use crate::signal::task::{smooth, times};
 use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};

@@ -7,19 +7,19 @@
 //! knob's path is taken as an arc about a lever twice as long as its travel, its axis below; the effect of a straighter
 //! path joins the errors of the forces.
 
-mod reading;
+mod assumptions;
 mod report;
 mod signals;
-mod way;
+mod throw_curve;
 
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::{Resampled, median_error_of_few};
 use crate::identify::pads::EVEN;
+use assumptions::Assumptions;
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
-use reading::Reading;
 use signals::Signals;
-use way::{Stop, Way};
+use throw_curve::{Stop, Throw};
 
 /// The object's name in the results.
 pub const OBJECT: &str = "switch";
@@ -46,14 +46,14 @@ const PEAK_SEEN: f64 = 4.0;
 /// Fits one recording.
 pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     let signals = Signals::of(recording)?;
-    let rough = Curves::of(&signals, &Reading::default())?;
+    let rough = Curves::of(&signals, &Assumptions::default())?;
     let give_m_n = rough.give_m_n();
     let travel_m = rough.travel_m().map_or(signals.range_m, |(travel_m, _)| travel_m);
     let bend_1_m = 1.0 / (LEVER_TRAVELS * travel_m);
-    let reading = Reading { give_m_n: PAD_SHARE.0 * give_m_n.map_or(0.0, |g| g.0), bend_1_m };
-    let softer = Reading { give_m_n: reading.give_m_n * (1.0 + PAD_SHARE.1 / PAD_SHARE.0), ..reading };
-    let straighter = Reading { bend_1_m: (1.0 - LEVER_SPREAD) * bend_1_m, ..reading };
-    let of = |reading: &Reading| Curves::of(&signals, reading);
+    let reading = Assumptions { give_m_n: PAD_SHARE.0 * give_m_n.map_or(0.0, |g| g.0), bend_1_m };
+    let softer = Assumptions { give_m_n: reading.give_m_n * (1.0 + PAD_SHARE.1 / PAD_SHARE.0), ..reading };
+    let straighter = Assumptions { bend_1_m: (1.0 - LEVER_SPREAD) * bend_1_m, ..reading };
+    let of = |reading: &Assumptions| Curves::of(&signals, reading);
     let captured = Captured {
         curves: of(&reading)?,
         others: [of(&softer)?, of(&straighter)?],
@@ -70,10 +70,10 @@ pub fn height_m(recording: &Recording) -> Option<f64> {
 
 /// Estimates in both directions, to the right first, with one reading of the samples.
 struct Curves {
-    reading: Reading,
+    reading: Assumptions,
     /// Middle of the seen range, m in the world.
     top_m: f64,
-    ways: [Option<Way>; 2],
+    ways: [Option<Throw>; 2],
     stops: [Option<Stop>; 2],
     /// Width of the knob between the tips, m.
     width_m: Option<f64>,
@@ -93,17 +93,17 @@ struct Captured {
 }
 
 impl Curves {
-    fn of(signals: &Signals, reading: &Reading) -> Result<Self, EstimateError> {
+    fn of(signals: &Signals, reading: &Assumptions) -> Result<Self, EstimateError> {
         let seen = [signals.seen(0, reading), signals.seen(1, reading)];
-        let peaked = |w: &Way| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
-        let ways = [way::way(&seen[0])?.filter(peaked), way::way(&seen[1])?.filter(peaked)];
+        let peaked = |w: &Throw| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
+        let ways = [throw_curve::throw(&seen[0])?.filter(peaked), throw_curve::throw(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
             reading: *reading,
             top_m: signals.middle_m,
             ways,
             resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
-            stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
+            stops: [throw_curve::stop(&seen[0])?, throw_curve::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
             width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),
         })
@@ -161,11 +161,11 @@ impl Curves {
         self.friction_by(|way| way.resampled.as_ref().map(Resampled::covariance))
     }
 
-    fn friction_by(&self, covariance: impl Fn(&Way) -> Option<&DMatrix<f64>>) -> Option<(f64, f64)> {
+    fn friction_by(&self, covariance: impl Fn(&Throw) -> Option<&DMatrix<f64>>) -> Option<(f64, f64)> {
         let ([Some(there), Some(back)], Some(_)) = (&self.ways, self.width_m) else { return None };
-        let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2];
+        let gone = |w: &Throw| w.values[3] - w.values[0] / w.values[2];
         let middle = 0.5 * (gone(there) - gone(back));
-        let error = |way: &Way, at_m: f64| Some(way.falling_error_n(at_m, covariance(way)?));
+        let error = |way: &Throw, at_m: f64| Some(way.falling_error_n(at_m, covariance(way)?));
         let errors = error(there, middle)?.hypot(error(back, -middle)?);
         let slope = 0.5 * (there.values[2] + back.values[2]).abs();
         let value = 0.5 * (there.falling_n(middle) + back.falling_n(-middle));

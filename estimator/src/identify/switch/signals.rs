@@ -4,7 +4,7 @@
 //! Fingers push and cannot pull. The one behind the knob presses it up to the top of the curve and follows it down until the force
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
-use super::reading::Reading;
+use super::assumptions::Assumptions;
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
 use crate::signal::derive::savitzky_golay;
@@ -147,7 +147,7 @@ impl Signals {
     }
 
     /// All strokes in a direction: 0 to the right, 1 to the left.
-    pub fn seen(&self, side: usize, reading: &Reading) -> Seen {
+    pub fn seen(&self, side: usize, reading: &Assumptions) -> Seen {
         let (finger, direction) = (&self.fingers[side], [1.0, -1.0][side]);
         let half_m = 0.5 * self.width_m(reading.give_m_n).unwrap_or(0.0);
         let sample = |i: usize| {

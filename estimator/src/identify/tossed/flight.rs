@@ -64,7 +64,7 @@ impl Fall {
             by_sample(&blocks, &values, &inverse)?
         };
         let error = covariance[(2, 2)].max(0.0).sqrt();
-        let few = crate::identify::long_run::inflation(free.max(1.0)).sqrt();
+        let few = crate::identify::long_run_variance::inflation(free.max(1.0)).sqrt();
         (error.is_finite() && !flights.is_empty()).then(|| Self {
             down_m_s2: -values[2],
             error_m_s2: error * few,

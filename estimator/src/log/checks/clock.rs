@@ -1,7 +1,7 @@
 //! Gaps, dropped samples and jumps of the clock.
 
+use super::findings::{is_position, limited, place};
 use super::profile::thinned;
-use super::{is_position, limited, place};
 use haptics::recording::{Recording, Span, Warning};
 
 /// A step of more than this many periods is a gap, below it a few samples were dropped.
@@ -40,59 +40,8 @@ pub fn gaps(time_s: &[f64]) -> Vec<usize> {
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
     let Some(time) = &recording.time_s else { return Vec::new() };
     let Some((median, high)) = usual_steps(time) else { return Vec::new() };
-    // On an uneven clock only a step far outside its own spread counts.
-    let even = high <= 1.3 * median;
-    let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
-    let gap_above = (GAP_PERIODS * median).max(5.0 * high);
-    let (mut gaps, mut jumps, mut dropped) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut lost, mut longest) = (0.0, 0.0_f64);
-    for (i, pair) in time.windows(2).enumerate() {
-        let step = pair[1] - pair[0];
-        if step <= dropped_above.min(gap_above) {
-            continue;
-        }
-        let span = Span { first: i, end: i + 2 };
-        if step > gap_above && continues(recording, i, median, step) {
-            jumps.push(span);
-        } else if step > gap_above {
-            longest = longest.max(step);
-            gaps.push(span);
-        } else {
-            lost += (step / median).round() - 1.0;
-            dropped.push(span);
-        }
-    }
-    let first = |spans: &[Span]| spans.first().map_or(String::new(), |s| place(recording, s.first));
-    let texts = [
-        (
-            "gap",
-            format!(
-                "{} gap(s) in the time, the first after {}, up to {longest:.3} s long; split the recording there",
-                gaps.len(),
-                first(&gaps)
-            ),
-            gaps,
-        ),
-        (
-            "clock-jump",
-            format!(
-                "the clock jumps {} time(s), first after {}, while the signals go on smoothly; check the time stamps",
-                jumps.len(),
-                first(&jumps)
-            ),
-            jumps,
-        ),
-        (
-            "dropped-samples",
-            format!(
-                "{lost:.0} sample(s) dropped in {} place(s), first after {}; rates are taken across them",
-                dropped.len(),
-                first(&dropped)
-            ),
-            dropped,
-        ),
-    ];
-    texts
+    LongSteps::of(recording, time, median, high)
+        .texts(recording)
         .into_iter()
         .filter(|(_, _, spans)| !spans.is_empty())
         .map(|(kind, text, spans)| Warning {
@@ -102,6 +51,67 @@ pub fn warnings(recording: &Recording) -> Vec<Warning> {
             text,
         })
         .collect()
+}
+
+/// Steps of a clock that are longer than usual, by their reason.
+#[derive(Default)]
+struct LongSteps {
+    gaps: Vec<Span>,
+    jumps: Vec<Span>,
+    dropped: Vec<Span>,
+    /// Samples that were dropped.
+    lost: f64,
+    /// Length of the longest gap, s.
+    longest_s: f64,
+}
+
+impl LongSteps {
+    fn of(recording: &Recording, time: &[f64], median: f64, high: f64) -> Self {
+        // On an uneven clock only a step far outside its own spread counts.
+        let even = high <= 1.3 * median;
+        let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
+        let gap_above = (GAP_PERIODS * median).max(5.0 * high);
+        let mut found = Self::default();
+        for (i, pair) in time.windows(2).enumerate() {
+            let step = pair[1] - pair[0];
+            if step <= dropped_above.min(gap_above) {
+                continue;
+            }
+            let span = Span { first: i, end: i + 2 };
+            if step > gap_above && continues(recording, i, median, step) {
+                found.jumps.push(span);
+            } else if step > gap_above {
+                found.longest_s = found.longest_s.max(step);
+                found.gaps.push(span);
+            } else {
+                found.lost += (step / median).round() - 1.0;
+                found.dropped.push(span);
+            }
+        }
+        found
+    }
+
+    /// Kind, sentence and spans of each reason.
+    fn texts(self, recording: &Recording) -> [(&'static str, String, Vec<Span>); 3] {
+        let Self { gaps, jumps, dropped, lost, longest_s } = self;
+        let first = |spans: &[Span]| spans.first().map_or(String::new(), |s| place(recording, s.first));
+        let gap = format!(
+            "{} gap(s) in the time, the first after {}, up to {longest_s:.3} s long; split the recording there",
+            gaps.len(),
+            first(&gaps)
+        );
+        let jump = format!(
+            "the clock jumps {} time(s), first after {}, while the signals go on smoothly; check the time stamps",
+            jumps.len(),
+            first(&jumps)
+        );
+        let drop = format!(
+            "{lost:.0} sample(s) dropped in {} place(s), first after {}; rates are taken across them",
+            dropped.len(),
+            first(&dropped)
+        );
+        [("gap", gap, gaps), ("clock-jump", jump, jumps), ("dropped-samples", drop, dropped)]
+    }
 }
 
 /// True when positions that move pass from sample `i` to the next as if only one period had gone by: the clock jumped, not

@@ -1,7 +1,7 @@
 //! Channels that stand still, stand at a limit, or move in coarse steps.
 
+use super::findings::{about, is_position, limited, place};
 use super::profile::{Profile, holds};
-use super::{about, is_position, limited, place};
 use crate::log::units::{self, Dimension};
 use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::recording::{Channel, Recording, Span, Warning};

@@ -6,6 +6,7 @@
 //! measures both.
 
 mod clock;
+mod findings;
 mod held;
 mod profile;
 mod repeats;
@@ -16,13 +17,11 @@ pub use clock::{gap_above_s, gaps};
 pub use repeats::copied;
 
 use super::units;
-use haptics::recording::{Channel, Recording, Span, Warning};
+use haptics::recording::{Channel, Recording, Warning};
 use profile::Profile;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// No more spans than this are listed for faults that are no reason to leave samples out.
-const MAX_SPANS: usize = 200;
 /// Recordings with fewer values than this are looked at by one thread.
 const SMALL: usize = 200_000;
 
@@ -88,28 +87,6 @@ fn parallel<T: Send>(count: usize, values: usize, work: impl Fn(usize) -> T + Sy
     let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     done.sort_by_key(|&(i, _)| i);
     done.into_iter().map(|(_, result)| result).collect()
-}
-
-/// A warning about one channel.
-fn about(kind: &str, channel: &Channel, spans: Vec<Span>, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: Some(channel.name.clone()), spans, text }
-}
-
-/// Place of a sample, for people.
-fn place(recording: &Recording, sample: usize) -> String {
-    match recording.time_s.as_ref().and_then(|t| t.get(sample)) {
-        Some(time) => format!("{time:.3} s (sample {sample})"),
-        None => format!("sample {sample}"),
-    }
-}
-
-fn limited(mut spans: Vec<Span>) -> Vec<Span> {
-    spans.truncate(MAX_SPANS);
-    spans
-}
-
-fn is_position(channel: &Channel) -> bool {
-    units::is_program_name(&channel.name) && matches!(channel.unit.as_str(), "m" | "rad")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Rows that were written twice, and channels that are a copy of another one.
 
+use super::findings::{limited, place};
 use super::profile::{Profile, holds};
-use super::{limited, place};
 use crate::log::plan::Plan;
 use crate::log::units;
 use haptics::recording::{Channel, Recording, Span, Warning};

@@ -1,7 +1,7 @@
 //! Values that no hand reaches, and single samples far from their neighbours.
 
+use super::findings::{about, is_position, limited, place};
 use super::profile::Profile;
-use super::{about, is_position, limited, place};
 use crate::log::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 

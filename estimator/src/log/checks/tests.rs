@@ -1,6 +1,7 @@
 //! Each fault once, and signals that must not be taken for one.
 
 use super::*;
+use haptics::recording::Span;
 
 fn channel(name: &str, values: Vec<f64>) -> Channel {
     let unit = units::split(name).map_or(String::new(), |(_, u)| u.si.to_owned());

@@ -1,6 +1,6 @@
 //! Some rows at a time with vector instructions: taken apart first, rounded then. Two short loops are faster than one long one.
 
-use super::plain::{BATCH, is_skippable};
+use super::cells::{BATCH, is_skippable};
 use super::simd;
 use crate::log::plan::Use;
 

@@ -2,6 +2,9 @@
 
 use memchr::{memchr, memchr2};
 
+/// Rows that are read before they are distributed to the columns.
+pub const BATCH: usize = 64;
+
 /// A number from the bytes of a cell; a decimal comma counts where the comma is not the delimiter. NaN and infinities come
 /// back as such. Correctly rounded.
 pub fn number(cell: &[u8], delimiter: u8) -> Option<f64> {
@@ -131,6 +134,11 @@ pub fn number_ahead(bytes: &[u8], at: usize, delimiter: u8) -> Option<(f64, usiz
 #[inline]
 pub fn length_ahead(bytes: &[u8], delimiter: u8) -> usize {
     memchr2(delimiter, b'\n', bytes).unwrap_or(bytes.len())
+}
+
+/// True for a cell that need not be read: no quote hides a delimiter, and it starts no comment.
+pub fn is_skippable(cell: &[u8]) -> bool {
+    cell.first() != Some(&b'#') && memchr(b'"', cell).is_none()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Parts of a table put together in the order of the file.
 
-use super::Dialect;
+use super::dialect::Dialect;
 use super::part::{Fault, Part};
 use crate::log::errors::LogError;
 use crate::log::pages;

@@ -8,6 +8,7 @@
 mod batch;
 mod blocks;
 mod cells;
+mod dialect;
 mod join;
 mod part;
 mod plain;
@@ -21,6 +22,7 @@ use super::table::Table;
 use super::watch::Watch;
 use blocks::{BLOCK_BYTES, Blocks, Stop};
 use cells::{Cells, number, record_end};
+use dialect::Dialect;
 use join::Join;
 use part::{Layout, Part};
 use std::fs::File;
@@ -35,18 +37,6 @@ const SNIFF_BYTES: usize = 1 << 16;
 const MAX_THREADS: usize = 8;
 /// Parts that may wait for an earlier one before a thread pauses.
 const MAX_WAITING: usize = 16;
-
-/// Properties of a file told by its first bytes.
-#[derive(Debug)]
-pub struct Dialect {
-    delimiter: u8,
-    /// Column names as they stand in the file, trimmed.
-    pub headers: Vec<String>,
-    /// Start of the first row, bytes.
-    start: u64,
-    /// Line of the first row, from 1.
-    line: u64,
-}
 
 /// Looks at the beginning of a file; an error when it cannot be a table.
 pub fn sniff(path: &Path) -> Result<Dialect, LogError> {

@@ -1,13 +1,9 @@
 //! Rows that hold nothing but plain numbers where numbers belong, straight into their columns.
 
-use super::cells::{length_ahead, number_ahead};
+use super::cells::{BATCH, is_skippable, length_ahead, number_ahead};
 #[cfg(target_arch = "x86_64")]
 use super::{batch::Batch, simd};
 use crate::log::plan::Use;
-use memchr::memchr;
-
-/// Rows that are read before they are distributed to the columns.
-pub const BATCH: usize = 64;
 
 /// State for reading plain rows.
 #[derive(Debug)]
@@ -163,11 +159,6 @@ impl<'a> Plain<'a> {
             }
         }
     }
-}
-
-/// True for a cell that need not be read: no quote hides a delimiter, and it starts no comment.
-pub fn is_skippable(cell: &[u8]) -> bool {
-    cell.first() != Some(&b'#') && memchr(b'"', cell).is_none()
 }
 
 #[cfg(test)]

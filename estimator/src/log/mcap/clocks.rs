@@ -1,8 +1,9 @@
 //! Clock of the table, and resampling of topics with different clocks onto it.
 
 use super::names::{self, Name};
+use super::resample;
+use super::source::{Source, note};
 use super::topic::Topic;
-use super::{Source, note, resample};
 use crate::log::errors::LogError;
 use crate::log::raw::{Cells, Raw};
 use haptics::recording::{Meta, Warning};

@@ -5,12 +5,14 @@ mod cdr;
 mod clocks;
 mod json;
 mod lengths;
+mod metadata;
 mod names;
 mod protobuf;
 pub mod records;
 mod resample;
 mod rosmsg;
 mod schema;
+mod source;
 pub mod stream;
 mod topic;
 pub mod write;
@@ -21,19 +23,12 @@ use super::raw::{Cells, Raw};
 use super::watch::Watch;
 use ::mcap::records::{Channel, Record};
 use haptics::recording::{Meta, Warning};
+use metadata::{CLOCKLESS, COLUMNS, METADATA, SIDECAR, STREAMED};
 use records::{End, Event};
-use std::collections::{BTreeMap, HashMap};
+use source::{Decoder, Source, note};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use topic::Topic;
-
-/// Name of the metadata record in which our own files carry their sidecar, and key of its text.
-pub(in crate::log) const METADATA: &str = "touchstone";
-pub(in crate::log) const SIDECAR: &str = "sidecar";
-/// Key that says that the file was written block by block while recording.
-pub(in crate::log) const STREAMED: &str = "streamed";
-/// Keys in a channel's metadata: our column names by field, and whether the rows have a clock.
-pub(in crate::log) const COLUMNS: &str = "touchstone.columns";
-pub(in crate::log) const CLOCKLESS: &str = "touchstone.clockless";
 
 /// Memory that the table may take in any case, bytes.
 const TABLE_BYTES: u64 = 256 << 20;
@@ -44,28 +39,6 @@ const TABLE_TIMES_FILE: u64 = 32;
 const CHECK_EVERY: u64 = 1024;
 /// Number of messages after which the decoded values are shown.
 const SHOW_EVERY: u64 = 8192;
-
-/// Decoder of the messages of a channel.
-enum Decoder {
-    Json,
-    Protobuf(Box<protobuf::Shape>),
-    Cdr(Box<rosmsg::Definitions>),
-    /// They are not, and why.
-    None(String),
-}
-
-/// One topic of the file.
-struct Source {
-    name: String,
-    decoder: Decoder,
-    topic: Topic,
-    messages: u64,
-    /// Our own column names by field, in files that we wrote.
-    own: Option<HashMap<String, String>>,
-    clockless: bool,
-    /// Rows handed to the preview.
-    shown: usize,
-}
 
 /// Everything that was read.
 pub struct Log {
@@ -132,11 +105,6 @@ impl Log {
         let raw = clocks::one_table(sources, meta, &mut notes, &self.path)?;
         Ok((raw, notes))
     }
-}
-
-/// A warning about the file as a whole.
-fn note(kind: &str, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
 }
 
 struct Reading<'a> {
@@ -292,16 +260,6 @@ impl<'a> Reading<'a> {
         }
         Ok(())
     }
-}
-
-/// Metadata of a channel of ours.
-fn channel_metadata(columns: &BTreeMap<String, String>, clockless: bool) -> BTreeMap<String, String> {
-    let names = serde_json::to_string(columns).unwrap_or_default(); // a map of texts is always JSON
-    let mut metadata = BTreeMap::from([(COLUMNS.to_owned(), names)]);
-    if clockless {
-        metadata.insert(CLOCKLESS.to_owned(), "true".to_owned());
-    }
-    metadata
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From topics and fields to column names.
 
-use super::Source;
+use super::source::Source;
 use crate::log::units;
 use std::collections::HashMap;
 

@@ -1,8 +1,7 @@
 //! The protobuf message that a row of ours is, with its descriptor and its encoding.
 
-use crate::log::write::Value;
-use prost_reflect::prost::Message as _;
-use prost_reflect::prost::encoding;
+use crate::log::rows::Value;
+use prost_reflect::prost::{Message as _, encoding};
 use prost_reflect::prost_types::field_descriptor_proto::{Label, Type};
 use prost_reflect::prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 use std::collections::BTreeMap;

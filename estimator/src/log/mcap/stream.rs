@@ -1,9 +1,11 @@
 //! A recording that grows on the disk, block by block, and outlives the process that writes it.
 
+use super::metadata::STREAMED;
+use super::records;
 use super::write::{Sink, metadata};
-use super::{STREAMED, records};
 use crate::log::errors::LogError;
-use crate::log::write::{Attachment, Value, portable_meta};
+use crate::log::rows::{Attachment, Value};
+use crate::log::sidecar::portable_meta;
 use ::mcap::McapError;
 use haptics::recording::Meta;
 use std::collections::BTreeMap;

@@ -1,10 +1,11 @@
 //! MCAP out: one topic of protobuf messages, one a sample, that Foxglove, PlotJuggler and Rerun open, and that reads back
 //! to the same bits.
 
+use super::metadata::{METADATA, SIDECAR, STREAMED, channel_metadata};
 use super::schema::{self, RowSchema};
-use super::{METADATA, SIDECAR, STREAMED, channel_metadata};
 use crate::log::errors::LogError;
-use crate::log::write::{Attachment, Value, cell, columns, log_times_ns, not_finite, portable_meta};
+use crate::log::rows::{Attachment, Value, cell, columns, log_times_ns, not_finite};
+use crate::log::sidecar::portable_meta;
 use ::mcap::records::{MessageHeader, Metadata};
 use ::mcap::{McapError, WriteOptions, Writer};
 use haptics::recording::{Meta, Recording};

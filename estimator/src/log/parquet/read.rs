@@ -1,15 +1,15 @@
 //! Reading Parquet: every flat column of numbers or text.
 
 use super::column::{self, Meaning};
+use super::metadata::{SIDECAR, is_index, one_line};
 use super::sums::Sums;
-use super::{SIDECAR, footer, guard, is_index, one_line};
+use super::{footer, guard};
 use crate::log::errors::LogError;
 use crate::log::pages;
 use crate::log::raw::{Cells, Raw};
 use crate::log::units;
 use crate::log::watch::Watch;
-use haptics::recording::Labels;
-use haptics::recording::Warning;
+use haptics::recording::{Labels, Warning};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
 use std::path::Path;

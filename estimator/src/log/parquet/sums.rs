@@ -2,7 +2,7 @@
 //! without notice. Ours are of the values, not of the pages, and are believed only in files that no other program has
 //! rewritten (such a program may keep the metadata and change the columns).
 
-use super::{CREATED_BY, SIDECAR, UNITS, is_index};
+use super::metadata::{CREATED_BY, SIDECAR, UNITS, is_index};
 use crate::log::raw::{Cells, Raw};
 use crc32fast::Hasher;
 use parquet::file::metadata::{FileMetaData, KeyValue};

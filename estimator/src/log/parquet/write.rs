@@ -1,9 +1,10 @@
 //! Writing Parquet: one column of doubles a channel, text for trial and label, units and sidecar in the file's metadata.
 
+use super::metadata::{CREATED_BY, SIDECAR, UNITS, one_line};
 use super::sums::{Sum, Sums};
-use super::{CREATED_BY, SIDECAR, UNITS, one_line};
 use crate::log::errors::LogError;
-use crate::log::write::{Value, cell, columns, not_finite, portable_meta};
+use crate::log::rows::{Value, cell, columns, not_finite};
+use crate::log::sidecar::portable_meta;
 use haptics::recording::Recording;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType, ZstdLevel};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};

@@ -3,23 +3,27 @@
 //! The rows are those of the batch fit ([`crate::identify::block`]): the vertical sum over a constant and the acceleration, the width
 //! over the grip. The pads count as linear here; the batch fit also averages over pads that bend.
 
+mod candidates;
+mod grasp_record;
 pub mod pull;
 mod report;
 
-use super::enough::{Problem, block_problems};
+use super::decimating_store::DecimatingStore;
 use super::filter::{Filters, Sample};
-use super::grasp::{Grasp, Row};
+use super::information::problem::Problem;
 use super::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
-use super::sense::{FREE_ROW_S, Now, Sense};
-use super::store::Store;
-use super::{Event, Report, Settings};
+use super::report::{Event, Report};
+use super::settings::Settings;
+use super::state_tracker::{FREE_ROW_S, Now, StateTracker};
 use crate::estimate::Parameter;
 use crate::segment::SystemState;
+use candidates::block_problems;
+use grasp_record::{GraspRecord, Row};
 use haptics::Vec2;
 use haptics::recording::Task;
 use pull::Left;
 pub(crate) use report::leak_parameter;
-use report::{friction, grip_stiffness, mean_width, width};
+use report::{friction, grip_stiffness, mean_width, weight, width};
 
 /// The ends of a state are left out, s: contacts ring there.
 const GUARD_S: f64 = 0.12;
@@ -43,7 +47,7 @@ pub struct Blocks {
     task: Task,
     gravity: f64,
     row_s: f64,
-    objects: Vec<Grasp>,
+    objects: Vec<GraspRecord>,
     /// Number of objects seen.
     count: usize,
     current: Option<usize>,
@@ -52,7 +56,7 @@ pub struct Blocks {
     next_row_s: f64,
     let_go: bool,
     held: bool,
-    free: Store<2>,
+    free: DecimatingStore<2>,
     events: Vec<Event>,
     margin: Option<f64>,
     /// Sum of the sensors' biases and its standard error, N, once known; noise of a sum from row to row, N.
@@ -71,7 +75,7 @@ impl Blocks {
             row_s,
             // A clone keeps no spare room in its store: each is made.
             objects: (0..MOST_OBJECTS)
-                .map(|_| Grasp::new(memory_rows, block_rows, settings.false_alarms_per_hour, row_s))
+                .map(|_| GraspRecord::new(memory_rows, block_rows, settings.false_alarms_per_hour, row_s))
                 .collect(),
             count: 0,
             current: None,
@@ -80,7 +84,7 @@ impl Blocks {
             next_row_s: f64::NEG_INFINITY,
             let_go: true,
             held: false,
-            free: Store::new(400),
+            free: DecimatingStore::new(400),
             events: Vec::with_capacity(MOST_EVENTS),
             margin: None,
             bias: None,
@@ -93,7 +97,7 @@ impl Blocks {
         self.next_row_s = f64::NEG_INFINITY;
     }
 
-    pub(super) fn update(&mut self, now: Now, filters: &Filters, sense: &Sense, free_row: Option<(f64, f64)>) {
+    pub(super) fn update(&mut self, now: Now, filters: &Filters, sense: &StateTracker, free_row: Option<(f64, f64)>) {
         if let Some((t, lift)) = free_row {
             self.free.push([t, lift]);
         }
@@ -122,7 +126,7 @@ impl Blocks {
     }
 
     /// Rows go in once their state has lasted on.
-    fn wait(&mut self, row: Row, time_s: f64, sense: &Sense) {
+    fn wait(&mut self, row: Row, time_s: f64, sense: &StateTracker) {
         self.bias = sense.net_bias();
         self.noise_n = sense.lift_noise_n();
         if self.waits == WAITING {
@@ -197,7 +201,7 @@ impl Blocks {
             return;
         }
         self.objects[index].told = true;
-        let signature = |o: &Grasp| (mean_width(o), o.weight.values()[0]);
+        let signature = |o: &GraspRecord| (mean_width(o), o.weight.values()[0]);
         let (width, weight) = signature(&self.objects[index]);
         let near = |a: f64, b: f64, share: f64| (a - b).abs() < share * b.abs();
         let same = (0..self.count).find(|k| {
@@ -222,10 +226,10 @@ impl Blocks {
         if self.task == Task::Barrel { "barrel".to_owned() } else { format!("block-{}", index + 1) }
     }
 
-    pub(super) fn report(&self, sense: &Sense, report: &mut Report) {
+    pub(super) fn report(&self, sense: &StateTracker, report: &mut Report) {
         for (index, object) in self.objects[..self.count].iter().enumerate() {
             let name = self.name(index);
-            report.parameters.extend(self.weight(&name, object, sense));
+            report.parameters.extend(weight(&name, object, sense, self.gravity));
             report.parameters.push(width(&name, object));
             report.parameters.push(grip_stiffness(&name, object));
             report.parameters.push(friction(&name, object));
@@ -277,16 +281,16 @@ impl Blocks {
         leak_or_drift(&weighing).ok()
     }
 
-    pub(super) fn problems(&self, sense: &Sense) -> Vec<Problem> {
+    pub(super) fn problems(&self, sense: &StateTracker) -> Vec<Problem> {
         let bias_error = sense.lift_bias().map(|(_, error)| error);
-        let each = |(index, object): (usize, &Grasp)| {
+        let each = |(index, object): (usize, &GraspRecord)| {
             block_problems(&self.name(index), object, bias_error, sense.lift_noise_n(), self.row_s, FREE_ROW_S)
         };
         self.objects[..self.count].iter().enumerate().flat_map(each).collect()
     }
 }
 
-fn row(time_s: f64, carried: bool, filters: &Filters, sense: &Sense) -> Row {
+fn row(time_s: f64, carried: bool, filters: &Filters, sense: &StateTracker) -> Row {
     let pick = |s: &Sample| {
         [
             s[9] + s[11],

@@ -9,7 +9,7 @@
 //! squares. Its errors are those of the directions and the common errors of all lines by biases and the pads' give.
 
 use super::super::change::ChangeDetector;
-use super::super::store::Store;
+use super::super::decimating_store::DecimatingStore;
 use haptics::Vec2;
 use nalgebra::{Matrix2, SymmetricEigen};
 use serde::Serialize;
@@ -65,20 +65,20 @@ pub struct Pull {
 
 /// One carried row, weight and bias taken out.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Left {
-    pub(in super::super) time_s: f64,
-    pub(in super::super) at_m: Vec2,
+pub(crate) struct Left {
+    pub(crate) time_s: f64,
+    pub(crate) at_m: Vec2,
     /// Force of the hand that weight and inertia do not explain, N.
-    pub(in super::super) force_n: Vec2,
+    pub(crate) force_n: Vec2,
     /// Noise of a row, N.
-    pub(in super::super) noise_n: f64,
+    pub(crate) noise_n: f64,
     /// Common error of all rows, N: only vertical forces contain the weight's error.
-    pub(in super::super) common_n: Vec2,
+    pub(crate) common_n: Vec2,
 }
 
 impl Left {
     /// Model error of the force, N, for a weight.
-    pub(in super::super) fn model_n(weight_n: f64) -> f64 {
+    pub(crate) fn model_n(weight_n: f64) -> f64 {
         MODEL_SHARE * weight_n.abs()
     }
 
@@ -95,7 +95,7 @@ impl Left {
 
 /// The watch over one object.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Hold {
+pub(crate) struct Hold {
     detector: ChangeDetector<1>,
     suspects: (f64, u32),
     calm: u32,
@@ -103,11 +103,11 @@ pub(in super::super) struct Hold {
     pulls: bool,
     newest: Option<Left>,
     /// Time, place and force of the hand, row by row.
-    lines: Store<5>,
+    lines: DecimatingStore<5>,
 }
 
 impl Hold {
-    pub(in super::super) fn new(false_alarms_per_hour: f64, row_s: f64) -> Self {
+    pub(crate) fn new(false_alarms_per_hour: f64, row_s: f64) -> Self {
         Self {
             detector: ChangeDetector::new(false_alarms_per_hour, row_s, [MATTERS_N]),
             suspects: (0.0, 0),
@@ -115,18 +115,18 @@ impl Hold {
             began_s: None,
             pulls: false,
             newest: None,
-            lines: Store::new(LINES),
+            lines: DecimatingStore::new(LINES),
         }
     }
 
-    pub(in super::super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.detector.restart(0.0);
         self.lines.clear();
         (self.suspects, self.calm, self.began_s, self.pulls, self.newest) = ((0.0, 0), 0, None, false, None);
     }
 
     /// Takes a row; true when it tells nothing about the weight.
-    pub(in super::super) fn take(&mut self, left: &Left) -> bool {
+    pub(crate) fn take(&mut self, left: &Left) -> bool {
         let suspect = left.suspect();
         self.count(left, suspect);
         if !self.pulls {
@@ -170,12 +170,12 @@ impl Hold {
     }
 
     /// Held for an interruption: it is not known any more whether it still pulls.
-    pub(in super::super) fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         (self.pulls, self.suspects) = (false, (0.0, 0));
     }
 
     /// Pull on the object. Allocates.
-    pub(in super::super) fn pull(&self, object: usize) -> Option<Pull> {
+    pub(crate) fn pull(&self, object: usize) -> Option<Pull> {
         let (began_s, newest) = (self.began_s?, self.newest?);
         Some(Pull {
             object,

@@ -1,9 +1,8 @@
 //! Estimates of a carried object, as parameters of a fit.
 
-use super::super::grasp::Grasp;
 use super::super::leak::{LeakAnswer, Verdict};
-use super::super::sense::Sense;
-use super::Blocks;
+use super::super::state_tracker::StateTracker;
+use super::grasp_record::GraspRecord;
 use crate::estimate::Parameter;
 
 /// The grip must vary by this share of its mean for the pads' give to show.
@@ -28,12 +27,12 @@ pub(crate) fn leak_parameter(object: &str, answer: &LeakAnswer, samples: usize) 
 }
 
 /// Mean distance of the tips, m.
-pub(super) fn mean_width(object: &Grasp) -> f64 {
+pub(super) fn mean_width(object: &GraspRecord) -> f64 {
     let [width, slope, _] = object.width.values();
     width + slope * object.grip[0]
 }
 
-pub(super) fn width(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn width(name: &str, object: &GraspRecord) -> Parameter {
     let samples = object.held_rows as usize;
     let (mean_grip, spread) = object.grip_and_spread();
     let error = object.width.std_errors()[0];
@@ -56,7 +55,7 @@ pub(super) fn width(name: &str, object: &Grasp) -> Parameter {
 }
 
 /// Pad and wall of one side together.
-pub(super) fn grip_stiffness(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn grip_stiffness(name: &str, object: &GraspRecord) -> Parameter {
     const NAME: &str = "grip_stiffness_N_m";
     let samples = object.held_rows as usize;
     let (mean_grip, spread) = object.grip_and_spread();
@@ -70,7 +69,7 @@ pub(super) fn grip_stiffness(name: &str, object: &Grasp) -> Parameter {
     Parameter::identified(name, NAME, 1.0 / give, error / (give * give), samples, how)
 }
 
-pub(super) fn friction(name: &str, object: &Grasp) -> Parameter {
+pub(super) fn friction(name: &str, object: &GraspRecord) -> Parameter {
     let samples = object.held_rows as usize;
     match object.bound {
         Some((ratio, error)) => {
@@ -83,28 +82,27 @@ pub(super) fn friction(name: &str, object: &Grasp) -> Parameter {
     }
 }
 
-impl Blocks {
-    pub(super) fn weight(&self, name: &str, object: &Grasp, sense: &Sense) -> Vec<Parameter> {
-        let samples = object.carried_rows as usize;
-        let error = object.weight.std_errors()[0];
-        let why = match sense.lift_bias() {
-            None => {
-                "the hand was not seen free yet: a bias of the force sensors would pass for weight; let go for a second"
-            }
-            Some(_) if !error.is_finite() => "it was not carried for long enough yet",
-            Some((bias, bias_error)) => {
-                let (value, error) = (object.weight.values()[0] - bias, error.hypot(bias_error));
-                let how = "mean of the summed vertical forces while carried, accelerations and bias taken out";
-                let mass = "weight divided by gravity";
-                return vec![
-                    Parameter::identified(name, "weight_N", value, error, samples, how),
-                    Parameter::identified(name, "mass_kg", value / self.gravity, error / self.gravity, samples, mass),
-                ];
-            }
-        };
-        vec![
-            Parameter::unidentified(name, "weight_N", samples, why),
-            Parameter::unidentified(name, "mass_kg", samples, why),
-        ]
-    }
+/// Weight and mass while it is carried.
+pub(super) fn weight(name: &str, object: &GraspRecord, sense: &StateTracker, gravity: f64) -> Vec<Parameter> {
+    let samples = object.carried_rows as usize;
+    let error = object.weight.std_errors()[0];
+    let why = match sense.lift_bias() {
+        None => {
+            "the hand was not seen free yet: a bias of the force sensors would pass for weight; let go for a second"
+        }
+        Some(_) if !error.is_finite() => "it was not carried for long enough yet",
+        Some((bias, bias_error)) => {
+            let (value, error) = (object.weight.values()[0] - bias, error.hypot(bias_error));
+            let how = "mean of the summed vertical forces while carried, accelerations and bias taken out";
+            let mass = "weight divided by gravity";
+            return vec![
+                Parameter::identified(name, "weight_N", value, error, samples, how),
+                Parameter::identified(name, "mass_kg", value / gravity, error / gravity, samples, mass),
+            ];
+        }
+    };
+    vec![
+        Parameter::unidentified(name, "weight_N", samples, why),
+        Parameter::unidentified(name, "mass_kg", samples, why),
+    ]
 }

@@ -1,9 +1,9 @@
 //! Circle of the grip, row by row: Kåsa's algebraic circle first, then the radius residual with the give of the pads,
 //! linearised at a centre that moves along as long as it is badly known.
 
-use super::super::Settings;
 use super::super::change::{Change, ChangeDetector};
 use super::super::recursive::Recursive;
+use super::super::settings::Settings;
 use crate::estimate::Parameter;
 use crate::identify::crank::frame::Handled;
 use haptics::Vec2;
@@ -102,7 +102,7 @@ impl Circle {
     }
 
     /// Centre, radius, give, and their standard errors (R, x, y, give x, give y), once they are known well enough to split forces by.
-    pub(in super::super) fn frame(&self) -> Option<(Vec2, f64, Vec2, [f64; 5])> {
+    pub(crate) fn frame(&self) -> Option<(Vec2, f64, Vec2, [f64; 5])> {
         const USABLE: f64 = 0.01;
         let errors = self.fit.std_errors();
         let [radius, x, y, gx, gy] = self.fit.values();
@@ -112,17 +112,17 @@ impl Circle {
     }
 
     /// The recursion behind it.
-    pub(in super::super) fn fit(&self) -> &Recursive<5> {
+    pub(crate) fn fit(&self) -> &Recursive<5> {
         &self.fit
     }
 
     /// Mean size of the force on the handle, N.
-    pub(in super::super) fn usual_force_n(&self) -> f64 {
+    pub(crate) fn usual_force_n(&self) -> f64 {
         self.force_n
     }
 
     /// Rows a second while it turns.
-    pub(in super::super) fn rows_per_s() -> f64 {
+    pub(crate) fn rows_per_s() -> f64 {
         1.0 / ROW_S
     }
 

@@ -4,9 +4,9 @@
 //! known when they began. Beside the regression runs the derivative of every row with respect to centre and give. The
 //! values can thus be corrected for the present estimate of the circle, and its errors join theirs.
 
-use super::super::Settings;
 use super::super::change::{Change, ChangeDetector};
 use super::super::recursive::Recursive;
+use super::super::settings::Settings;
 use super::geometry::Circle;
 use crate::estimate::Parameter;
 use crate::identify::crank::frame::{Frame, Handled, LOW_PASS_HALF_S};
@@ -14,7 +14,7 @@ use crate::identify::crank::laws::{INERTIA, LAWS, NAMES, WEIGHT, column, missing
 use haptics::law::Motion;
 
 /// Number of laws.
-pub(in super::super) const COUNT: usize = 5;
+pub(crate) const COUNT: usize = 5;
 /// Rows a block of scores: rows are a filter window apart already.
 const BLOCK: u32 = 2;
 /// Changes that matter: weight (N), load friction, viscous friction (N s/m), constant friction (N), inertia (kg).
@@ -182,7 +182,7 @@ impl Laws {
     }
 
     /// Values corrected for the circle of now, their errors from the rows alone and with those of the circle.
-    pub(in super::super) fn values(&self, circle: &Circle) -> Option<([f64; COUNT], [f64; COUNT])> {
+    pub(crate) fn values(&self, circle: &Circle) -> Option<([f64; COUNT], [f64; COUNT])> {
         let (frame, (center, _, give, circle_errors)) = (self.frame?, circle.frame()?);
         let (mut values, mut errors) = (self.fit.values(), self.fit.std_errors());
         let (inverse, fitted) = (self.fit.inverse(), self.fit.values());
@@ -206,17 +206,17 @@ impl Laws {
     }
 
     /// The recursion behind them.
-    pub(in super::super) fn fit(&self) -> &Recursive<COUNT> {
+    pub(crate) fn fit(&self) -> &Recursive<COUNT> {
         &self.fit
     }
 
     /// Mean normal force, mean size of it, N, and mean speed, m/s.
-    pub(in super::super) fn usual(&self) -> (f64, f64, f64) {
+    pub(crate) fn usual(&self) -> (f64, f64, f64) {
         (self.normal_n, self.pull_n, self.speed_m_s)
     }
 
     /// Rows a second while it turns.
-    pub(in super::super) fn rows_per_s() -> f64 {
+    pub(crate) fn rows_per_s() -> f64 {
         0.5 / LOW_PASS_HALF_S
     }
 

@@ -4,16 +4,20 @@
 //! ([`geometry`]). The laws' rows are made with the circle known when they began, and corrected to first order for its
 //! later changes ([`laws`]).
 
+mod candidates;
 mod geometry;
 mod laws;
+pub(super) mod recorded;
 
-use super::enough::{Problem, crank_problems};
 use super::filter::{Filters, Sample};
-use super::sense::{FREE_ROW_S, Now, Sense};
-use super::{Event, Report, Settings};
+use super::information::problem::Problem;
+use super::report::{Event, Report};
+use super::settings::Settings;
+use super::state_tracker::{FREE_ROW_S, Now, StateTracker};
 use crate::identify::crank::frame::{Handled, blur};
 use crate::identify::crank::laws::NAMES;
 use crate::segment::SystemState;
+use candidates::crank_problems;
 use geometry::Circle;
 use haptics::Vec2;
 use laws::Laws;
@@ -52,7 +56,7 @@ impl Crank {
         self.laws.interrupt();
     }
 
-    pub(super) fn update(&mut self, now: Now, filters: &Filters, sense: &Sense) {
+    pub(super) fn update(&mut self, now: Now, filters: &Filters, sense: &StateTracker) {
         if now.state != SystemState::Turning || now.time_s - now.since_s < GUARD_S {
             self.interrupt();
             return;
@@ -95,7 +99,7 @@ impl Crank {
         self.events.push(event);
     }
 
-    pub(super) fn report(&self, sense: &Sense, report: &mut Report) {
+    pub(super) fn report(&self, sense: &StateTracker, report: &mut Report) {
         report.parameters.extend(self.circle.parameters());
         report.parameters.extend(self.laws.parameters(&self.circle, sense.lift_bias()));
         report.events.extend_from_slice(&self.events);
@@ -105,14 +109,11 @@ impl Crank {
         self.circle.frame().is_some() && self.laws.fit().rows() > 0
     }
 
-    pub(super) fn problems(&self, sense: &Sense) -> Vec<Problem> {
+    pub(super) fn problems(&self, sense: &StateTracker) -> Vec<Problem> {
         let bias_error = sense.lift_bias().map(|(_, error)| error);
         crank_problems(&self.circle, &self.laws, bias_error, sense.lift_noise_n(), FREE_ROW_S)
     }
 }
-
-pub(super) use geometry::Circle as Found;
-pub(super) use laws::Laws as Rubbing;
 
 fn handled(filters: &Filters, bias_n: Vec2) -> Handled {
     let pick = |s: &Sample| {

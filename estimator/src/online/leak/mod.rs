@@ -14,11 +14,16 @@
 mod rates;
 #[cfg(test)]
 mod tests;
+mod verdict;
+mod weighing;
 mod words;
 
 use crate::estimate::EstimateError;
 use rates::{Rates, rates};
 use serde::{Deserialize, Serialize};
+use verdict::SIGNIFICANT;
+pub use verdict::Verdict;
+pub use weighing::{Measured, Series, Weighing};
 
 /// A hypothesis must be as probable as this to be the answer.
 pub const CONFIDENT: f64 = 0.95;
@@ -26,75 +31,8 @@ pub const CONFIDENT: f64 = 0.95;
 pub const NEGLIGIBLE: f64 = 0.03;
 /// A drift during the carry may differ by this share from the mean one between the readings before and after.
 const UNEVEN: f64 = 0.1;
-/// Size of a change in standard errors below which it is none.
-const SIGNIFICANT: f64 = 4.0;
 /// Before anything is seen: nothing, leak, drift, both.
 const BEFORE: [f64; 4] = [0.25, 0.36, 0.36, 0.03];
-
-/// Times, s, and forces, N, one each a sample, in the order of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Series<'a> {
-    /// Times, s.
-    pub time_s: &'a [f64],
-    /// Forces, N.
-    pub force_n: &'a [f64],
-}
-
-/// Readings of one object, and of no object. Biases stay in: their change is the question.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Weighing<'a> {
-    /// Sum of the vertical forces of both fingers while the object is in the air (one carry or several), inertia taken out.
-    pub carried: Series<'a>,
-    /// The same sum in free motion, before and after. May be empty.
-    pub free: Series<'a>,
-    /// The same sum while other objects were carried, one series an object; each has a weight of its own that does not change.
-    pub others: &'a [Series<'a>],
-    /// Sum of the horizontal forces at the samples of `carried`, inertia taken out. May be absent.
-    pub across_n: Option<&'a [f64]>,
-    /// The vertical force of each finger at the samples of `carried`. May be absent.
-    pub fingers_n: Option<[&'a [f64]; 2]>,
-    /// Gravity, m/s², positive.
-    pub gravity_m_s2: f64,
-}
-
-impl<'a> Weighing<'a> {
-    /// The least that is needed: the carried reading and the free ones, times in s, forces in N, gravity in m/s².
-    pub fn new(carried: Series<'a>, free: Series<'a>, gravity_m_s2: f64) -> Self {
-        Self { carried, free, gravity_m_s2, ..Self::default() }
-    }
-}
-
-/// Cause of a changing reading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Nothing changes beyond the errors.
-    Steady,
-    /// The weight changes.
-    Leak,
-    /// The sensors' bias changes.
-    SensorDrift,
-    /// Both change.
-    Both,
-    /// Something changes; the recording does not show the cause.
-    CannotTell,
-}
-
-/// A value and its standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
-    /// The value.
-    pub value: f64,
-    /// One standard error.
-    pub std_error: f64,
-}
-
-impl Measured {
-    /// True when it is this many standard errors from zero.
-    pub fn is_significant(&self, errors: f64) -> bool {
-        self.value.abs() > errors * self.std_error
-    }
-}
 
 /// The answer of [`leak_or_drift`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

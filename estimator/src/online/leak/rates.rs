@@ -1,6 +1,6 @@
 //! The rates that the readings show, with errors.
 
-use super::{Measured, Series, Weighing};
+use super::weighing::{Measured, Series, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 
@@ -73,7 +73,7 @@ pub(super) fn rates(weighing: &Weighing<'_>) -> Result<Rates, EstimateError> {
     let drift = if references.is_empty() { None } else { slope(&references)? };
     let along = |force_n| slope(&[Series { time_s: carried.time_s, force_n }]);
     let across = across_n.map(along).transpose()?.flatten();
-    let share = match fingers_n.filter(|_| reading.is_significant(super::SIGNIFICANT)) {
+    let share = match fingers_n.filter(|_| reading.is_significant(super::verdict::SIGNIFICANT)) {
         Some([left, _]) => along(left)?.map(|left| share_of(left, reading)),
         None => None,
     };

@@ -1,7 +1,8 @@
 //! The answer in words.
 
 use super::rates::Rates;
-use super::{Measured, SIGNIFICANT, Verdict};
+use super::verdict::{SIGNIFICANT, Verdict};
+use super::weighing::Measured;
 
 /// A rate of a force, mN/s.
 fn force(rate: Measured) -> String {

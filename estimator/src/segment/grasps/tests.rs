@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::segment::definition::Definition;
-use crate::segment::{Segmentation, Thresholds, subtasks};
+use crate::segment::segmentation::Segmentation;
+use crate::segment::{Thresholds, subtasks};
 use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround};
 use haptics::recording::Task;
 

@@ -2,7 +2,8 @@
 //! and a bias.
 
 use crate::identify::crank;
-use crate::segment::{Segmentation, SystemState, Thresholds, segment};
+use crate::segment::segmentation::Segmentation;
+use crate::segment::{SystemState, Thresholds, segment};
 use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use rand::{RngExt as _, SeedableRng as _};

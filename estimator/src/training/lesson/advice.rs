@@ -1,6 +1,6 @@
 //! Advice for the next attempt, in one sentence: drawn from its faults, else from the worst measure.
 
-use super::grade::{Figure, Grade};
+use super::graded::{Figure, Grade};
 use crate::training::definitions::Definition;
 
 /// A measure that is worse than the experts' mean by less than this many units needs no advice.

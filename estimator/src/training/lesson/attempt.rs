@@ -1,6 +1,7 @@
 //! Facts of a recording about its attempt: enough to grade it again from its file alone.
 
-use super::Lesson;
+use super::expert_level::Expert;
+use super::format::{Lesson, Over};
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 use serde::{Deserialize, Serialize};
@@ -55,5 +56,14 @@ impl Attempted {
     /// As it stands in a sidecar.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::to_value(self).unwrap_or_default()
+    }
+}
+
+impl Lesson {
+    /// Expert reference under the conditions of an attempt: over its line, if that was measured, else without one.
+    pub fn experts(&self, attempted: &Attempted) -> Option<&Expert> {
+        let same =
+            |over: &&Over| (over.delay_ms - attempted.delay_ms).abs() < 0.5 && over.predicted == attempted.predicted;
+        self.expert_over.iter().find(same).map(|over| &over.expert).or(self.expert.as_ref())
     }
 }

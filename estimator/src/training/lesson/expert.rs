@@ -1,14 +1,14 @@
 //! Expert reference of a lesson: mean and spread of each judged measure, without outliers.
 
+use super::attempt::Attempted;
+use super::expert_level::{Expert, Spread};
+use super::format::{Lesson, Over};
 use super::grade::{self, badness};
 use super::perform::perform_over;
-use super::{Attempted, Lesson, Over};
 use crate::estimate::EstimateError;
 use crate::training::figures::figures;
 use haptics::device::Skill;
 use haptics::teleop::Delay;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Attempts that the spread is taken from.
@@ -17,30 +17,6 @@ pub const ATTEMPTS: usize = 40;
 const FIRST_SEED: u64 = 0x0e59_e127;
 /// Distance from the quartiles, in multiples of theirs, from which a value is an outlier (Tukey 1977).
 const FENCE: f64 = 1.5;
-
-/// Mean and standard deviation of something.
-#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Spread {
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation.
-    pub sd: f64,
-}
-
-/// What experts need.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Expert {
-    /// Attempts that were completed, of those that were made.
-    pub completed: [usize; 2],
-    /// Version of the measures.
-    pub measures_version: u32,
-    /// By key of the measure.
-    pub measures: BTreeMap<String, Spread>,
-    /// How far the experts' attempts are worse than their own mean ([`grade::badness`]).
-    pub badness: Spread,
-}
 
 /// Lets the scripted expert do a lesson [`ATTEMPTS`] times.
 ///

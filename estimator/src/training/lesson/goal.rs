@@ -218,7 +218,7 @@ impl Watch {
         self.standing
     }
 
-    pub(super) fn see(&mut self, kind: &Kind, world: &World, state: &State, span_s: f64, seen: &super::Seen) {
+    pub(super) fn see(&mut self, kind: &Kind, world: &World, state: &State, span_s: f64, seen: &Seen) {
         let names = |name: &String| find(world, name);
         match kind {
             Kind::Press { least_n, most_n, for_s } => {
@@ -350,4 +350,13 @@ fn are_stacked(state: &State, order: &[usize], within_m: f64) -> bool {
             && rests(state, pair[0])
             && rests(state, pair[1])
     })
+}
+
+/// Observations that several goals need.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Something has been touched.
+    pub touched: bool,
+    /// Times the switch went over.
+    pub throws: usize,
 }

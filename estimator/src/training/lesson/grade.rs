@@ -1,8 +1,12 @@
 //! Grade of an attempt: its measures beside those of experts. Everything comes from the recording, and the same
 //! recording gives the same numbers, to the bit.
 
-use super::expert::Expert;
-use super::{Attempted, Lesson, Progress, advice};
+use super::advice;
+use super::attempt::Attempted;
+use super::expert_level::Expert;
+use super::format::Lesson;
+use super::graded::{Figure, GRADE_VERSION, Grade, Reached};
+use super::progress::Progress;
 use crate::estimate::EstimateError;
 use crate::training::course::follow;
 use crate::training::definitions::Definition;
@@ -10,12 +14,8 @@ use crate::training::figures::figures;
 use crate::training::{Measures, VERSION, hand};
 use haptics::recording::Recording;
 use haptics::world::World;
-use schemars::JsonSchema;
-use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Version of the computation of scores from measures. Scores of different versions are not compared.
-pub const GRADE_VERSION: u32 = 1;
 /// A measure that is worse than the experts' mean by this many of their units halves the score.
 const HALVES: f64 = 5.0;
 /// The unit of a measure is the experts' standard deviation, but no less than this share of their mean.
@@ -23,69 +23,6 @@ const LEAST_SHARE: f64 = 0.1;
 /// One measure alone is never worse than this, nor better than that, in units: nothing outweighs everything else.
 const WORST: f64 = 25.0;
 const BEST: f64 = -2.0;
-
-/// A measure of an attempt beside that of experts.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Figure {
-    /// Key of its definition.
-    pub measure: String,
-    /// How much it counts.
-    pub weight: f64,
-    /// Its value, in the definition's unit.
-    pub value: f64,
-    /// The experts' mean.
-    pub expert_mean: f64,
-    /// Their standard deviation.
-    pub expert_sd: f64,
-    /// Their mean, worse by one standard deviation: what a proficient attempt keeps.
-    pub criterion: f64,
-    /// Whether it is kept.
-    pub meets_criterion: bool,
-    /// How many units it is worse than the experts' mean; below zero it is better.
-    pub worse_by: f64,
-}
-
-/// A goal, and whether it was reached.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Reached {
-    /// The goal's words.
-    pub says: String,
-    /// Whether it was reached (a rule: kept).
-    pub reached: bool,
-}
-
-/// What an attempt is worth.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Grade {
-    /// [`GRADE_VERSION`].
-    pub version: u32,
-    /// The lesson's id.
-    pub lesson: String,
-    /// Every goal reached, every rule kept, the question answered rightly.
-    pub completed: bool,
-    /// The goals.
-    pub goals: Vec<Reached>,
-    /// The rules.
-    pub rules: Vec<Reached>,
-    /// Whether the answer was right, where there was a question.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub answered_rightly: Option<bool>,
-    /// 100 is the experts' average; absent for an attempt that was not completed.
-    pub score: Option<f64>,
-    /// The score that a proficient attempt reaches: the experts' mean, worse by one standard deviation.
-    pub score_criterion: f64,
-    /// Completed, and the score reaches it.
-    pub meets_criterion: bool,
-    /// What was judged, in the lesson's order.
-    pub figures: Vec<Figure>,
-    /// What to do better next, in one sentence.
-    pub advice: String,
-    /// Everything that was measured.
-    pub measures: Measures,
-    /// From the hand's first motion until the last goal was reached, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub completed_s: Option<f64>,
-}
 
 /// Facts of an attempt before any comparison.
 pub struct SeenAttempt {
@@ -170,7 +107,7 @@ fn score_of(badness: f64) -> f64 {
     100.0 * (-badness / HALVES).exp2()
 }
 
-fn figure(judged: &super::Judged, expert: &Expert, all: &BTreeMap<&'static str, f64>) -> Option<Figure> {
+fn figure(judged: &super::format::Judged, expert: &Expert, all: &BTreeMap<&'static str, f64>) -> Option<Figure> {
     let definition = Definition::of(&judged.measure)?;
     let spread = expert.measures.get(&judged.measure)?;
     let value = *all.get(judged.measure.as_str())?;

@@ -1,6 +1,6 @@
 //! The lessons that the program brings along, and those in a folder of the user's.
 
-use super::Lesson;
+use super::format::Lesson;
 use crate::estimate::EstimateError;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! The scripted operator does a lesson, in simulated time, as fast as the processor can.
 
-use super::Lesson;
+use super::format::Lesson;
 use crate::estimate::EstimateError;
 use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::Recording;

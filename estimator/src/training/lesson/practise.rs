@@ -1,6 +1,8 @@
 //! Lessons from measured worlds: tasks with the things that stand in them.
 
-use super::{Base, Goal, Judged, Lesson, Rule, SCHEMA, Step, goal};
+use super::format::{Base, Judged, Lesson, SCHEMA, Step};
+use super::goal;
+use super::goal::{Goal, Rule};
 use crate::estimate::EstimateError;
 use haptics::device::Act;
 use haptics::world::{Block, Shape, World};
@@ -26,7 +28,7 @@ const FACE_M: f64 = 0.016;
 /// No lesson is known for the things in the world.
 pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
     let (what, goals, demonstration, judged) = task_of(&world).ok_or_else(|| {
-        super::wrong(
+        super::format::wrong(
             "no lesson is known for what stands in this world; train in it without one, or write a lesson of your own",
         )
     })?;
@@ -66,74 +68,82 @@ pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
 type Parts = (String, Vec<Goal>, Vec<Step>, Vec<Judged>);
 
 fn task_of(world: &World) -> Option<Parts> {
-    let goal = |says: &str, kind| Goal { says: says.to_owned(), kind };
-    let step = |says: &str, act| Step { says: says.to_owned(), act };
-    let let_go = goal("Let go and take the fingers away", goal::Kind::LetGo);
-    let with = |more: &[(&str, f64)]| {
-        let usual = [("completed_s", 3.0), ("rms_force_n", 2.0), ("path_length_m", 1.0)];
-        let all = usual.iter().chain(more);
-        all.map(|(measure, weight)| Judged { measure: (*measure).to_owned(), weight: *weight }).collect::<Vec<_>>()
-    };
     if world.crank.is_some() {
-        let says = "Turn the crank three times counter-clockwise, at an even speed.";
-        let turned = goal("Three turns counter-clockwise", goal::Kind::Turned { turns: 3.0 });
-        let turn = step("Take the handle and turn it evenly", Act::Turn { turns: 3.15, turn_s: 2.0 });
-        return Some((
-            says.into(),
-            vec![turned, let_go],
-            vec![turn],
-            with(&[("speed_variation", 2.0), ("off_tangent_j", 1.0)]),
-        ));
+        return Some(turned());
     }
     if world.membrane.is_some() && world.blocks.iter().any(|b| b.shape == Shape::Needle) {
-        let pierced = goal("Pierce the sheet", goal::Kind::Pierced { times: 1 });
-        let act = step("Take the needle and push it through slowly", Act::Pierce { along_m: 0.0, beyond_m: 0.0005 });
-        let more = [("punctures.overshoot_m", 2.0), ("punctures.along_m", 1.0)];
-        return Some((
-            "Pierce the sheet in the middle and stop at once.".into(),
-            vec![pierced],
-            vec![act],
-            with(&more),
-        ));
+        return Some(pierced());
     }
     if world.switch.is_some() {
-        let thrown = goal("Throw the switch four times", goal::Kind::Thrown { times: 4 });
-        let act = step("Push until it snaps, then give way", Act::Throw { times: 4 });
-        let parts = with(&[("stop_force_n", 1.0), ("fell_back", 1.0)]);
-        let judged = parts.into_iter().filter(|j| j.measure != "rms_force_n").collect();
-        return Some(("Throw the switch four times.".into(), vec![thrown, let_go], vec![act], judged));
+        return Some(thrown());
     }
     let carried: Vec<&Block> = world.blocks.iter().filter(|b| b.shape.is_carried() && b.guide.is_none()).collect();
     match carried.as_slice() {
-        [] => world.blocks.iter().find(|b| b.shape == Shape::Barrel).map(|barrel| {
-            let kind = goal::Kind::HoldUp { block: barrel.name.clone(), above_m: 0.004, for_s: 2.0 };
-            let act = Act::Lift { block: barrel.name.clone(), height_m: 0.010, seconds: 2.3 };
-            let lifted = goal("Hold it up for 2 s", kind);
-            (
-                "Lift it, hold it still, and put it back.".into(),
-                vec![lifted, let_go],
-                vec![step("Lift it and hold it", act)],
-                with(&[]),
-            )
-        }),
-        [one] => {
-            let kind = goal::Kind::HoldUp { block: one.name.clone(), above_m: 0.010, for_s: 2.0 };
-            let act = Act::Lift { block: one.name.clone(), height_m: 0.015, seconds: 2.3 };
-            let lifted = goal("Hold it 10 mm up for 2 s", kind);
-            let judged = with(&[("drops", 2.0)]);
-            Some((
-                "Lift the block, hold it still, and put it back.".into(),
-                vec![lifted, let_go],
-                vec![step("Lift it and hold it", act)],
-                judged,
-            ))
-        }
-        several => Some(moved(several, let_go, with(&[("drops", 2.0), ("stacks.offset_m", 1.0)]))),
+        [] => world.blocks.iter().find(|b| b.shape == Shape::Barrel).map(barrel_held_up),
+        [one] => Some(block_held_up(one)),
+        several => Some(moved(several)),
     }
 }
 
+fn goal_of(says: &str, kind: goal::Kind) -> Goal {
+    Goal { says: says.to_owned(), kind }
+}
+
+fn step(says: &str, act: Act) -> Step {
+    Step { says: says.to_owned(), act }
+}
+
+fn let_go() -> Goal {
+    goal_of("Let go and take the fingers away", goal::Kind::LetGo)
+}
+
+/// The usual measures with more of them.
+fn judged_with(more: &[(&str, f64)]) -> Vec<Judged> {
+    let usual = [("completed_s", 3.0), ("rms_force_n", 2.0), ("path_length_m", 1.0)];
+    let all = usual.iter().chain(more);
+    all.map(|(measure, weight)| Judged { measure: (*measure).to_owned(), weight: *weight }).collect()
+}
+
+fn turned() -> Parts {
+    let says = "Turn the crank three times counter-clockwise, at an even speed.";
+    let turned = goal_of("Three turns counter-clockwise", goal::Kind::Turned { turns: 3.0 });
+    let turn = step("Take the handle and turn it evenly", Act::Turn { turns: 3.15, turn_s: 2.0 });
+    let judged = judged_with(&[("speed_variation", 2.0), ("off_tangent_j", 1.0)]);
+    (says.into(), vec![turned, let_go()], vec![turn], judged)
+}
+
+fn pierced() -> Parts {
+    let pierced = goal_of("Pierce the sheet", goal::Kind::Pierced { times: 1 });
+    let act = step("Take the needle and push it through slowly", Act::Pierce { along_m: 0.0, beyond_m: 0.0005 });
+    let judged = judged_with(&[("punctures.overshoot_m", 2.0), ("punctures.along_m", 1.0)]);
+    ("Pierce the sheet in the middle and stop at once.".into(), vec![pierced], vec![act], judged)
+}
+
+fn thrown() -> Parts {
+    let thrown = goal_of("Throw the switch four times", goal::Kind::Thrown { times: 4 });
+    let act = step("Push until it snaps, then give way", Act::Throw { times: 4 });
+    let parts = judged_with(&[("stop_force_n", 1.0), ("fell_back", 1.0)]);
+    let judged = parts.into_iter().filter(|j| j.measure != "rms_force_n").collect();
+    ("Throw the switch four times.".into(), vec![thrown, let_go()], vec![act], judged)
+}
+
+fn barrel_held_up(barrel: &Block) -> Parts {
+    let kind = goal::Kind::HoldUp { block: barrel.name.clone(), above_m: 0.004, for_s: 2.0 };
+    let act = Act::Lift { block: barrel.name.clone(), height_m: 0.010, seconds: 2.3 };
+    let goals = vec![goal_of("Hold it up for 2 s", kind), let_go()];
+    ("Lift it, hold it still, and put it back.".into(), goals, vec![step("Lift it and hold it", act)], judged_with(&[]))
+}
+
+fn block_held_up(block: &Block) -> Parts {
+    let kind = goal::Kind::HoldUp { block: block.name.clone(), above_m: 0.010, for_s: 2.0 };
+    let act = Act::Lift { block: block.name.clone(), height_m: 0.015, seconds: 2.3 };
+    let goals = vec![goal_of("Hold it 10 mm up for 2 s", kind), let_go()];
+    let says = "Lift the block, hold it still, and put it back.";
+    (says.into(), goals, vec![step("Lift it and hold it", act)], judged_with(&[("drops", 2.0)]))
+}
+
 /// A tower goes to the other side, block by block; blocks that stand apart are put on each other.
-fn moved(blocks: &[&Block], let_go: Goal, judged: Vec<Judged>) -> Parts {
+fn moved(blocks: &[&Block]) -> Parts {
     let mut order = blocks.to_vec();
     order.sort_by(|a, b| b.start.center_m.y.total_cmp(&a.start.center_m.y));
     let base = |b: &Block| b.start.center_m.y - 0.5 * b.height_m;
@@ -169,9 +179,9 @@ fn moved(blocks: &[&Block], let_go: Goal, judged: Vec<Judged>) -> Parts {
     let tower = names.join(", then ");
     let kind = goal::Kind::Stacked { order: names, within_m: WITHIN_M };
     goals.push(Goal { says: format!("A tower from below: {tower}"), kind });
-    goals.push(let_go);
+    goals.push(let_go());
     let what = if are_apart { "Stack the blocks." } else { "Move the tower to the other side, block by block." };
-    (what.to_owned(), goals, steps, judged)
+    (what.to_owned(), goals, steps, judged_with(&[("drops", 2.0), ("stacks.offset_m", 1.0)]))
 }
 
 fn whole(block: &Block) -> Rule {

@@ -1,8 +1,8 @@
 //! Progress of an attempt, from state to state: the same for a running world and for a recording that is played through
 //! it.
 
-use super::goal::{LONGER_S, Standing, Watch, is_kept};
-use super::{Goal, Lesson, Rule};
+use super::format::Lesson;
+use super::goal::{Goal, LONGER_S, Rule, Seen, Standing, Watch, is_kept};
 use haptics::Vec2;
 use haptics::world::{State, World};
 
@@ -10,15 +10,6 @@ use haptics::world::{State, World};
 const BEGINS_M_S: f64 = 0.005;
 /// Time between two looks from which the watcher is a window, s.
 const PICTURE_S: f64 = 0.01;
-
-/// Observations that several goals need.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
-    /// Something has been touched.
-    pub touched: bool,
-    /// Times the switch went over.
-    pub throws: usize,
-}
 
 /// Watches an attempt.
 pub struct Progress {

@@ -17,9 +17,9 @@ mod tests;
 
 pub use super::waves::Waves;
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::waves::{Account, OperatorEnd, SMOOTHING_S, WorldEnd};
-use super::{Command, Device, DeviceSpec, Sample};
-use crate::servo::ForceGuard;
+use crate::device::interface::ForceGuard;
 use crate::world::{State, World};
 use line::Line;
 

@@ -1,13 +1,13 @@
 //! The thread that reads a real gamepad and makes it rumble. Never the servo's: reading waits.
 
-use super::{GamepadDevice, GamepadHandle, GamepadMode, PadState, Rumble, gamepad};
+use super::backend::{GamepadDevice, GamepadHandle, GamepadMode, PadState, gamepad};
+use super::rumble::Rumble;
 use crate::Vec2;
 use crate::hand::Workspace;
 use gilrs::ff::{BaseEffect, BaseEffectType, Effect, EffectBuilder, Repeat, Replay, Ticks};
 use gilrs::{Axis, Button, GamepadId, Gilrs};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::thread::JoinHandle;
 use std::time::Duration;
 

@@ -8,16 +8,18 @@ mod gate;
 mod phase_tests;
 mod plug;
 mod protocol;
+mod tally;
 #[cfg(all(test, unix))]
 mod tests;
 mod turns;
 
-pub use board::{Answer, Board, BoardModel, Fault, GUARD, Tally};
+pub use board::{Answer, Board, BoardModel, GUARD};
 pub use fivebar::FiveBar;
 pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
+pub use tally::{Fault, Tally};
 pub use turns::Line;
 
-use super::{Command, Device, DeviceSpec, Sample};
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use plug::Connection;
 use std::path::Path;

@@ -8,8 +8,8 @@
 //! the hand exists. The gate starts again with a new line: until its answers agree on the position of the hand, the
 //! board gets zero torque.
 
-use super::board::Tally;
 use super::farewell::Outliving;
+use super::tally::Tally;
 use super::turns::Line;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::sync::Arc;

@@ -186,9 +186,9 @@ fn silence_from_the_servo_ends_in_zero_torque_within_hundredths_of_a_second() {
 #[test]
 fn after_every_broken_reply_the_next_are_right() {
     let told = [
-        (Fault::Truncate, board::Fault::Late),
-        (Fault::WrongId, board::Fault::Foreign),
-        (Fault::Noise, board::Fault::Foreign),
+        (Fault::Truncate, tally::Fault::Late),
+        (Fault::WrongId, tally::Fault::Foreign),
+        (Fault::Noise, tally::Fault::Foreign),
     ];
     for (fault, why) in told {
         let (mut board, emulator) = pair(fault);
@@ -245,7 +245,7 @@ fn a_reply_that_jumps_moves_no_finger_and_makes_no_torque() {
     let torques = emulator.shared.torques.lock().expect("not poisoned").clone();
     assert!(torques.iter().all(|t| *t == [0.0; 2] || right(t)), "no torque of a pose that was not there");
     assert!(torques.iter().filter(|t| right(t)).count() > 100, "and the right one often");
-    assert!(board.tally().count(board::Fault::Impossible) > 10 && board.tally().asked() > 1_000);
+    assert!(board.tally().count(tally::Fault::Impossible) > 10 && board.tally().asked() > 1_000);
     drop(board);
     emulator.finish();
 }

@@ -5,8 +5,8 @@
 //! fault: unanswered questions are counted, and the next turn reads until all of them have been answered or the line
 //! falls silent. Its own answer is the last one.
 
-use super::board::Fault;
 use super::protocol::{REPLY_BYTES, read_reply, torque_frame};
+use super::tally::Fault;
 use std::io::{Read, Write};
 
 /// A serial line with a read time-out: a real port, or one end of a pseudo-terminal.

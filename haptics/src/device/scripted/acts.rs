@@ -1,9 +1,9 @@
 //! Acts that an operator is told to do, one after the other: lessons write their demonstrations as such a list.
 
 use super::builder::{Builder, SPARE_PINCH};
-use super::plan::{Goal, Job, Spin};
+use super::movement::{Goal, Job, Spin};
 use crate::Vec2;
-use crate::device::HandImpedance;
+use crate::device::impedance::HandImpedance;
 use crate::world::{Block, Shape, State, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

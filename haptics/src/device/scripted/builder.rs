@@ -1,7 +1,7 @@
 //! Makes the movements of a performance: reaches with their misses and corrections, carries, turns.
 
-use super::plan::{Goal, Job, Move, Phase, Spin};
-use super::{Mistake, Skill};
+use super::movement::{Goal, Job, Move, Phase, Spin};
+use super::skill::{Mistake, Skill};
 use crate::Vec2;
 use crate::world::{State, World};
 use rand::RngExt;

@@ -1,10 +1,10 @@
 //! Movements of the scripted operator with a needle, a barrel and a switch that reveal their properties.
 
-use super::Mistake;
 use super::builder::Builder;
-use super::plan::Goal;
+use super::movement::Goal;
+use super::skill::Mistake;
 use crate::Vec2;
-use crate::device::HandImpedance;
+use crate::device::impedance::HandImpedance;
 use crate::world::{Membrane, Shape, State, World};
 
 /// Spread of an expert's pinch: a hand that varies more holds more firmly.

@@ -3,7 +3,7 @@
 //! hand there.
 
 use super::eye::Frame;
-use super::plan::Goal;
+use super::movement::Goal;
 
 /// The hand counts as where it was wanted within this, m.
 const THERE_M: f64 = 3e-3;

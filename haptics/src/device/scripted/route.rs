@@ -1,6 +1,6 @@
 //! A motion planned elsewhere for the scripted hand to follow: the goals of the pair of fingers, at even times.
 
-use super::plan::Goal;
+use super::movement::Goal;
 
 /// Goals at even times, from the start on.
 #[derive(Clone, Debug, PartialEq)]

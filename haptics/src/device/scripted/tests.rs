@@ -338,7 +338,7 @@ fn told_acts_are_done_in_the_world_and_what_it_lacks_is_said() {
 
 #[test]
 fn an_even_turn_comes_to_its_speed_and_back() {
-    let spin = plan::Spin {
+    let spin = movement::Spin {
         center_m: Vec2::zeros(),
         radius_m: 0.02,
         from_rad: 1.0,

@@ -29,8 +29,8 @@ pub use packet::{
 pub use wave_packet::{FLAG_STOP, WAVE_DOWN_BYTES, WAVE_UP_BYTES, WAVE_VERSION, WaveDown, WaveUp};
 pub use wire::Wire;
 
+use super::interface::{Command, Device, DeviceSpec, Sample};
 use super::waves::{SMOOTHING_S, WorldEnd};
-use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};

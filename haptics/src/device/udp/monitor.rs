@@ -1,6 +1,6 @@
 //! Counts the packets of a remote device.
 
-use super::Refused;
+use super::packet::Refused;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,8 +1,8 @@
 //! Waves over the real socket, with half a second of round trip in simulated time between the hand and it.
 
 use super::*;
-use crate::device::HandImpedance;
 use crate::device::channel::line::Line;
+use crate::device::impedance::HandImpedance;
 use crate::device::waves::OperatorEnd;
 use crate::world::presets;
 use std::time::Duration;

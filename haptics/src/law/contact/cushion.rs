@@ -1,6 +1,7 @@
 //! A cushion: a spring, hardening or not, that has an end: [`StiffnessHardening`] and [`Densification`] together.
 
-use super::{Densification, StiffnessHardening};
+use super::densification::Densification;
+use super::stiffness_hardening::StiffnessHardening;
 
 /// Normal elastic law of a surface; forces push apart.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,7 +14,7 @@ pub use pad_compliance::PadCompliance;
 pub use stiffness_hardening::StiffnessHardening;
 pub use velocity_loss::VelocityLoss;
 
-use super::Entry;
+use super::entry::Entry;
 
 /// Their pages of the catalogue.
 pub static ENTRIES: [&Entry; 4] =

@@ -1,11 +1,9 @@
 //! Counts the timings of ticks: one second a part, the last ten parts are "recent", older parts are kept as a sum.
 
-use super::histogram::Histogram;
-use super::{Figures, STALL_S, TickTiming, Timing};
+use super::figures::{Figures, STALL_S, TickTiming, Timing};
+use crate::servo::histogram::Histogram;
 use crate::servo::rate::RateReport;
 
-/// Length of the recent past, s.
-pub const RECENT_S: f64 = 10.0;
 /// Length of a part, s.
 const PART_S: f64 = 1.0;
 /// Parts that are recent; the newest is being filled.
@@ -137,6 +135,7 @@ impl TimingCollector {
 
 #[cfg(test)]
 mod tests {
+    use super::super::RECENT_S;
     use super::*;
 
     /// A punctual tick with a force from a fresh sample.

@@ -5,7 +5,10 @@ mod performance;
 mod wrong_model;
 
 use super::*;
+use crate::device::HandImpedance;
+use crate::servo::safety::Limits;
 use crate::servo::{Loop, Swap, TickRecord};
+use crate::world::{State, World};
 
 const DT: f64 = 1e-3;
 

@@ -3,7 +3,7 @@
 use super::{Found, Gather, Material, Solid, pad_material};
 use crate::Vec2;
 use crate::world::block::Shape;
-use crate::world::state::Surface;
+use crate::world::contact_point::Surface;
 
 impl Gather<'_> {
     pub(super) fn floor(&mut self) {

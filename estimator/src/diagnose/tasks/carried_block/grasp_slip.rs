@@ -3,7 +3,7 @@
 use super::standing_height::{Rows, Stand};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::Study;
-use crate::identify::block::slipping::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 
 /// Number of tried starts in every rest, besides its beginning.

@@ -9,7 +9,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::{Channel, stretches};
 use crate::diagnose::selection::comparison::Compared;
 use crate::estimate::EstimateError;
-use crate::identify::block::object;
+use crate::identify::block::signals::object;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;

@@ -17,7 +17,7 @@ use crate::diagnose::selection::comparison;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::stepwise::Chosen;
 use crate::estimate::EstimateError;
-use crate::identify::block::object;
+use crate::identify::block::signals::object;
 use crate::segment::SystemState;
 use haptics::world::{Cable, World};
 

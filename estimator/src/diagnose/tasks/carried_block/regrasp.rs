@@ -6,8 +6,8 @@ use super::standing_height::{Ground, Stand};
 use crate::diagnose::contract::{Cause, Gain, parameter};
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
-use crate::identify::block::object;
-use crate::identify::block::slipping::LEAST_M;
+use crate::identify::block::signals::object;
+use crate::identify::block::slip_detection::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 

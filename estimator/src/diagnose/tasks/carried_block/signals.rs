@@ -5,8 +5,8 @@
 pub(crate) mod tests;
 
 use crate::estimate::EstimateError;
-use crate::identify::block::landing::{stands_from, usual_lift};
-use crate::identify::block::{Blocks, MAIN, object};
+use crate::identify::block::placement_time::{stands_from, usual_lift};
+use crate::identify::block::signals::{Blocks, MAIN, object};
 use crate::segment::{Method, SystemState};
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};

@@ -7,7 +7,7 @@ use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::stretches;
 use crate::estimate::EstimateError;
-use crate::identify::needle::Sheet;
+use crate::identify::needle::sheet::Sheet;
 use crate::identify::needle::signals::{Along, along};
 use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
 use crate::segment::SystemState;

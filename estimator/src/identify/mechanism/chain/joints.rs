@@ -1,7 +1,7 @@
 //! Both joints of a chain as recorded: rates from one light filter, and every regressor of the model through one more.
 
 use crate::estimate::EstimateError;
-use crate::identify::mechanism::even::Even;
+use crate::identify::mechanism::resampling::Resampled;
 use crate::identify::mechanism::signals::{direction, noise_blur, saturated, uninterrupted};
 use crate::signal::derive::stencil;
 use crate::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};
@@ -68,7 +68,7 @@ pub fn joints(recording: &Recording, index: usize) -> Result<Vec<Joints>, Estima
     let (spans, period) = uninterrupted(time, &recording.name)?;
     let total = time.len() as f64;
     let piece = |(first, end): (usize, usize)| {
-        let even = Even::new(&time[first..end], period);
+        let even = Resampled::new(&time[first..end], period);
         let onto = |values: &[f64]| even.onto(&values[first..end]);
         let (position, torque) = (angles.map(onto), torques.map(onto));
         let noise = angles.map(|a| even.noise(&a[first..end]));

@@ -19,8 +19,6 @@ use haptics::recording::Recording;
 use joints::{ANGLES, Joints, TORQUES, joints};
 use solve::{Solution, solve, tried};
 
-/// The object's name in the results.
-pub const OBJECT: &str = "chain";
 /// Share of its motion elsewhere below which a joint is held: its holding force is not its sliding friction.
 const HELD_SHARE: f64 = 0.05;
 

@@ -1,9 +1,11 @@
 //! Report of a chain's parameters from its recordings, as a fit.
 
-use super::OBJECT;
 use super::solve::{FIRM, MODEL, Row, Solution};
 use crate::estimate::{Parameter, Quality};
 use haptics::law::object::TWO_LINK;
+
+/// The object's name in the results.
+pub const OBJECT: &str = "chain";
 
 /// Fewer recordings cannot show by leaving one out how far they agree.
 pub const LEAST_FOR_JACKKNIFE: usize = 4;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::log::csv::cells::number;
+use memchr::memchr;
 use proptest::prelude::*;
 
 const READ: Use = Use::Number { required: true, factor: 1.0 };
