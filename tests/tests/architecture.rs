@@ -59,7 +59,7 @@ fn nothing_graphical_below_the_app() {
     }
 }
 
-/// The generator of the blind battery takes recordings and the types of an answer from the crates that it tests, and no function.
+/// The generator of the blind battery takes recordings and types of answers from the crates that it tests, no function.
 #[test]
 fn the_blind_generator_uses_no_law_no_world_and_no_estimate() {
     let folder = tests::workspace().join("tests/blind/src");

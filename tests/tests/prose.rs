@@ -1,4 +1,5 @@
-//! Lengths and references of the pages that developers read first: ARCHITECTURE.md, CODE_STYLE.md, and README.md.
+//! Lengths and references of the pages that developers read first: ARCHITECTURE.md, CODE_STYLE.md, README.md; and
+//! sentences of `docs/*.md`.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,8 @@ const MOST_WORDS: [(&str, usize); 2] = [("ARCHITECTURE.md", 1200), ("CODE_STYLE.
 const MEAN_SENTENCE: f64 = 17.0;
 /// Most words of a single sentence.
 const LONGEST_SENTENCE: usize = 30;
+/// Largest share of longer sentences in `docs/*.md`.
+const MOST_LONG: f64 = 0.03;
 /// Fewer words are a heading or a label, not a sentence.
 const SHORTEST_SENTENCE: usize = 3;
 /// Pages whose paths must exist.
@@ -156,6 +159,18 @@ fn sentences_are_short() {
         let long = sentences.iter().zip(lengths).find(|(_, length)| *length > LONGEST_SENTENCE);
         assert!(long.is_none(), "{name}: a sentence has more than {LONGEST_SENTENCE} words: {long:?}");
     }
+}
+
+#[test]
+fn sentences_of_the_documents_are_short() {
+    let folder = std::fs::read_dir(workspace().join("docs")).expect("docs").flatten().map(|entry| entry.path());
+    let pages = folder.filter(|path| path.extension().is_some_and(|e| e == "md"));
+    let texts: Vec<String> = pages.map(|path| std::fs::read_to_string(path).expect("a page")).collect();
+    let lengths: Vec<usize> = texts.iter().flat_map(|text| sentences(text)).map(|sentence| words(&sentence)).collect();
+    let mean = lengths.iter().sum::<usize>() as f64 / lengths.len() as f64;
+    let long = lengths.iter().filter(|length| **length > LONGEST_SENTENCE).count() as f64 / lengths.len() as f64;
+    assert!(mean <= MEAN_SENTENCE, "docs/*.md: a sentence has {mean:.1} words on average, more than {MEAN_SENTENCE}");
+    assert!(long <= MOST_LONG, "docs/*.md: a share of {long:.3} has more than {LONGEST_SENTENCE} words");
 }
 
 #[test]
