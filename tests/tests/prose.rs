@@ -1,4 +1,4 @@
-//! Lengths and references of the pages that developers read first: ARCHITECTURE.md, CODE_STYLE.md, README.md; and
+//! Lengths and references of the pages that developers read first: ARCHITECTURE.md, `CODE_STYLE.md`, README.md; and
 //! sentences of `docs/*.md`.
 
 use std::collections::BTreeSet;
