@@ -1,7 +1,7 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
 use crate::ui::theme::state_name;
-use estimator::diagnose::{Cause, CauseParameter, Findings, Residual, Verdict};
+use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, Residual, Verdict};
 use estimator::segment::SystemState;
 use haptics::law;
 
@@ -15,12 +15,12 @@ pub fn title(id: &str) -> String {
 }
 
 /// The answer in one line.
-pub fn headline(diagnosis: &Findings) -> String {
+pub fn headline(diagnosis: &Diagnosis) -> String {
     headline_of("The model", diagnosis)
 }
 
 /// The answer in one line, about what was compared.
-pub fn headline_of(model: &str, diagnosis: &Findings) -> String {
+pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
     let names: Vec<String> = diagnosis.causes.iter().map(|c| one(&c.id)).collect();
     match diagnosis.verdict {
         Verdict::None => "Nothing beyond the noise.".to_owned(),

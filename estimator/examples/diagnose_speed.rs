@@ -12,6 +12,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let diagnosis = diagnose(&recordings, &options)?;
     eprintln!("{:.3} s", start.elapsed().as_secs_f64());
-    println!("{}", serde_json::to_string_pretty(&diagnosis)?);
+    println!("{}", serde_json::to_string_pretty(&diagnosis.diagnosis)?);
     Ok(())
 }

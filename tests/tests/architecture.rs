@@ -60,6 +60,44 @@ fn nothing_graphical_below_the_app() {
     }
 }
 
+/// The generator of the blind battery takes recordings and types of answers from the crates that it tests, no function.
+#[test]
+fn the_blind_generator_uses_no_law_no_world_and_no_estimate() {
+    let folder = tests::workspace().join("tests/blind/src");
+    let read = |path: &std::path::Path| std::fs::read_to_string(path).expect("text");
+    let list = read(&folder.join("lib.rs"));
+    let only_tests: BTreeSet<&str> =
+        list.split("#[cfg(test)]\nmod ").skip(1).filter_map(|m| m.split(';').next()).collect();
+    let mut used = 0;
+    for entry in std::fs::read_dir(folder).expect("the blind battery").flatten() {
+        let path = entry.path();
+        let name = path.file_stem().and_then(std::ffi::OsStr::to_str).unwrap_or_default();
+        if only_tests.contains(name) {
+            continue;
+        }
+        let text = read(&path);
+        let product = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        let code: Vec<&str> = product.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        let code = code.join("\n");
+        for after in code.split("haptics::").skip(1) {
+            assert!(after.starts_with("recording::"), "{}: uses haptics::{}", path.display(), start(after));
+            used += 1;
+        }
+        for after in code.split("estimator::").skip(1) {
+            let types = after.strip_prefix("diagnose::").map(|names| names.trim_start_matches('{'));
+            let is_type = types.is_some_and(|names| names.starts_with(|c: char| c.is_ascii_uppercase()));
+            assert!(is_type, "{}: uses estimator::{}", path.display(), start(after));
+            used += 1;
+        }
+    }
+    assert!(used > 5, "{used} uses were looked at");
+}
+
+/// Start of a path, for a message.
+fn start(path: &str) -> &str {
+    path.lines().next().unwrap_or_default()
+}
+
 /// Scripts that time our programs beside others' build them as examples: what they name must be there.
 #[test]
 fn what_the_benches_build_is_there() {

@@ -5,7 +5,7 @@ use crate::report::Sheet;
 use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;
-use estimator::diagnose::Findings;
+use estimator::diagnose::{Diagnosis, Findings};
 use estimator::estimate::Fit;
 use estimator::pipeline::{Analysis, Options, analyse};
 use haptics::recording::Recording;
@@ -55,7 +55,7 @@ struct Chain {
     /// What was identified.
     fit: Fit,
     /// What the model of the thesis leaves, and why.
-    diagnosis: Findings,
+    diagnosis: Diagnosis,
     /// Root mean square of measured − predicted by channel, N.
     residual_rms: Vec<(String, f64)>,
     /// How many values lie within two of their errors of those it was recorded with.
@@ -162,7 +162,7 @@ impl Demo {
             simulation: prediction,
             extended_world: extended,
             fit: analysis.fit,
-            diagnosis,
+            diagnosis: diagnosis.diagnosis,
             residual_rms: simulation.residual_rms,
             within_two_errors: within,
         })

@@ -64,7 +64,8 @@ impl Diagnose {
             diagnose(&recordings, &Options { progress, ..options.clone() })
         })?;
         for log in &self.validate {
-            diagnosis.validation.extend(validate(&self.source.load(log)?, &options, &diagnosis)?);
+            let more = validate(&self.source.load(log)?, &options, &diagnosis)?;
+            diagnosis.validation.extend(more);
         }
         let mut text = describe(&diagnosis);
         if let Some(path) = &self.out {

@@ -5,6 +5,7 @@ const FIRST_BINS: f64 = 2048.0;
 /// Refinement of every further look; only lags about the best one are tried there.
 const FINER: f64 = 8.0;
 /// Least share of the shorter signal that two must have in common: less is alike by chance.
+/// Choice: no data.
 const LEAST_COMMON: f64 = 0.25;
 /// Most bins of the last look: 16 million samples are compared by means over 16.
 const MOST_BINS: f64 = 1_048_576.0;

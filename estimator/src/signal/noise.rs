@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
-/// Coefficients of the fourth difference; their squares sum to 70.
+/// Coefficients of the fourth difference.
 const FOURTH: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
+/// Sum of the squares of [`FOURTH`].
+/// Derived: 1² + 4² + 6² + 4² + 1².
 const FOURTH_POWER: f64 = 70.0;
 /// Median absolute deviation of a normal variable with unit variance.
 const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;

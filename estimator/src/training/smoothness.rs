@@ -4,6 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 /// Spectral components below this share of the largest one are left out at both ends of the band.
+/// Source: Balasubramanian, Melendez-Calderon, Roby-Brami & Burdet 2015.
 pub const SPARC_AMPLITUDE: f64 = 0.05;
 /// The speed is padded with zeros to 2^level times the next power of two.
 pub const SPARC_PAD_LEVEL: u32 = 4;

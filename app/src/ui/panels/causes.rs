@@ -6,7 +6,7 @@ use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact};
 use egui::{Align, Color32, FontId, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
-use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout, RolloutOf};
+use estimator::diagnose::{Alternative, Cause, CauseParameter, Findings, Rollout, RolloutOf};
 use estimator::words::amount;
 use haptics::law::{self, Kind};
 
@@ -35,7 +35,7 @@ pub fn changes_the_world(cause: &Cause) -> bool {
 }
 
 /// Draws the card; `rank` counts from one.
-pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnosis) {
+pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Findings) {
     let p = palette(ui);
     let chance = format!("{} %", format::number(100.0 * cause.posterior, 0));
     let trailing = |ui: &mut Ui| {
@@ -115,7 +115,7 @@ fn line(ui: &mut Ui, parameter: &CauseParameter) {
     });
 }
 
-fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
+fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Findings) {
     let gain = &cause.gain;
     if gain.heldout_rms_before <= 0.0 {
         return;

@@ -13,7 +13,7 @@ use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
-use estimator::diagnose::{Diagnosis, Residual};
+use estimator::diagnose::{Findings, Residual};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
@@ -102,7 +102,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
 }
 
 /// Draws the residual RMS of every channel and state, beside the noise.
-fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
+fn by_state(ui: &mut Ui, diagnosis: &Findings) {
     let all = &diagnosis.residuals;
     if all.len() < 2 {
         return;
@@ -201,7 +201,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
 }
 
 /// Draws the improvement by the whole extension.
-fn before_after(ui: &mut Ui, d: &Diagnosis) {
+fn before_after(ui: &mut Ui, d: &Findings) {
     let unit = compared_unit(d);
     let number = |value: f64| format::significant(value, 3);
     let (before, after) = (d.baseline.heldout_rms_n, d.end.heldout_rms_n);
@@ -237,7 +237,7 @@ fn feel(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Draws the causes that are not testable with the recording, each with the reason in a tooltip.
-fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
+fn hidden(ui: &mut Ui, diagnosis: &Findings) {
     if diagnosis.not_excited.is_empty() {
         return;
     }
@@ -258,7 +258,7 @@ fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
     );
 }
 
-fn warnings(ui: &mut Ui, diagnosis: &Diagnosis) {
+fn warnings(ui: &mut Ui, diagnosis: &Findings) {
     if diagnosis.warnings.is_empty() {
         return;
     }
