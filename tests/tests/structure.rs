@@ -1,0 +1,273 @@
+//! Bounds on the structure of the sources: import circles, flat files, lengths of functions, constants, cause ids, comments.
+//!
+//! An import circle is a set of modules of which each imports every other, directly or through others. Modules import by
+//! `use` and by paths that begin with `crate`, `super` or `self`. Code of tests is left out.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use syn::visit::{self, Visit};
+use tests::workspace;
+
+/// Crates whose structure is held.
+const CRATES: [&str; 4] = ["haptics", "estimator", "render", "app"];
+/// Most modules of an import circle, by crate.
+const MOST_IN_A_CIRCLE: usize = 5;
+/// Most files of the diagnosis outside its rooms.
+const MOST_FLAT_FILES: usize = 8;
+/// Most lines of a function.
+const LONGEST_FUNCTION: usize = 60;
+/// Largest share of comments that begin with a relative clause or an ellipsis.
+const MOST_RIDDLES: f64 = 0.03;
+/// Comments of types that the command line and JSON print belong to the texts of the program, not to its structure.
+const PRINTED: [&str; 4] = ["JsonSchema", "Args", "Subcommand", "ValueEnum"];
+
+/// Path of a module within its crate; the crate itself is the empty path.
+type Module = Vec<String>;
+
+/// Sources below a folder of the workspace, without files of tests.
+fn sources(folder: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![workspace().join(folder)];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())).flatten() {
+            let path = entry.path();
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if path.is_dir() && name != "tests" {
+                open.push(path);
+            } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Text of a source up to its tests.
+fn product(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let end = text.find("#[cfg(test)]\nmod tests {").unwrap_or(text.len());
+    text[..end].to_owned()
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(workspace()).unwrap_or(path).display().to_string()
+}
+
+/// Modules of a crate with their files.
+fn modules(name: &str) -> BTreeMap<Module, PathBuf> {
+    let root = workspace().join(name).join("src");
+    let of = |path: PathBuf| {
+        let inside = path.strip_prefix(&root).expect("below the crate").with_extension("");
+        let mut module: Module = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        if module.last().is_some_and(|last| ["mod", "lib", "main"].contains(&last.as_str())) {
+            module.pop();
+        }
+        (module, path)
+    };
+    sources(&format!("{name}/src")).into_iter().map(of).collect()
+}
+
+/// Paths that a file names.
+#[derive(Default)]
+struct Named {
+    paths: Vec<Vec<String>>,
+}
+
+impl<'ast> Visit<'ast> for Named {
+    fn visit_item(&mut self, item: &'ast syn::Item) {
+        let attributes: &[syn::Attribute] = match item {
+            syn::Item::Mod(of) => &of.attrs,
+            syn::Item::Use(of) => &of.attrs,
+            syn::Item::Fn(of) => &of.attrs,
+            _ => &[],
+        };
+        let is_test =
+            |a: &syn::Attribute| a.path().is_ident("cfg") && a.parse_args::<syn::Ident>().is_ok_and(|i| i == "test");
+        if !attributes.iter().any(is_test) {
+            visit::visit_item(self, item);
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        self.add_tree(&mut Vec::new(), &item.tree);
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let segments: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        if ["crate", "super", "self"].contains(&segments[0].as_str()) && segments.len() > 1 {
+            self.paths.push(segments);
+        }
+        visit::visit_path(self, path);
+    }
+}
+
+impl Named {
+    fn add_tree(&mut self, prefix: &mut Vec<String>, tree: &syn::UseTree) {
+        match tree {
+            syn::UseTree::Path(path) => {
+                prefix.push(path.ident.to_string());
+                self.add_tree(prefix, &path.tree);
+                prefix.pop();
+            }
+            syn::UseTree::Group(group) => group.items.iter().for_each(|tree| self.add_tree(prefix, tree)),
+            syn::UseTree::Name(name) => self.add(prefix, &name.ident),
+            syn::UseTree::Rename(name) => self.add(prefix, &name.ident),
+            syn::UseTree::Glob(_) => self.paths.push(prefix.clone()),
+        }
+    }
+
+    fn add(&mut self, prefix: &[String], name: &syn::Ident) {
+        self.paths.push(prefix.iter().cloned().chain([name.to_string()]).collect());
+    }
+}
+
+/// The module that a path names, seen from `here`; nothing for other crates.
+fn resolve(modules: &BTreeMap<Module, PathBuf>, here: &Module, path: &[String]) -> Option<Module> {
+    let mut base = here.clone();
+    let mut rest = path;
+    match path.first()?.as_str() {
+        "crate" => (base, rest) = (Vec::new(), &path[1..]),
+        "self" | "super" => {
+            while let Some(first) = rest.first().filter(|first| ["self", "super"].contains(&first.as_str())) {
+                if first == "super" {
+                    base.pop();
+                }
+                rest = &rest[1..];
+            }
+        }
+        child => {
+            let of: Module = here.iter().cloned().chain([child.to_owned()]).collect();
+            modules.get(&of)?;
+        }
+    }
+    let whole: Module = base.iter().cloned().chain(rest.iter().cloned()).collect();
+    (0..=whole.len()).rev().map(|end| whole[..end].to_vec()).find(|module| modules.contains_key(module))
+}
+
+/// Imports of every module of a crate.
+fn imports(name: &str) -> BTreeMap<Module, BTreeSet<Module>> {
+    let modules = modules(name);
+    let of = |(here, path): (&Module, &PathBuf)| {
+        let mut named = Named::default();
+        named.visit_file(&syn::parse_file(&product(path)).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+        let targets = named.paths.iter().filter_map(|path| resolve(&modules, here, path));
+        (here.clone(), targets.filter(|target| target != here).collect())
+    };
+    modules.iter().map(of).collect()
+}
+
+/// Modules that can be reached from one.
+fn reached<'a>(imports: &'a BTreeMap<Module, BTreeSet<Module>>, from: &'a Module) -> BTreeSet<&'a Module> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![from];
+    while let Some(module) = open.pop() {
+        let next = imports[module].iter().filter(|next| found.insert(*next));
+        open.extend(next.collect::<Vec<_>>());
+    }
+    found
+}
+
+#[test]
+fn import_circles_are_small_and_stay_in_their_folder() {
+    for name in CRATES {
+        let imports = imports(name);
+        assert!(imports.len() > 30, "{name}: {} modules were looked at", imports.len());
+        let reached: BTreeMap<&Module, BTreeSet<&Module>> = imports.keys().map(|m| (m, reached(&imports, m))).collect();
+        for module in imports.keys() {
+            let back = |other: &&&Module| **other == module || reached[**other].contains(module);
+            let circle: Vec<&&Module> = reached[module].iter().filter(back).collect();
+            let words: Vec<String> = circle.iter().map(|m| m.join("::")).collect();
+            assert!(
+                circle.len() <= MOST_IN_A_CIRCLE,
+                "{name}: an import circle of {} modules: {words:?}",
+                circle.len()
+            );
+            let folders: BTreeSet<&[String]> = circle.iter().map(|m| &m[..m.len().saturating_sub(1)]).collect();
+            assert!(folders.len() <= 1, "{name}: an import circle across folders: {words:?}");
+        }
+    }
+}
+
+#[test]
+fn files_of_the_diagnosis_stand_in_rooms() {
+    let root = workspace().join("estimator/src/diagnose");
+    let flat = sources("estimator/src/diagnose").into_iter().filter(|path| path.parent() == Some(&root)).count();
+    assert!((1..=MOST_FLAT_FILES).contains(&flat), "{flat} files lie flat in estimator/src/diagnose");
+}
+
+#[test]
+fn functions_fit_a_screen() {
+    let mut looked_at = 0;
+    for path in CRATES.iter().flat_map(|name| sources(&format!("{name}/src"))) {
+        let text = product(&path);
+        let lines: Vec<&str> = text.lines().collect();
+        for (first, line) in lines.iter().enumerate() {
+            let indent = line.len() - line.trim_start().len();
+            let words: Vec<&str> = line.split_whitespace().take_while(|word| !word.contains('"')).collect();
+            let before_fn = words.iter().take_while(|word| **word != "fn");
+            let is_qualifier =
+                |word: &&str| word.starts_with("pub") || ["const", "async", "unsafe", "crate)"].contains(word);
+            if !words.contains(&"fn") || !before_fn.clone().all(is_qualifier) {
+                continue;
+            }
+            let close = format!("{}}}", " ".repeat(indent));
+            let last = (first..lines.len()).find(|k| lines[*k].starts_with(&close)).unwrap_or(first);
+            let length = last - first + 1;
+            looked_at += 1;
+            assert!(length <= LONGEST_FUNCTION, "{}:{}: {length} lines of a function", shown(&path), first + 1);
+        }
+    }
+    assert!(looked_at > 3000, "{looked_at} functions were looked at");
+}
+
+/// Comments of one file: the first line of each, unless the command line or JSON prints them.
+fn first_lines(text: &str) -> Vec<&str> {
+    let (mut found, mut is_printed, mut derive) = (Vec::new(), false, "");
+    let mut before = "";
+    let lines: Vec<&str> = text.lines().collect();
+    for (k, line) in lines.iter().enumerate() {
+        if line.starts_with("///") && !before.starts_with("///") {
+            // The attributes of the item that is documented here.
+            derive = lines[k..].iter().find(|l| !l.starts_with("///")).copied().unwrap_or_default();
+        }
+        if line.starts_with("#[derive") || line.starts_with("///") {
+            is_printed = PRINTED.iter().any(|name| line.contains(name) || derive.contains(name));
+        } else if line.starts_with('}') {
+            (is_printed, derive) = (false, "");
+        }
+        let comment = line.trim_start();
+        let is_comment = |line: &str| line.starts_with("///") || line.starts_with("//!");
+        if is_comment(comment) && !is_comment(before.trim_start()) && !is_printed {
+            found.push(comment);
+        }
+        before = line;
+    }
+    found
+}
+
+#[test]
+fn comments_say_first_what_a_thing_is() {
+    let openings =
+        ["What ", "Whatever ", "How ", "Where ", "Whether ", "Which ", "When ", "So ", "Those ", "That ", "…"];
+    for name in CRATES {
+        let (mut all, mut riddles) = (0, Vec::new());
+        for path in sources(&format!("{name}/src")) {
+            for line in first_lines(&product(&path)) {
+                all += 1;
+                let words = line.trim_start_matches(['/', '!']).trim_start();
+                if openings.iter().any(|opening| words.starts_with(opening)) {
+                    riddles.push(format!("{}: {line}", shown(&path)));
+                }
+            }
+        }
+        assert!(all > 300, "{name}: {all} comments were looked at");
+        let share = riddles.len() as f64 / all as f64;
+        assert!(
+            share <= MOST_RIDDLES,
+            "{name}: {} of {all} comments are riddles:\n{}",
+            riddles.len(),
+            riddles.join("\n")
+        );
+    }
+}
