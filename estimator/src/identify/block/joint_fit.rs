@@ -4,8 +4,7 @@
 //! Averaging the single fits is not the same: a recording that began with the blocks in hand does not show its zero, one with an
 //! even grip not its widths, one in which a block was not stood on not its height; beside another one of the same blocks all do.
 
-use super::heights;
-use super::heights::Stacked;
+use super::heights::{self, Stacked};
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use super::single_fit::describe;
 use super::weight::weight_and_mass;

@@ -1,4 +1,4 @@
-//! What other motions would add to the information: their rows, made by the same laws.
+//! Candidate motions of a crank and the information that each would add: rows made by the same laws.
 
 use super::geometry::Circle;
 use super::laws::Laws;

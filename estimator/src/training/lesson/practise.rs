@@ -1,8 +1,7 @@
 //! Any world that was measured becomes a lesson: what can be done with the things that stand in it.
 
 use super::format::{Base, Judged, Lesson, SCHEMA, Step};
-use super::goal;
-use super::goal::{Goal, Rule};
+use super::goal::{self, Goal, Rule};
 use crate::estimate::EstimateError;
 use haptics::device::Act;
 use haptics::world::{Block, Shape, World};
