@@ -1,4 +1,4 @@
-//! Formats of what is drawn into.
+//! Formats of the textures that pictures are drawn into.
 
 /// Format of the depth buffer.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;

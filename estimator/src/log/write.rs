@@ -1,4 +1,4 @@
-//! Writing recordings so that they read back exactly: CSV, and the common part of the writers of all formats.
+//! Writing recordings so that they read back exactly: the format that the ending of a file names, and CSV.
 
 use super::errors::LogError;
 use super::rows::{Attachment, Value, cell, columns};

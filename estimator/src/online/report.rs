@@ -1,4 +1,4 @@
-//! Changes that were noticed, and all that is known at one instant.
+//! Reports of the estimator: the changes that were noticed, and all that is known at one instant.
 
 use super::block::pull::Pull;
 use super::information::Enough;

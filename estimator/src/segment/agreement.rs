@@ -1,4 +1,4 @@
-//! How a segmentation agrees with the labels of its recording.
+//! Agreement of a segmentation with the labels of its recording.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

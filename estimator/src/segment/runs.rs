@@ -1,4 +1,4 @@
-//! Runs of equal states: what is smoothed, what is too short, and the intervals that they become.
+//! Runs of equal states: smoothing, shortest lengths, and the intervals that runs become.
 
 use super::segmentation::Interval;
 use super::state::SystemState;

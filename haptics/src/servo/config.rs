@@ -1,4 +1,4 @@
-//! How the servo is started: rate, limits, privileges.
+//! Settings that the servo is started with: rate, limits, privileges.
 
 use super::rate::RateChoice;
 use super::safety::Limits;

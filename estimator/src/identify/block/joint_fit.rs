@@ -6,8 +6,7 @@
 //! one with an even grip not its widths, and one without a block on top not the height of the lowest. Beside another
 //! recording of the same blocks all do.
 
-use super::heights;
-use super::heights::Stacked;
+use super::heights::{self, Stacked};
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use super::single_fit::describe;
 use super::weight::weight_and_mass;

@@ -1,4 +1,4 @@
-//! Weight of a carried block, and what else than the hand held it.
+//! Weight of a carried block, and the constraint on it while it is carried.
 
 use super::signals::{Blocks, MAIN, object};
 use crate::constraint::{Carry, carried};

@@ -1,4 +1,4 @@
-//! The information that other motions would add to what is known of a carried object.
+//! Candidate motions of a carried object and the information that each would add.
 
 use super::grasp_record::GraspRecord;
 use crate::online::information::matrices::{collected, per_second, with_copy};

@@ -1,4 +1,4 @@
-//! Information that other motions would add: their rows, made by the same laws.
+//! Candidate motions of a crank and the information that each would add: rows made by the same laws.
 
 use super::geometry::Circle;
 use super::laws::Laws;
@@ -41,7 +41,7 @@ pub(crate) fn crank_problems(
     vec![rubbing(&turned), round(&Round { information, variance, seconds, normal_n, force_n })]
 }
 
-/// Information about a crank's laws.
+/// What was seen of a crank's laws.
 pub(super) struct Turned {
     /// Information of the laws' columns.
     pub(super) information: DMatrix<f64>,
@@ -62,7 +62,7 @@ pub(super) struct Turned {
     pub(super) free_row_s: f64,
 }
 
-/// Information about its circle.
+/// What was seen of its circle.
 pub(super) struct Round {
     /// Information of radius, centre and give.
     pub(super) information: DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! What experts need for a lesson: mean and spread of each judged measure.
+//! The level of experts in a lesson: mean and spread of each judged measure.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

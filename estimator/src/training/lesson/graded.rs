@@ -1,4 +1,4 @@
-//! What an attempt is worth, with the figures that it is worth it by.
+//! The grade of an attempt, with the figures behind it.
 
 use crate::training::Measures;
 use schemars::JsonSchema;

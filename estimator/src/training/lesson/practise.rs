@@ -1,8 +1,7 @@
 //! Lessons from measured worlds: tasks with the things that stand in them.
 
 use super::format::{Base, Judged, Lesson, SCHEMA, Step};
-use super::goal;
-use super::goal::{Goal, Rule};
+use super::goal::{self, Goal, Rule};
 use crate::estimate::EstimateError;
 use haptics::device::Act;
 use haptics::world::{Block, Shape, World};
