@@ -1,6 +1,6 @@
 //! A mechanism's motion as seen by a tool that holds it: positions and forces in the frame of its recording.
 
-use super::like::Like;
+use super::rehearse::Like;
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Channel, Recording};
 use haptics::world::MechanismPath;
@@ -9,7 +9,7 @@ use rand::rngs::StdRng;
 use rand_distr::{Distribution, Normal};
 
 /// Columns of a tool's position, m, and of its force on the environment, N.
-pub(crate) const PLACES: [&str; 3] = ["x_m", "y_m", "z_m"];
+pub(super) const PLACES: [&str; 3] = ["x_m", "y_m", "z_m"];
 const FORCES: [&str; 3] = ["fx_N", "fy_N", "fz_N"];
 
 /// Recording of a tool on `path`, converted from one along a coordinate (motion in its first channel, drive in its

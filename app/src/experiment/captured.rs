@@ -26,14 +26,14 @@ const SLOW: f64 = 0.3;
 const FAST: f64 = 0.7;
 
 /// Position of insertion `k` of `count`, m from the centre of the membrane.
-pub(crate) fn place_m(membrane: &Membrane, count: usize, k: usize) -> f64 {
+pub(super) fn place_m(membrane: &Membrane, count: usize, k: usize) -> f64 {
     let apart = APART_M.min(2.0 * WITHIN * membrane.half_width_m / count.max(1) as f64);
     apart * (k as f64 - 0.5 * (count.max(1) - 1) as f64) + BESIDE_M
 }
 
 impl Writer {
     /// Takes the needle, performs the insertions, puts it back.
-    pub(crate) fn pierce(&mut self, membrane: &Membrane, world: &World, asked: &Experiment) -> Result<(), String> {
+    pub(super) fn pierce(&mut self, membrane: &Membrane, world: &World, asked: &Experiment) -> Result<(), String> {
         let motion = Insertions::of(asked).ok_or_else(|| unknown(asked))?;
         let needle = world.blocks.iter().find(|b| b.shape == Shape::Needle);
         let needle = needle.ok_or("There is no needle in this world; do it on the real one and load the recording.")?;
@@ -75,7 +75,7 @@ impl Writer {
     }
 
     /// Throws the switch to both sides.
-    pub(crate) fn throw(&mut self, switch: &Switch, asked: &Experiment) -> Result<(), String> {
+    pub(super) fn throw(&mut self, switch: &Switch, asked: &Experiment) -> Result<(), String> {
         let ends = [switch.curve.points.first(), switch.curve.points.last()].map(|p| p.map_or(0.0, |p| p.at_m));
         let [left, right] = ends.map(|end| switch.knob_in_world(end));
         let released_m = 0.5 * (right.x - left.x);
@@ -143,10 +143,10 @@ fn words(k: usize, count: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Timetable;
+    use super::super::perform;
+    use super::super::timetable::tests::asked;
     use super::*;
-    use crate::experiment::perform;
-    use crate::experiment::timetable::Timetable;
-    use crate::experiment::timetable::tests::asked;
     use estimator::diagnose::SensorFault;
     use estimator::pipeline;
     use haptics::world::presets;

@@ -2,10 +2,9 @@
 //! machine according to the plan, the scripted operator on simulated ones.
 
 use super::along_path::{PLACES, seen_by_tool};
-use super::like::{FASTEST_HZ, Like, rate_hz};
 use super::perform::what_is_known;
 use super::sensing::see_along;
-use super::simulated::SIMULATED;
+use super::{SIMULATED, rehearse::Like};
 use estimator::diagnose::{Experiment, Strokes, Suspect};
 use estimator::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::device::{Pull, PullSensor};
@@ -20,6 +19,8 @@ const REST_S: f64 = 0.5;
 const SLOWS_S: f64 = 2.0;
 /// Sampling rate of a plan in a file, Hz.
 const FILE_HZ: f64 = 50.0;
+/// Maximum sampling rate of a simulated recording, Hz.
+const FASTEST_HZ: f64 = 1_000.0;
 
 /// Desired coordinate over time.
 #[derive(Clone, Debug)]
@@ -150,6 +151,16 @@ fn names(coordinate: Coordinate) -> [&'static str; 3] {
     }
 }
 
+/// Sampling rate of the first recording, Hz.
+pub(super) fn rate_hz(recording: &Recording) -> Result<f64, String> {
+    let times = recording.time_s.as_deref().unwrap_or_default();
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0);
+    let usual = usual.ok_or("The recording has no clock, so no motion can be planned after it.")?;
+    Ok((1.0 / usual).min(FASTEST_HZ))
+}
+
 /// Sensors with the noise of a recording.
 fn sensor(recording: &Recording, coordinate: Coordinate) -> PullSensor {
     let [position, rate, drive] = names(coordinate).map(|name| recording.channel(name));
@@ -162,8 +173,8 @@ fn sensor(recording: &Recording, coordinate: Coordinate) -> PullSensor {
 
 #[cfg(test)]
 mod tests {
+    use super::super::timetable::tests::asked;
     use super::*;
-    use crate::experiment::timetable::tests::asked;
 
     #[test]
     fn the_plan_rests_at_both_ends_stays_in_its_range_and_can_be_read_as_a_table() {

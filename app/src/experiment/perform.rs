@@ -1,8 +1,7 @@
 //! Performance of an experiment by the scripted operator on a simulated object.
 
 use super::sensing::see_through;
-use super::simulated::SIMULATED;
-use super::timetable::Timetable;
+use super::{SIMULATED, Timetable};
 use estimator::diagnose::{Experiment, SensorFault};
 use estimator::segment::SystemState;
 use haptics::device::{Device as _, ScriptedOperator, Skill};
@@ -66,8 +65,8 @@ pub fn what_is_known(asked: &Experiment) -> BTreeMap<String, f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::timetable::tests::asked;
     use super::*;
-    use crate::experiment::timetable::tests::asked;
     use haptics::Vec2;
     use haptics::world::presets;
 
@@ -78,7 +77,7 @@ mod tests {
         let table = Timetable::new(&world, &asked, "turn to and fro").expect("it can be done");
         let fault = SensorFault { offset_n: [Vec2::new(0.15, 0.0); 2], ..SensorFault::default() };
         let recording = perform(&table, &asked, "a crank", (&fault, 0.005), 1, &|_| true).expect("not ended");
-        assert_eq!(super::simulated::simulated_object(&recording), Some("a crank"));
+        assert_eq!(super::super::simulated_object(&recording), Some("a crank"));
         assert!(recording.name.starts_with("simulated"));
         let mean = |names: [&str; 2], until: usize| {
             let of = |name: &str| recording.channel(name).expect("a channel")[..until].iter().sum::<f64>();

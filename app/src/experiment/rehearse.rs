@@ -1,12 +1,10 @@
 //! Predicted outcome of an experiment: it is simulated on every object that the diagnosis leaves open, and each
 //! recording is diagnosed.
 
-use super::like::Like;
-use super::motion_plan::MotionPlan;
-use super::perform;
-use super::timetable::Timetable;
 use super::tool::{insert, is_tool};
+use super::{MotionPlan, Timetable, perform};
 use estimator::diagnose::{Experiment, Findings, NextExperiment, Suspect};
+use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Recording, Task};
 
 /// Probability below which an alternative counts as excluded (as in the estimator's settling of several recordings).
@@ -54,6 +52,24 @@ impl Rehearsal {
     /// Number of rounds with the correct answer, and of all.
     pub fn settled(&self) -> (usize, usize) {
         (self.outcomes.iter().map(Outcome::settled).sum(), self.outcomes.iter().map(|o| o.rounds.len()).sum())
+    }
+}
+
+/// Properties of the simulated recordings.
+#[derive(Clone, Copy, Debug)]
+pub struct Like<'a> {
+    /// First recording of the real object: the sensors of a simulated mechanism have its noise.
+    pub recording: &'a Recording,
+    /// Noise of a finger's force sample (1 σ), N.
+    pub noise_n: f64,
+}
+
+impl Like<'_> {
+    /// Noise of one sample of a finger, N: the diagnosis of needles and switches states that of means.
+    fn sample_noise_n(&self) -> f64 {
+        let is_captured = matches!(self.recording.meta.task, Some(Task::Needle | Task::Switch));
+        let own = self.recording.channel("fx1_N").filter(|_| is_captured).map(white_noise_under_fast_motion);
+        own.unwrap_or(self.noise_n)
     }
 }
 
@@ -165,21 +181,13 @@ fn judged(answer: &Findings, id: &str, separates: &[String], recording: Recordin
 mod tests {
     use super::*;
     use crate::ui::gallery::samples::leaking;
-    use blind::Bench;
-    use blind::Effect;
-    use blind::Log;
-    use blind::Spec;
-    use estimator::diagnose::Options;
-    use estimator::diagnose::SensorFault;
-    use estimator::diagnose::Verdict;
-    use estimator::diagnose::diagnose;
-    use estimator::diagnose::suspects;
+    use blind::{Bench, Effect, Log, Spec};
+    use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
     use haptics::recording::Channel;
     use haptics::world::MechanismPath;
     use rand::SeedableRng;
     use rand::rngs::StdRng;
-    use rand_distr::Distribution;
-    use rand_distr::Normal;
+    use rand_distr::{Distribution, Normal};
 
     /// Recording with an open question, with the inputs of a rehearsal.
     struct Asked {

@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 /// Interval between goals, s: the arm is a hundred times slower.
 const PERIOD_S: f64 = 2e-3;
 /// Spare opening of the fingers around an object, m on both sides together.
-pub(crate) const CLEARANCE_M: f64 = 0.006;
+pub(super) const CLEARANCE_M: f64 = 0.006;
 /// Minimum time without contact before and after, s: sensors show their zero.
-pub(crate) const LEAST_FREE_S: f64 = 1.0;
+pub(super) const LEAST_FREE_S: f64 = 1.0;
 /// Duration of a reach through the air, of closing or opening, and of a rest between them, s.
-pub(crate) const REACH_S: f64 = 1.0;
-pub(crate) const CLOSE_S: f64 = 0.6;
+pub(super) const REACH_S: f64 = 1.0;
+pub(super) const CLOSE_S: f64 = 0.6;
 const REST_S: f64 = 0.4;
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
@@ -152,11 +152,11 @@ fn rest_rad(crank: &Crank) -> f64 {
 }
 
 /// Writer of consecutive goals.
-pub(crate) struct Writer {
-    pub(crate) goals: Vec<HandGoal>,
+pub(super) struct Writer {
+    pub(super) goals: Vec<HandGoal>,
     steps: Vec<Step>,
-    pub(crate) at: HandGoal,
-    pub(crate) away: HandGoal,
+    pub(super) at: HandGoal,
+    pub(super) away: HandGoal,
 }
 
 impl Writer {
@@ -165,16 +165,16 @@ impl Writer {
         Self { goals: vec![at], steps: Vec::new(), at, away: at }
     }
 
-    pub(crate) fn now_s(&self) -> f64 {
+    pub(super) fn now_s(&self) -> f64 {
         PERIOD_S * (self.goals.len() - 1) as f64
     }
 
-    pub(crate) fn wait(&mut self, seconds: f64) {
+    pub(super) fn wait(&mut self, seconds: f64) {
         self.go(seconds, self.at);
     }
 
     /// Moves with minimum jerk.
-    pub(crate) fn go(&mut self, seconds: f64, to: HandGoal) {
+    pub(super) fn go(&mut self, seconds: f64, to: HandGoal) {
         let (from, count) = (self.at, (seconds / PERIOD_S).round().max(1.0) as usize);
         for k in 1..=count {
             let u = k as f64 / count as f64;
@@ -188,13 +188,13 @@ impl Writer {
         self.at = to;
     }
 
-    pub(crate) fn say(&mut self, words: impl Into<String>, holds: bool) {
+    pub(super) fn say(&mut self, words: impl Into<String>, holds: bool) {
         let until_s = self.now_s();
         self.steps.push(Step { until_s, words: words.into(), holds });
     }
 
     /// Waits, approaches and closes on an object of `width_m` at `at`. `over_m`: height from which it is approached.
-    pub(crate) fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
+    pub(super) fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
         self.wait(free_s.max(LEAST_FREE_S));
         self.say("Touch nothing.", false);
         let open = HandGoal { center_m: at, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
@@ -211,7 +211,7 @@ impl Writer {
     }
 
     /// Opens, retreats and waits.
-    pub(crate) fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
+    pub(super) fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
         self.wait(REST_S);
         self.go(CLOSE_S, HandGoal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
         let up = self.at.center_m + Vec2::new(0.0, over_m.max(AWAY_M));
@@ -308,12 +308,12 @@ fn usual_drag_n(crank: &Crank, asked: &Experiment) -> f64 {
     crank.effects.iter().filter(resists).map(|e| e.force(&motion)).sum::<f64>().abs()
 }
 
-pub(crate) fn unknown(asked: &Experiment) -> String {
+pub(super) fn unknown(asked: &Experiment) -> String {
     format!("Nobody here knows the motion `{}`; do it on the real object and load the recording.", asked.id)
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+pub(super) mod tests {
     use super::*;
     use haptics::law::EccentricMass;
     use haptics::world::presets;

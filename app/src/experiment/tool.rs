@@ -2,11 +2,11 @@
 //! force.
 
 use super::captured::place_m;
-use super::like::{Like, rate_hz};
+use super::motion_plan::rate_hz;
 use super::perform::what_is_known;
+use super::rehearse::Like;
 use super::sensing::see_through;
-use super::simulated::SIMULATED;
-use super::timetable;
+use super::{SIMULATED, timetable};
 use estimator::diagnose::{Experiment, Insertions, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::law::object::MembraneHistory;

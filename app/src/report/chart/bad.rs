@@ -1,7 +1,7 @@
 //! Unreliable parts of a recording: gaps, which no curve may cross, and spans in which a channel is constant or
 //! saturated.
 
-use super::frame::{Frame, key, short};
+use super::{Frame, key, short};
 use crate::ui::format;
 use crate::ui::plots::{Columns, Samples, decimate_in};
 use crate::ui::prepare::{Prepared, Trace};

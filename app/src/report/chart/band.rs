@@ -1,7 +1,6 @@
 //! States over time, and the subtask of each.
 
-use super::bad;
-use super::frame::{LEFT, RIGHT, WIDE, key, short};
+use super::{LEFT, RIGHT, WIDE, bad, key, short};
 use crate::report::style::state_variable;
 use crate::ui::format;
 use crate::ui::panels::segments::word;

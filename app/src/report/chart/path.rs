@@ -1,7 +1,6 @@
 //! The path in space, with the detected constraints. Both axes have the same scale.
 
-use super::bad;
-use super::frame::{Frame, key, range_of};
+use super::{Frame, bad, key, range_of};
 use crate::ui::prepare::Prepared;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;

@@ -1,7 +1,6 @@
 //! Measured curves, and measured curves over simulated ones.
 
-use super::bad;
-use super::frame::{Frame, WIDE, key, range_of};
+use super::{Frame, WIDE, bad, key, range_of};
 use crate::report::collect::Drawn;
 use crate::report::style::{role_name, state_variable};
 use crate::ui::format;
@@ -94,7 +93,7 @@ fn tints(segmentation: Option<&Segmentation>, frame: &Frame, holes: &[(f64, f64)
             @for (t0, t1) in bad::outside(holes, (interval.t0, interval.t1)) {
                 @let (from, to) = (frame.right(t0), frame.right(t1));
                 @if to - from > 0.5 {
-                    rect class="tint" x=(super::frame::short(from)) y="0" width=(super::frame::short(to - from)) height=(super::frame::short(height))
+                    rect class="tint" x=(super::short(from)) y="0" width=(super::short(to - from)) height=(super::short(height))
                         style=(format!("fill:var(--{})", state_variable(interval.state))) {}
                 }
             }

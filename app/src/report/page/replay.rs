@@ -136,12 +136,12 @@ fn replay(drawn: &Drawn, simulation: &Simulation) -> Markup {
             p class="muted small" { "Nothing is simulated in the " @if holes.len() == 1 { "gap" } @else { (holes.len()) " gaps" }
                 ": what was held goes on where the fingers are found again." }
         }
-        div class="keys small" { (chart::frame::key("measured", "measured; below: measured less simulated")) (chart::frame::key("simulated", "simulated")) }
+        div class="keys small" { (chart::key("measured", "measured; below: measured less simulated")) (chart::key("simulated", "simulated")) }
         // A single channel has the whole width.
         @let alone = simulation.predicted.len() == 1;
         div class=[(!alone).then_some("pair")] {
             @for channel in &simulation.predicted {
-                @let width = if alone { chart::frame::WIDE } else { 0.5 * chart::frame::WIDE };
+                @let width = if alone { chart::WIDE } else { 0.5 * chart::WIDE };
                 (chart::against_virtual(&drawn.prepared, channel, &simulation.time_s, rms(&channel.name), width))
             }
         }
