@@ -1,6 +1,6 @@
 //! Whether there is enough data, as a short table.
 
-use crate::ui::format;
+use crate::text::format;
 use estimator::online::enough::Enough;
 use std::fmt::Write;
 

@@ -143,7 +143,7 @@ impl History {
         let trainees = store.trainees().map_err(|problem| anyhow!(problem))?;
         if let Some(to) = &self.csv {
             let text = table::csv(&attempts).map_err(|problem| anyhow!(problem))?;
-            crate::ui::project::write_whole(to, &text).map_err(|problem| anyhow!(problem))?;
+            crate::write_whole::write_whole(to, &text).map_err(|problem| anyhow!(problem))?;
         }
         let groups = groups(&attempts);
         let text = in_words(&trainees, &groups, self.csv.as_deref());

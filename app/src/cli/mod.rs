@@ -24,8 +24,6 @@ pub(crate) mod simulate;
 mod stated;
 pub mod table;
 
-pub(crate) use demo::built_in;
-
 use crate::tasks::Chosen;
 use clap::{Args, Parser, Subcommand};
 use estimator::log::{LogError, Watch};

@@ -187,5 +187,5 @@ impl Keeper {
 
 fn export(to: &Path, attempts: &[Attempt]) -> Result<(), String> {
     let text = super::table::csv(attempts)?;
-    crate::ui::project::write_whole(to, &text)
+    crate::write_whole::write_whole(to, &text)
 }

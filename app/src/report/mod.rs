@@ -16,7 +16,7 @@ pub use collect::Sheet;
 pub use page::page;
 pub use provenance::Provenance;
 
-use crate::ui::session::sentence;
+use crate::text::sentence::sentence;
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 

@@ -162,7 +162,7 @@ impl App {
     fn subject(&self) -> String {
         match self.session.workspace {
             Workspace::Train | Workspace::Devices => {
-                self.session.trainer.scene().map(|(_, w)| super::format::capitalised(&w.name)).unwrap_or_default()
+                self.session.trainer.scene().map(|(_, w)| crate::text::format::capitalised(&w.name)).unwrap_or_default()
             }
             Workspace::Calibrate | Workspace::Diagnose => {
                 self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default()

@@ -5,9 +5,10 @@
 use super::assistant::Assistant;
 use super::comfort::Comfort;
 use super::dock::Dock;
-use super::project::{Project, write_whole};
+use super::project::Project;
 use super::recent::Recent;
 use super::session::Session;
+use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,7 @@ pub struct State {
     /// What is open.
     pub project: Project,
     /// The project file that it belongs to.
-    #[serde(with = "super::any_path")]
+    #[serde(with = "crate::path_bytes")]
     pub project_path: Option<PathBuf>,
     /// Where panels stand.
     pub dock: Dock,

@@ -3,9 +3,10 @@
 use super::diagnosing::{Answer, options, plain};
 use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Outcome};
-use super::mapping::name_of;
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::session::Session;
+use crate::text::file_name::name_of;
+use crate::text::sentence::sentence;
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Validation};
 use haptics::recording::Recording;
 use std::path::PathBuf;
@@ -109,7 +110,7 @@ fn one(recording: &Recording, options: &Options, diagnosis: &Diagnosis) -> Check
     let found = found.map_err(|error| sentence(&error.to_string())).and_then(|mut all| {
         if all.is_empty() { Err("Nothing could be compared.".to_owned()) } else { Ok(all.swap_remove(0)) }
     });
-    let usual = crate::diagnosis_words::force_unit(diagnosis).to_owned();
+    let usual = crate::text::diagnosis_words::force_unit(diagnosis).to_owned();
     let unit = found.as_ref().ok().and_then(|v| v.unit.clone()).unwrap_or(usual);
     Checked { name: recording.name.clone(), found, unit }
 }

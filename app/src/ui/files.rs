@@ -2,8 +2,9 @@
 
 use super::checking::On;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose};
-use super::session::{Session, sentence};
+use super::session::Session;
 use crate::export::{Format, export};
+use crate::text::sentence::sentence;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -189,5 +190,5 @@ pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), String> {
-    super::project::write_whole(path, text)
+    crate::write_whole::write_whole(path, text)
 }

@@ -5,7 +5,8 @@ use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Outcome, Replayed};
 use super::plots::Levels;
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::session::Session;
+use crate::text::sentence::sentence;
 use estimator::online::enough::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, segment_by};
@@ -220,7 +221,7 @@ pub fn replay_forces(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<
 /// Predicted forces in shown units; their samples stay in the simulation.
 fn curves(simulation: &Arc<Simulation>) -> Vec<(String, Arc<Levels>)> {
     let shown = |(index, channel): (usize, &haptics::recording::Channel)| {
-        let (_, factor) = super::format::channel_unit(&channel.unit);
+        let (_, factor) = crate::text::format::channel_unit(&channel.unit);
         (channel.name.clone(), Arc::new(Levels::of_simulation(simulation, index, factor)))
     };
     simulation.predicted.iter().enumerate().map(shown).collect()

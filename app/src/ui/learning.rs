@@ -27,7 +27,7 @@ impl Practised {
 
     /// For people.
     pub fn words(&self) -> String {
-        format!("{}{}", super::format::capitalised(&self.lesson.replace('-', " ")), self.conditions.in_words())
+        format!("{}{}", crate::text::format::capitalised(&self.lesson.replace('-', " ")), self.conditions.in_words())
     }
 }
 

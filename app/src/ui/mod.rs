@@ -7,7 +7,6 @@
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
 pub mod actions;
-pub mod any_path;
 pub mod app;
 pub mod assistant;
 pub mod atlas;
@@ -23,7 +22,6 @@ pub mod film;
 pub mod first_picture;
 pub mod fit_choice;
 pub mod fitting;
-pub mod format;
 pub mod frames;
 pub mod gallery;
 pub mod guided;

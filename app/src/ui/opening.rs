@@ -1,9 +1,11 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
 use super::jobs::{JobKind, Outcome, Ticket};
-use super::mapping::{self, name_of};
+use super::mapping;
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::session::Session;
+use crate::text::file_name::name_of;
+use crate::text::sentence::sentence;
 use estimator::log::{LogError, Watch};
 use haptics::recording::Meta;
 use haptics::world::World;

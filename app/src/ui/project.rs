@@ -4,8 +4,10 @@ use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Outcome, Ticket};
 use super::plots::choices::KeptChoices;
 use super::prepare::Prepared;
-use super::session::{Session, Workspace, sentence};
+use super::session::{Session, Workspace};
+use crate::text::sentence::sentence;
 use crate::video::VideoSource;
+use crate::write_whole::write_whole;
 use estimator::log::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -20,10 +22,10 @@ const VERSION: u32 = 1;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// The log.
-    #[serde(with = "super::any_path")]
+    #[serde(with = "crate::path_bytes")]
     pub log: PathBuf,
     /// A sidecar that does not stand beside it.
-    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::any_path")]
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "crate::path_bytes")]
     pub meta: Option<PathBuf>,
 }
 
@@ -108,13 +110,6 @@ impl Project {
         let text = serde_json::to_string_pretty(&project).map_err(|e| sentence(&e.to_string()))? + "\n";
         write_whole(path, &text)
     }
-}
-
-/// Writes beside the file first, so that a crash or a full disk leaves the old one or the new one.
-pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
-    haptics::text_file::write(path, text).map_err(|e| {
-        format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
-    })
 }
 
 /// Whether a JSON file is a project.

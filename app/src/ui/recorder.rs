@@ -1,16 +1,14 @@
 //! The window's part of recording: the card beside the trainer, what becomes of a recording that ended, and recordings that a killed
 //! program left behind.
 
-use super::format;
 use super::icons::Icon;
 use super::jobs::{JobKind, Outcome};
-use super::mapping::name_of;
-use super::messages;
-use super::opening;
 use super::session::{Session, Tone};
-use super::theme;
 use super::widgets::{primary_button, recording_light, remark};
+use super::{messages, opening, theme};
 use crate::recorder::{Status, folder};
+use crate::text::file_name::name_of;
+use crate::text::format;
 use egui::Ui;
 use std::path::Path;
 

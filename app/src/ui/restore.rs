@@ -2,9 +2,9 @@
 
 use super::app::App;
 use super::autosave::Autosave;
-use super::mapping::name_of;
 use super::messages;
 use super::session::Tone;
+use crate::text::file_name::name_of;
 use egui::Ui;
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! The rules of a task while they are edited: a draft that is tried at once where it can be used.
 
 use super::jobs::{JobKind, Outcome};
-use super::session::{Session, sentence};
-use estimator::segment::SystemState;
+use super::session::Session;
+use crate::text::sentence::sentence;
 use estimator::segment::definition::{Definition, StateRule, signals};
-use estimator::segment::library;
+use estimator::segment::{SystemState, library};
 use haptics::recording::Task;
 use std::sync::Arc;
 

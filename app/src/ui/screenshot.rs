@@ -1,10 +1,7 @@
 //! Panels and workspaces drawn without a window: for the command line, reports and tests.
 
 use super::app::App;
-use super::diagnosing;
 use super::dock::Pane;
-use super::experimenting;
-use super::fitting;
 use super::mapping::Mapping;
 use super::panels::diagnose::DiagnosePanel;
 use super::panels::diagnosis::DiagnosisPanel;
@@ -19,10 +16,10 @@ use super::panels::trainer_view::TrainerView;
 use super::plots::choices::XyAxis;
 use super::plots::{LogView, can_compare};
 use super::prepare::Prepared;
-use super::scene;
 use super::session::{FitChoice, Session, Workspace};
 use super::theme::{self, space};
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use super::{diagnosing, experimenting, fitting, scene};
 use crate::history::History;
 use crate::video::VideoSource;
 use anyhow::{Context as _, anyhow};
@@ -346,7 +343,7 @@ fn unknown_barrel() -> Result<World, String> {
     const FULL: usize = 1;
     let (lessons, _) = crate::lessons::all(None);
     let barrel = lessons.iter().find(|lesson| lesson.id == "barrel").ok_or("the lesson of the barrel is missing")?;
-    barrel.world(FULL).map_err(|error| super::session::sentence(&error.to_string()))
+    barrel.world(FULL).map_err(|error| crate::text::sentence::sentence(&error.to_string()))
 }
 
 /// The scripted operator in the middle of its task, or a person before it.

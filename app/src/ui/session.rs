@@ -231,7 +231,7 @@ impl Session {
 
     /// Says where something was written: the name, and the whole path for those who point at it.
     pub fn say_saved(&mut self, path: &std::path::Path) {
-        let text = format!("Saved {}.", super::mapping::name_of(path));
+        let text = format!("Saved {}.", crate::text::file_name::name_of(path));
         self.say(Tone::Done, text.clone());
         if let Some(banner) = self.banners.iter_mut().find(|b| b.text == text) {
             banner.hint = path.display().to_string();
@@ -408,24 +408,5 @@ impl Session {
                 self.fail(problem);
             }
         }
-    }
-}
-
-/// Capital first, full stop last. A column's name in front stays as it is: `f_N` is no `F_N`.
-pub fn sentence(text: &str) -> String {
-    let text = text.trim();
-    let named = text.split(' ').next().is_some_and(|word| word.contains('_'));
-    let text = if named { text.to_owned() } else { super::format::capitalised(text) };
-    if text.ends_with(['.', '!', '?']) { text } else { format!("{text}.") }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sentences_are_sentences() {
-        assert_eq!(sentence("the file is empty"), "The file is empty.");
-        assert_eq!(sentence("f_N stops changing"), "f_N stops changing.");
     }
 }

@@ -2,9 +2,10 @@
 
 use super::dock::Pane;
 use super::jobs::{JobKind, Outcome};
-use super::mapping::name_of;
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::session::Session;
+use crate::text::file_name::name_of;
+use crate::text::sentence::sentence;
 use crate::video::{self, Video, VideoError, VideoSource, Watch};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use estimator::signal::lag::lag;

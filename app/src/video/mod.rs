@@ -69,7 +69,7 @@ pub enum VideoError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VideoSource {
     /// The file.
-    #[serde(with = "crate::ui::any_path")]
+    #[serde(with = "crate::path_bytes")]
     pub file: PathBuf,
     /// Number of the recording that it shows.
     #[serde(default)]

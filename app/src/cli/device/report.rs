@@ -7,7 +7,7 @@ mod push;
 pub use limits::{Limits, limit_sentence, limits};
 
 use super::super::Output;
-use crate::ui::format::short_time;
+use crate::text::format::short_time;
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
 use haptics::device::haply::Tally;

@@ -1,7 +1,7 @@
 //! Where a recording is not to be trusted: gaps, that no curve may cross, and stretches of channels that stand still or at a limit.
 
 use super::{Frame, key, short};
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::plots::{Columns, Samples, decimate_in};
 use crate::ui::prepare::{Prepared, Trace};
 use egui_plot::PlotPoint;

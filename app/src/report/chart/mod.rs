@@ -12,7 +12,7 @@ pub use cloud::residuals;
 pub use path::path;
 pub use signals::{against_virtual, signals};
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::plots::{decimals, marks};
 use maud::{Markup, html};
 use std::fmt::Write as _;

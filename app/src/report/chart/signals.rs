@@ -3,7 +3,7 @@
 use super::{Frame, WIDE, bad, key, range_of};
 use crate::report::collect::Drawn;
 use crate::report::style::{role_name, state_variable};
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::plots::Levels;
 use crate::ui::prepare::{Group, Prepared, Trace};
 use egui_plot::PlotPoint;

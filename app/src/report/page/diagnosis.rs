@@ -1,14 +1,14 @@
 //! What the simulation gets wrong: causes with their evidence and gain, what else they could be, what to record next.
 
 use super::failed;
-use crate::diagnosis_words::{
+use crate::report::chart;
+use crate::report::collect::Content;
+use crate::text::diagnosis_words::{
     compared_unit, gain_unit, headline, listed, residual_unit, said_in_words, shown_unit, small, state_in_words,
     symbol, title,
 };
-use crate::report::chart;
-use crate::report::collect::Content;
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::diagnose::{Cause, CauseParameter, Diagnosis, RolloutOf};
 use estimator::words::amount;
 use haptics::law::{self, Kind};

@@ -9,9 +9,9 @@ mod unknown;
 
 use super::source::Hashed;
 use super::{Provenance, Sheet, style};
-use crate::diagnosis_words::headline;
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::diagnosis_words::headline;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Nothing may be fetched and nothing may run, whatever a file name says.

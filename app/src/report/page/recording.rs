@@ -3,9 +3,9 @@
 use super::fact;
 use crate::report::chart;
 use crate::report::collect::{Content, Drawn};
-use crate::ui::format;
-use crate::ui::panels::segments::word;
-use crate::ui::session::sentence;
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::text::states::state_of_task;
 use estimator::segment::{Interval, Segmentation};
 use haptics::recording::Recording;
 use maud::{Markup, html};
@@ -148,7 +148,7 @@ fn intervals(segmentation: &Segmentation) -> Markup {
                 tbody { @for interval in told.iter().take(FEW_ROWS) {
                     tr {
                         td { (interval.subtask.as_deref().unwrap_or_default()) }
-                        td { (word(segmentation, interval.state)) }
+                        td { (state_of_task(segmentation, interval.state)) }
                         td class="number" { (format::number(interval.t0, 2)) }
                         td class="number" { (format::number(interval.t1, 2)) }
                         td class="number" { (format::number(100.0 * interval.probability, 0)) " %" }

@@ -1,10 +1,10 @@
 //! Real against virtual: the measured motion through the calibrated world.
 
 use super::failed;
-use crate::diagnosis_words::listed;
 use crate::report::chart;
 use crate::report::collect::{Content, Drawn};
-use crate::ui::format;
+use crate::text::diagnosis_words::listed;
+use crate::text::format;
 use estimator::diagnose::{Diagnosis, Verdict};
 use estimator::signal::noise::white_noise;
 use estimator::simulate::Simulation;

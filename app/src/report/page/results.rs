@@ -1,11 +1,11 @@
 //! Parameters with their errors, and constraints.
 
 use super::{fact, failed};
-use crate::constraint_words;
 use crate::report::chart;
 use crate::report::collect::{Content, Drawn, MOST_DRAWN, is_lost};
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::constraint_words::constraint_words;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::estimate::{Constraint, ConstraintKind, Parameter};
 use maud::{Markup, html};
 

@@ -1,9 +1,9 @@
 //! The list: names, keys, groups, and what is in the way.
 
+use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
 use crate::ui::dock::Pane;
-use crate::ui::format;
 use crate::ui::session::{Session, Workspace};
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;

@@ -1,13 +1,12 @@
 //! Recordings to draw: those that travel with the program, and performances of the scripted operator.
 
 use super::filmed::filmed;
-use crate::cli::built_in;
-use crate::experiment;
+use crate::built_in::built_in;
 use crate::history::{Attempt, Conditions};
 use crate::ui::screenshot::{Panel, PanelInput, session_for};
 use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
 use crate::video::VideoSource;
-use crate::worlds;
+use crate::{experiment, worlds};
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::{Experiment, SensorFault};
 use haptics::Vec2;

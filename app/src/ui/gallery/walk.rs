@@ -1,14 +1,13 @@
 //! The whole way as a person goes it, by pointer and keys: drop a foreign table, map its columns, look at its states, move a boundary, try a
 //! value, diagnose, extend, feel the difference, write the report. Every step is checked and can be drawn.
 
+use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::format;
 use crate::ui::jobs::JobKind;
-use crate::ui::scene;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::{Session, Tone, Workspace};
-use crate::ui::theme;
 use crate::ui::trainer::Clock;
+use crate::ui::{scene, theme};
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
 use egui::{Event, Key, Modifiers, Pos2, Role, pos2};

@@ -10,9 +10,10 @@ pub use pointer::{Pointed, pointer_through};
 pub use trace::{Point, Trace, trace_of};
 
 use super::jobs::{JobKind, Outcome};
-use super::session::{Session, Workspace, sentence};
+use super::session::{Session, Workspace};
 use super::trainer::{Operator, Sensors, Trainer, WorldChoice};
 use crate::recorder::Stopping;
+use crate::text::sentence::sentence;
 use estimator::training::lesson::{Attempted, Grade, Lesson, Progress, attempt, expert, grade, practise};
 use haptics::recording::Meta;
 use haptics::world::World;

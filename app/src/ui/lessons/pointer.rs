@@ -2,7 +2,8 @@
 
 use super::Phase;
 use super::trace::Point;
-use crate::ui::session::{Session, sentence};
+use crate::text::sentence::sentence;
+use crate::ui::session::Session;
 use crate::ui::trainer::Pinch;
 use estimator::training::lesson::Lesson;
 use haptics::Vec2;

@@ -1,6 +1,7 @@
 //! The dialog's frame: heading, columns on the left, preview on the right, what to do below.
 
-use super::{Mapping, name_of, options, plot, save, table};
+use super::{Mapping, options, plot, save, table};
+use crate::text::file_name::name_of;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;

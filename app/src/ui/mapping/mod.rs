@@ -16,7 +16,8 @@ mod table;
 pub mod words;
 
 use super::jobs::{JobKind, Jobs, Outcome};
-use super::session::sentence;
+use crate::text::file_name::name_of;
+use crate::text::sentence::sentence;
 use draft::Draft;
 use estimator::log::{LogError, sidecar_path, write_sidecar};
 use facts::FileFacts;
@@ -108,11 +109,6 @@ pub fn mends(error: &LogError) -> bool {
             | LogError::DuplicateColumn { .. }
             | LogError::NothingSelected { .. }
     )
-}
-
-/// The name of a file, for people.
-pub fn name_of(path: &Path) -> String {
-    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
 #[cfg(test)]

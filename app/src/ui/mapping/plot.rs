@@ -2,7 +2,7 @@
 
 use super::Mapping;
 use super::preview::Seen;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
 use crate::ui::plots::{decimate, marks, time_axis, value_axis};
 use crate::ui::prepare::{Group, Prepared};

@@ -1,9 +1,9 @@
 //! What comes of a mapping: loaded in the background, a moment after the last edit.
 
 use super::draft::Draft;
+use crate::text::sentence::sentence;
 use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::sentence;
 use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;
 use estimator::signal::task::{is_two_fingered, task_signals, tip_series};

@@ -1,9 +1,10 @@
 //! Setting states by hand: handles between the states of the band, and what a right click on a state offers.
 
+use crate::text::format;
+use crate::text::states::state_name;
 use crate::ui::by_hand::Change;
-use crate::ui::format;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, state_color, state_name};
+use crate::ui::theme::{self, palette, state_color};
 use crate::ui::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};

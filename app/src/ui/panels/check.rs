@@ -1,9 +1,9 @@
 //! *Check on other recordings*: what was found, on data that took no part in it.
 
-use crate::diagnosis_words::{listed, shown_unit, title};
+use crate::text::diagnosis_words::{listed, shown_unit, title};
+use crate::text::format;
 use crate::ui::checking::{Checked, Holds, On, holds};
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;

@@ -1,6 +1,6 @@
 //! The line between hand and world: how late it is, whether a model answers, and what the picture shows then.
 
-use crate::ui::format::{number, with_error};
+use crate::text::format::{number, with_error};
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::trainer::Trainer;

@@ -1,7 +1,7 @@
 //! The devices page, right column: what the running device can do, what it does now, and a soft push to try it.
 
 use super::{Panel, trainer_timing};
-use crate::ui::format::{number, short_time};
+use crate::text::format::{number, short_time};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};

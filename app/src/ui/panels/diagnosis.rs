@@ -1,15 +1,15 @@
 //! What a diagnosis answers, beside its curves: the verdict, the causes, the extended model, what to record next.
 
-use super::Panel;
-use super::{causes, check, diagnose, next_experiment, why_not};
-use crate::diagnosis_words::{compared_unit, headline, residual_unit, title};
+use super::{Panel, causes, check, diagnose, next_experiment, why_not};
+use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::plots::inks;
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
@@ -127,7 +127,7 @@ fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
                 let noise = left.noise_floor.map_or_else(|| RichText::new("–"), shown);
                 figures(
                     ui,
-                    RichText::new(theme::state_name(left.state)).size(12.0),
+                    RichText::new(crate::text::states::state_name(left.state)).size(12.0),
                     [shown(left.rms_before), after, noise],
                 );
             }

@@ -1,11 +1,12 @@
 //! Over the trainer's picture while a person does an experiment: what to do now, how long still, and a ghost of the fingers to follow.
 
-use crate::ui::format;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::guided::{Guided, Phase};
 use crate::ui::icons::Icon;
 use crate::ui::lessons::{self, Point, Wait};
 use crate::ui::scene::SceneResponse;
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{primary_button, remark};

@@ -1,6 +1,6 @@
 //! What the marks of the force gauges and of their running curve mean.
 
-use crate::ui::format::number;
+use crate::text::format::number;
 use crate::ui::theme::{self, palette, role};
 use crate::ui::widgets::{compact, swatch};
 use egui::{Color32, Sense, Shape, Stroke, Ui, vec2};

@@ -1,13 +1,14 @@
 //! Lessons beside the trainer's picture: the list, what one is about, and how far an attempt is.
 
 use super::debrief;
+use crate::text::format;
 use crate::ui::dock::Pane;
 use crate::ui::icons::{self, Icon};
 use crate::ui::lessons::{Open, Phase};
+use crate::ui::markdown;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
-use crate::ui::{format, markdown};
 use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;

@@ -1,9 +1,10 @@
 //! What has been measured so far, and what is still missing: beside the servo, and for a loaded recording.
 
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::assistant::{NEEDLE, only_thing};
-use crate::ui::format;
 use crate::ui::icons::Icon;
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Trainer, Watch, watched_task};
 use crate::ui::widgets::{bar, card, compact, plain_card, remark, segmented};

@@ -1,7 +1,7 @@
 //! The motion that an experiment asks of a mechanism: a curve to follow on the real machine, and a file of it.
 
 use crate::experiment::MotionPlan;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
 use crate::ui::plots::{decimals, marks};
 use crate::ui::session::Session;

@@ -2,15 +2,16 @@
 //! Train, loaded from a file.
 
 use super::motion_plan;
-use crate::diagnosis_words::{listed, one, small, title};
 use crate::experiment::{Outcome, Rehearsal};
+use crate::text::diagnosis_words::{listed, one, small, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::diagnosing::is_mechanism;
 use crate::ui::experimenting::{ROUNDS, Stage};
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
 use egui::{Align, Layout, RichText, TextEdit, Ui};

@@ -1,7 +1,7 @@
 //! One parameter: another value is tried on the replay at once, and what is known of it beforehand is stated.
 
+use crate::text::format::{self, Quantity};
 use crate::ui::fit_choice::Stated;
-use crate::ui::format::{self, Quantity};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::teach;

@@ -1,8 +1,8 @@
 //! The fitted parameters: value ± error in sensible units; what the recording cannot show is greyed, with its reason.
 
 use super::Panel;
+use crate::text::format;
 use crate::ui::fit_choice::Stated;
-use crate::ui::format;
 use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
@@ -208,7 +208,7 @@ fn explain(ui: &mut Ui, parameter: &Parameter) {
         ui.add_space(space::XS);
     }
     ui.label(theme::strong(if parameter.identified { words::HOW_IT_WAS_FOUND } else { words::WHY_NO_VALUE }));
-    ui.label(crate::ui::session::sentence(&parameter.how));
+    ui.label(crate::text::sentence::sentence(&parameter.how));
     ui.label(theme::caption(ui, format!("{} · {} samples", parameter.name, parameter.samples)));
     ui.label(theme::caption(ui, words::CLICK_TO_TRY));
 }

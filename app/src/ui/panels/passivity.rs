@@ -1,6 +1,6 @@
 //! The passivity observer's figure, and the switch of the controller.
 
-use crate::ui::format::number;
+use crate::text::format::number;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme;

@@ -2,8 +2,8 @@
 
 use super::Panel;
 use crate::history::Attempt;
+use crate::text::format;
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::Purpose;
 use crate::ui::learning::{Learned, Practised};
@@ -378,7 +378,7 @@ fn table(ui: &mut Ui, rows: &[Attempt], p: &Palette) {
                 (true, false) => (words::NOT_MET, p.secondary),
             };
             ui.label(RichText::new(criterion).size(12.0).color(color));
-            let file = attempt.recording.as_ref().map(|path| (crate::ui::mapping::name_of(path), path));
+            let file = attempt.recording.as_ref().map(|path| (crate::text::file_name::name_of(path), path));
             match file {
                 Some((name, path)) => {
                     ui.add(egui::Label::new(RichText::new(name).size(12.0)).truncate())

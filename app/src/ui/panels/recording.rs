@@ -1,9 +1,9 @@
 //! The left column of the calibration: which recording, how it is read, refit, save.
 
 use super::Panel;
+use crate::text::format;
 use crate::ui::files;
 use crate::ui::fit_choice::Stated;
-use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;

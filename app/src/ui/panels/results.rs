@@ -2,10 +2,11 @@
 
 use super::Panel;
 use super::parameters::ParametersPanel;
-use crate::ui::format;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::icons::{self, Icon};
 use crate::ui::plots::places;
-use crate::ui::session::{Session, Workspace, sentence};
+use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, plain_card, primary_button, remark};
 use egui::{RichText, ScrollArea, Ui};
@@ -143,7 +144,7 @@ fn facts(constraint: &Constraint) -> Vec<String> {
         Some(false) => facts.push(words::GIVES_WAY_MEASURABLY.to_owned()),
         None => {}
     }
-    facts.extend(crate::constraint_words(constraint).iter().map(|w| sentence(w)));
+    facts.extend(crate::text::constraint_words::constraint_words(constraint).iter().map(|w| sentence(w)));
     facts
 }
 

@@ -3,7 +3,7 @@
 
 use super::Panel;
 use super::rules_table::{states, subtasks};
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
 use crate::ui::rules::{self, Rules};
 use crate::ui::session::Session;

@@ -1,12 +1,12 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
-use super::Panel;
-use super::boundaries;
 use super::rules::parameter;
-use crate::ui::format;
+use super::{Panel, boundaries};
+use crate::text::format;
+use crate::text::states::{state_of_task, state_short};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space, state_color, state_name};
+use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
 use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
@@ -27,7 +27,6 @@ mod words {
     pub const NO_STATES_WERE: &str = "No states were told in this recording.";
     pub const NO_STATES_THE_FIT: &str = "No states: the fit did not succeed.";
     pub const SUBTASKS: &str = "Subtasks";
-    pub const MOVING: &str = "Moving";
     pub const MEAN_PROBABILITY: &str = "mean probability";
     pub const SAMPLES_SHOW_IT: &str = "of its samples show this state by themselves";
     pub const AGAINST_THE_LABELS: &str = "Against the labels of this recording";
@@ -144,12 +143,13 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let color = state_color(dark, interval.state);
         ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
         let ink = theme::ink_on(color);
-        if rect.width() > LEAST_WORD && !caption(ui, rect, word(segmentation, interval.state), ink) {
-            caption(ui, rect, theme::state_short(interval.state), ink);
+        if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, interval.state), ink) {
+            caption(ui, rect, state_short(interval.state), ink);
         }
         let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
-        response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word(segmentation, interval.state)));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, interval.state))
+        });
         // Menu and tooltip of hundreds of states would cost most of the picture.
         if !response.hovered() && !response.clicked() && !some_menu_is_open {
             continue;
@@ -171,7 +171,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let by_model = segmentation.posterior.is_some();
         let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
         response.on_hover_ui(|ui| {
-            tooltip(ui, interval, word(segmentation, interval.state), shows, by_model);
+            tooltip(ui, interval, state_of_task(segmentation, interval.state), shows, by_model);
             if fits_without_states {
                 ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
             }
@@ -188,12 +188,6 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     }
     let x = x_of(session, band.x_range(), session.cursor_s);
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
-}
-
-/// The state in words; what turns or slides is not known of every mechanism.
-/// What a state is called in a recording of this task.
-pub fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
-    if state == SystemState::Turning && segmentation.task != "crank" { words::MOVING } else { state_name(state) }
 }
 
 /// Text in a box when it fits.
@@ -272,7 +266,7 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
         for state in present {
             let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();
             swatch(ui, state_color(dark, state));
-            ui.label(theme::caption(ui, word(segmentation, state)))
+            ui.label(theme::caption(ui, state_of_task(segmentation, state)))
                 .on_hover_text(format!("{} s in all", format::number(total, 1)));
             ui.add_space(space::XS);
         }
@@ -340,7 +334,7 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
                     }
                 });
                 row.col(|ui| drop(ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)))));
-                row.col(|ui| elided(ui, RichText::new(word(segmentation, interval.state))));
+                row.col(|ui| elided(ui, RichText::new(state_of_task(segmentation, interval.state))));
                 let subtask = interval.subtask.as_deref().map(format::object).unwrap_or_default();
                 row.col(|ui| elided(ui, RichText::new(subtask).color(p.secondary)));
             });

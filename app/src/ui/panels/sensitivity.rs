@@ -1,7 +1,7 @@
 //! How the result depends on the parameters, and how they go together: bars, and a matrix of correlations.
 
 use super::Panel;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::JobKind;
 use crate::ui::sensitivity::{CHANGE, Correlations, Effect};

@@ -1,10 +1,11 @@
 //! The drop-down of tasks: the built-in ones and those of the user.
 
 use crate::tasks::Chosen;
-use crate::ui::format;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::icons::Icon;
 use crate::ui::rules::Rules;
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::widgets::call;
 use egui::{ComboBox, Ui};

@@ -1,14 +1,13 @@
 //! Beside the trainer's picture: world, operator, recording, forces, timing.
 
 use super::{Panel, legend};
-use crate::ui::files;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::jobs::Purpose;
-use crate::ui::recorder;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
 use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
+use crate::ui::{files, recorder};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 

@@ -1,6 +1,6 @@
 //! How well the servo keeps its time, in numbers.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{card, fact};

@@ -1,6 +1,6 @@
 //! Play, pause, speed, and an overview of the whole recording to move in.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color};

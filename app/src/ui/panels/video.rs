@@ -1,11 +1,11 @@
 //! The video of the hand: its picture at the time cursor, and where it lies in time.
 
 use super::Panel;
+use crate::text::file_name::name_of;
+use crate::text::format;
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::mapping::name_of;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::video::State;

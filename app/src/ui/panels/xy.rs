@@ -1,10 +1,11 @@
 //! The log as one signal against another: which two, coloured by what, and the plot.
 
-use crate::ui::format;
+use crate::text::format;
+use crate::text::states::state_name;
 use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
 use crate::ui::plots::{AXIS_WIDTH, GUTTER, Levels, Recipe, Sources, XyCache, XyInput, xy_plot};
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, palette, space, state_name};
+use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{call, compact, segmented, swatch};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;

@@ -4,7 +4,7 @@ use super::choices::GroupChoice;
 use super::curves::{Curve, Layer, NOISE_SWITCH};
 use super::row::{RowInput, RowKind, curve_color};
 use super::title_menu::title_menu;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 

@@ -1,6 +1,6 @@
 //! Curves of a diagnosis: measured against modelled force over time, and what is left against each suspect variable.
 
-use crate::ui::format;
+use crate::text::format;
 use egui_plot::PlotPoint;
 use estimator::diagnose::Diagnosis;
 use estimator::diagnose::course::{Course, Instant};

@@ -3,7 +3,7 @@
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use super::{Likeness, SceneLayers};
-use crate::ui::format::{number, significant};
+use crate::text::format::{number, significant};
 use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;

@@ -1,7 +1,7 @@
 //! A recording without a place in space: one coordinate, as a carriage on a rail or as a crank on its shaft. Their sizes are the picture's:
 //! the recording knows none. The rail is as long as the way that was recorded.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::plots::{decimals, marks};
 use crate::ui::prepare::Prepared;
 use crate::ui::theme::{self, palette, space};

@@ -1,6 +1,7 @@
 //! Every panel on an empty session, on blocks, on a crank, on a mechanism; what is shown and what buttons do.
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
+use crate::text::format;
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel;
 use crate::ui::panels::diagnose::DiagnosePanel;
@@ -14,7 +15,7 @@ use crate::ui::panels::segments::SegmentsPanel;
 use crate::ui::panels::trainer_side::TrainerSide;
 use crate::ui::panels::trainer_view::TrainerView;
 use crate::ui::session::Session;
-use crate::ui::{format, screenshot, theme};
+use crate::ui::{screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
 use haptics::recording::Recording;

@@ -2,7 +2,6 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
-use crate::ui::diagnosing;
 use crate::ui::fitting::{analyse, replay_all, replay_forces};
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel as _;
@@ -11,7 +10,7 @@ use crate::ui::plots::LogView;
 use crate::ui::plots::choices::{XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::{Session, Workspace};
-use crate::ui::{screenshot, theme};
+use crate::ui::{diagnosing, screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -87,7 +86,7 @@ fn a_transform_is_chosen_at_the_title_and_the_unit_follows() {
     harness.state_mut().seek(2.0);
     harness.run_steps(2);
     let speed = 1e3 * (0.13 * 2.6_f64.cos() + 0.124 * 6.2_f64.cos());
-    let text = crate::ui::format::number(speed, 1);
+    let text = crate::text::format::number(speed, 1);
     assert!(harness.query_by_label(&text).is_some(), "{text} mm/s");
     press(&mut harness, Role::RadioButton, "Low-pass");
     let Transform::LowPass(cutoff_hz) = harness.state().plots.groups["Position/mm"].transform else {

@@ -43,7 +43,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     let before = weight(&harness, "block-1");
     let states = harness.state().session.segmentation().expect("segmented").states.clone();
     let carry = states.iter().position(|i| i.subtask.as_deref() == Some("carry-block-1")).expect("carried");
-    let label = format!("Boundary at {} s", crate::ui::format::number(states[carry].t1, 2));
+    let label = format!("Boundary at {} s", crate::text::format::number(states[carry].t1, 2));
     let grip = harness.get_by_label(&label).rect().center();
     let shift = 60.0;
     harness.drag_at(grip);
@@ -82,7 +82,7 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
     let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
     let place = states.iter().filter(|s| s.state == longest.state).position(|s| s.t0 == longest.t0).expect("it is one");
     let word =
-        crate::ui::panels::segments::word(harness.state().session.segmentation().expect("segmented"), longest.state);
+        crate::text::states::state_of_task(harness.state().session.segmentation().expect("segmented"), longest.state);
     let shown: Vec<_> = harness.get_all_by_role_and_label(egui::Role::Button, word).collect();
     shown[place].click_secondary();
     harness.run_steps(2);

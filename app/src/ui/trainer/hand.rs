@@ -141,7 +141,7 @@ impl HandDevice {
 }
 
 fn said(error: &dyn std::error::Error) -> String {
-    crate::ui::session::sentence(&error.to_string())
+    crate::text::sentence::sentence(&error.to_string())
 }
 
 fn mouse_start(tips: [Vec2; 2]) -> MouseTarget {
@@ -160,7 +160,7 @@ impl Steering {
 /// What the page says about a device in plain words; `waves`: it is behind a line with wave variables, and what the servo feels
 /// as its damping is that of the line.
 pub fn spec_sentences(spec: &DeviceSpec, waves: bool) -> Vec<(&'static str, String)> {
-    use crate::ui::format::number;
+    use crate::text::format::number;
     let unit = |value: f64, decimals: usize, unit: &str, none: &str| {
         if value > 0.0 { format!("{} {unit}", number(value, decimals)) } else { none.to_owned() }
     };

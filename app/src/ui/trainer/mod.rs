@@ -158,7 +158,7 @@ impl Trainer {
     }
 
     fn start(&mut self, mut swap: Box<Swap>) -> Result<(), String> {
-        swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        swap.world.check().map_err(|error| crate::text::sentence::sentence(&error.to_string()))?;
         self.end_recording();
         // The old device first: a port can be open only once.
         self.engine = None;
@@ -241,7 +241,7 @@ impl Trainer {
         if !running {
             return self.restart();
         }
-        swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        swap.world.check().map_err(|error| crate::text::sentence::sentence(&error.to_string()))?;
         self.end_recording();
         if !goes_on {
             self.pinch.prepare_for(&swap.world, &swap.state);
