@@ -2,15 +2,17 @@
 
 use super::actions::{self, Action};
 use super::autosave::{Autosave, State};
-use super::dock::{Dock, Panels};
+use super::dock::Dock;
+use super::dock::panes::Panels;
 use super::icons::Icon;
 use super::palette::{self, CommandPalette};
-use super::session::{Session, Tone, Workspace};
+use super::session::{Session, Tone};
 use super::theme::{self, space};
 use super::tour::{self, Tour};
 use super::trainer::WorldChoice;
 use super::widgets::{icon_button, segmented};
 use super::{menu, messages, restore};
+use crate::ui::workspace::Workspace;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
 /// The application.
@@ -215,8 +217,8 @@ impl App {
             return;
         };
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
-        if ui.button((Icon::Close, "Cancel")).on_hover_text(format!("End this: {}", progress.what)).clicked() {
-            self.session.give_up(progress.kind);
+        if ui.button((Icon::Close, "Cancel")).on_hover_text(format!("End this: {}", progress.title)).clicked() {
+            self.session.give_up(ui.ctx(), progress.kind);
         }
         match progress.share {
             Some(share) => {
@@ -228,7 +230,7 @@ impl App {
         }
         let seconds = progress.elapsed.as_secs();
         let since = if seconds > 0 { format!(" · {seconds} s") } else { String::new() };
-        ui.label(theme::caption(ui, format!("{} …{since}", progress.what)));
+        ui.label(theme::caption(ui, format!("{} …{since}", progress.title)));
     }
 }
 

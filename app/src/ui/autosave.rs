@@ -162,7 +162,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
 mod tests {
     use super::*;
     use crate::ui::project::Source;
-    use crate::ui::session::Workspace;
+    use crate::ui::workspace::Workspace;
 
     fn wait_for(path: &Path) -> State {
         let begun = Instant::now();

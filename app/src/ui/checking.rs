@@ -1,8 +1,9 @@
 //! What a diagnosis is worth on recordings that took no part in it.
 
+use super::diagnosing::DIAGNOSE;
 use super::diagnosing::{Answer, options, plain};
 use super::fit_choice::FitChoice;
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change, no_change};
 use super::prepare::Prepared;
 use super::session::Session;
 use crate::text::file_name::name_of;
@@ -11,7 +12,9 @@ use estimator::diagnose::{self, Diagnosis, Options, Progress, Validation};
 use haptics::recording::Recording;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+
+/// Checking a diagnosis on other recordings.
+pub const CHECK: JobKind = JobKind::new("check").after(&DIAGNOSE);
 
 /// What the answer is checked on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -121,14 +124,10 @@ impl Session {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         self.diagnosing.check_field.clear();
         let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        self.jobs.start_watched(ctx, JobKind::Check, "Checking on other recordings".to_owned(), move |ticket| {
-            let goes_on = |share: f64| {
-                ticket.tell(share);
-                !ticket.cancelled().load(Ordering::Relaxed)
-            };
-            match check_now(&recordings, &choice, &answer, &on, &goes_on) {
-                Some(checked) => Outcome::Checked(checked),
-                None => Outcome::Cancelled,
+        self.jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
+            match check_now(&recordings, &choice, &answer, &on, &|share| ticket.goes_on(share)) {
+                Some(checked) => change(|session: &mut Self, _| session.checked(checked)),
+                None => no_change(),
             }
         });
     }

@@ -1,10 +1,11 @@
 //! The devices page and the devices behind the trainer, without a window.
 
 use super::app::App;
-use super::screenshot;
-use super::session::{Session, Workspace};
-use super::theme;
+use super::session::Session;
 use super::trainer::{Clock, HandDevice, Operator, Steering, Trainer};
+use super::{screenshot, theme};
+use crate::ui::tests::picture;
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::Vec2;
@@ -200,7 +201,7 @@ fn the_page_is_drawn_in_both_themes() {
         return;
     }
     for dark in [false, true] {
-        let picture = screenshot::draw(session(), screenshot::Panel::Devices, [1280, 720], dark).expect("drawn");
+        let picture = screenshot::draw(session(), picture("devices"), [1280, 720], dark).expect("drawn");
         let [r, g, b, _] = theme::Palette::of(dark).accent.to_array();
         let near = |p: &&image::Rgba<u8>| p.0[0].abs_diff(r) < 4 && p.0[1].abs_diff(g) < 4 && p.0[2].abs_diff(b) < 4;
         assert!(picture.pixels().filter(near).count() > 300, "the chosen device is marked, dark {dark}");

@@ -4,19 +4,28 @@ use super::atlas::Sheet;
 use super::checking::Checked;
 use super::fit_choice::FitChoice;
 use super::fitting::replay_forces;
-use super::jobs::{JobKind, Outcome, Replayed};
+use super::jobs::{JobKind, change};
+use super::opening::LOAD;
 use super::plots::Residuals;
 use super::prepare::Prepared;
-use super::session::{Session, Workspace};
+use super::replayed::Replayed;
+use super::session::Session;
 use super::trainer::{Compare, WorldChoice};
 use crate::experiment::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+
+/// Looking for what the model gets wrong.
+pub const DIAGNOSE: JobKind = JobKind::new("diagnose").after(&LOAD);
+/// Making the worlds without and with the causes.
+pub const EXTEND: JobKind = JobKind::new("extend").after(&DIAGNOSE);
+/// Replaying the measured motion through the extended world.
+pub const SIMULATE_EXTENDED: JobKind = JobKind::new("simulate-extended").after(&EXTEND);
 
 /// The model of a mechanism to start from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -141,18 +150,15 @@ impl Session {
             return;
         }
         self.diagnosing.forget();
-        self.jobs.cancel(JobKind::Extend);
-        self.jobs.cancel(JobKind::SimulateExtended);
-        self.jobs.cancel(JobKind::Rehearse);
-        self.jobs.cancel(JobKind::Check);
+        self.jobs.cancel_after(DIAGNOSE);
         let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
-        self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
+        let job = self.jobs.start(ctx, DIAGNOSE, "Diagnosing", move |ticket| {
             let ticket = ticket.clone();
-            let progress = Progress::new(move |share| {
-                ticket.tell(share);
-                !ticket.cancelled().load(Ordering::Relaxed)
-            });
-            Outcome::Diagnosed(ask(&recordings, &choice, from, progress).map(Box::new))
+            let answer = ask(&recordings, &choice, from, Progress::new(move |share| ticket.goes_on(share)));
+            change(|session: &mut Self, _| session.diagnosed(answer))
+        });
+        job.if_given_up(|session: &mut Self, _| {
+            session.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
         });
     }
 
@@ -160,29 +166,30 @@ impl Session {
     pub fn extend_model(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
-        self.jobs.start_watched(ctx, JobKind::Extend, "Extending the model".to_owned(), move |_| {
-            Outcome::Extended(extend(&recordings, &choice, from, &answer).map(Box::new))
+        self.jobs.start(ctx, EXTEND, "Extending the model", move |_| {
+            let worlds = extend(&recordings, &choice, from, &answer);
+            change(|session: &mut Self, ctx| session.extended(ctx, worlds))
         });
     }
 
     /// A diagnosis has ended.
-    pub(super) fn diagnosed(&mut self, answer: Result<Box<Answer>, String>) {
+    pub(super) fn diagnosed(&mut self, answer: Result<Answer, String>) {
         match answer {
-            Ok(answer) => self.diagnosing.answer = Some(Arc::new(*answer)),
+            Ok(answer) => self.diagnosing.answer = Some(Arc::new(answer)),
             Err(problem) => self.diagnosing.problem = Some(problem),
         }
     }
 
     /// The model was extended.
-    pub(super) fn extended(&mut self, ctx: &egui::Context, worlds: Result<Box<Worlds>, String>) {
+    pub(super) fn extended(&mut self, ctx: &egui::Context, worlds: Result<Worlds, String>) {
         match worlds {
             Ok(worlds) => {
-                let worlds = Arc::new(*worlds);
+                let worlds = Arc::new(worlds);
                 self.diagnosing.worlds = Some(Arc::clone(&worlds));
                 let recordings = self.recordings.clone();
-                let what = "Replaying in the extended world".to_owned();
-                self.jobs.start_watched(ctx, JobKind::SimulateExtended, what, move |_| {
-                    Outcome::SimulatedExtended(replay_forces(&worlds.after, &recordings))
+                self.jobs.start(ctx, SIMULATE_EXTENDED, "Replaying in the extended world", move |_| {
+                    let replays = replay_forces(&worlds.after, &recordings);
+                    change(|session: &mut Self, _| session.diagnosing.replays = replays)
                 });
             }
             Err(problem) => self.diagnosing.worlds_problem = Some(problem),

@@ -1,22 +1,28 @@
 //! The experiment that a diagnosis asks for: rehearsed on simulated objects, done by a person in Train, or loaded from a file.
 
-use super::diagnosing::{Answer, options, plain, reachable};
+use super::diagnosing::{Answer, DIAGNOSE, options, plain, reachable};
+use super::files::{SAVE, saved};
 use super::fit_choice::FitChoice;
 use super::guided::Guided;
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change, no_change};
 use super::prepare::Prepared;
-use super::session::{Session, Tone, Workspace};
+use super::session::{Session, Tone};
 use crate::experiment::{Like, MotionPlan, Rehearsal, Timetable, rehearse, simulated_object};
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
 use estimator::diagnose::{self, Progress, Suspect};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+
+/// Rehearsing the experiment that a diagnosis asks for.
+pub const REHEARSE: JobKind = JobKind::new("rehearse").after(&DIAGNOSE);
+/// Preparing that experiment for a person.
+const GUIDE: JobKind = JobKind::new("guide");
 
 /// How often every object is simulated.
 pub const ROUNDS: u64 = 3;
@@ -92,23 +98,20 @@ impl Session {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         (self.diagnosing.rehearsal, self.diagnosing.rehearsal_problem) = (None, None);
         let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        self.jobs.start_watched(ctx, JobKind::Rehearse, "Rehearsing the experiment".to_owned(), move |ticket| {
-            let goes_on = |share: f64| {
-                ticket.tell(share);
-                !ticket.cancelled().load(Ordering::Relaxed)
+        self.jobs.start(ctx, REHEARSE, "Rehearsing the experiment", move |ticket| {
+            let rehearsal = match rehearse_now(&recordings, &choice, &answer, ROUNDS, &|share| ticket.goes_on(share)) {
+                Err(None) => return no_change(),
+                Err(Some(problem)) => Err(problem),
+                Ok(rehearsal) => Ok(rehearsal),
             };
-            match rehearse_now(&recordings, &choice, &answer, ROUNDS, &goes_on) {
-                Ok(rehearsal) => Outcome::Rehearsed(Ok(Box::new(rehearsal))),
-                Err(Some(problem)) => Outcome::Rehearsed(Err(problem)),
-                Err(None) => Outcome::Cancelled,
-            }
+            change(|session: &mut Self, _| session.rehearsed(rehearsal))
         });
     }
 
     /// A rehearsal has ended.
-    pub(super) fn rehearsed(&mut self, rehearsal: Result<Box<Rehearsal>, String>) {
+    pub(super) fn rehearsed(&mut self, rehearsal: Result<Rehearsal, String>) {
         match rehearsal {
-            Ok(rehearsal) => self.diagnosing.rehearsal = Some(Arc::new(*rehearsal)),
+            Ok(rehearsal) => self.diagnosing.rehearsal = Some(Arc::new(rehearsal)),
             Err(problem) => self.diagnosing.rehearsal_problem = Some(problem),
         }
     }
@@ -118,20 +121,20 @@ impl Session {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
         let standing = self.trainer.standing_world();
-        self.jobs.start_watched(ctx, JobKind::Guide, "Preparing the experiment".to_owned(), move |_| {
+        self.jobs.start(ctx, GUIDE, "Preparing the experiment", move |_| {
             let guided = match stage {
                 Stage::AsIf(id) => guided_as_if(&recordings, &choice, &answer, &id),
                 Stage::AsItStands => Guided::in_world(&standing, &answer.diagnosis),
             };
-            Outcome::Guided(guided.map(Box::new))
+            change(|session: &mut Self, _| session.guided(guided))
         });
     }
 
     /// The experiment is ready for a person.
-    pub(super) fn guided(&mut self, guided: Result<Box<Guided>, String>) {
+    pub(super) fn guided(&mut self, guided: Result<Guided, String>) {
         match guided.and_then(|guided| guided.take_over(&mut self.trainer).map(|()| guided)) {
             Ok(guided) => {
-                self.experiments.guided = Some(guided);
+                self.experiments.guided = Some(Box::new(guided));
                 self.workspace = Workspace::Train;
             }
             Err(problem) => self.fail(problem),
@@ -156,9 +159,9 @@ impl Session {
         let round = rehearsal.as_ref().and_then(|r| r.outcomes.get(outcome)?.rounds.first());
         let Some(recording) = round.map(|r| r.recording.clone()) else { return };
         let Some(folder) = self.folder_of_recordings() else { return };
-        self.jobs.start(ctx, JobKind::Save, move || match write(&folder, recording) {
-            Ok(path) => Outcome::Performed(path),
-            Err(problem) => Outcome::Failed(problem),
+        self.jobs.start(ctx, SAVE, "", move |_| {
+            let path = write(&folder, recording)?;
+            change(move |session: &mut Self, ctx| session.performed(ctx, &path))
         });
     }
 
@@ -169,12 +172,10 @@ impl Session {
             Some((path, is_planar)) => plan.places_to_csv(&path, is_planar),
             None => plan.to_csv(coordinate),
         };
-        self.jobs.start(ctx, JobKind::Save, move || {
-            let written = free_path(&folder, "plan").and_then(|path| {
-                let failed = |e| format!("The plan cannot be written ({e}): {}", path.display());
-                std::fs::write(&path, text).map_err(failed).map(|()| path.clone())
-            });
-            written.map_or_else(Outcome::Failed, Outcome::Saved)
+        self.jobs.start(ctx, SAVE, "", move |_| {
+            let path = free_path(&folder, "plan")?;
+            std::fs::write(&path, text).map_err(|e| format!("The plan cannot be written ({e}): {}", path.display()))?;
+            saved(path)
         });
     }
 

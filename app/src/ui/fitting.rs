@@ -2,9 +2,10 @@
 
 use super::film::Film;
 use super::fit_choice::FitChoice;
-use super::jobs::{JobKind, Outcome, Replayed};
+use super::jobs::{JobKind, change};
 use super::plots::Levels;
 use super::prepare::Prepared;
+use super::replayed::Replayed;
 use super::session::Session;
 use crate::text::sentence::sentence;
 use estimator::online::enough::{Enough, Wanted};
@@ -15,6 +16,15 @@ use haptics::recording::Recording;
 use haptics::world::World;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+/// Segmenting and fitting.
+pub const FIT: JobKind = JobKind::new("fit");
+/// Finding states anew while rules are edited.
+pub const SEGMENT: JobKind = JobKind::new("segment");
+/// Replaying the measured motion through the fitted world.
+pub const SIMULATE: JobKind = JobKind::new("simulate").after(&FIT);
+/// Judging whether there is enough data.
+const JUDGE: JobKind = JobKind::new("judge");
 
 /// A fit that took no longer follows every change at once.
 const AT_ONCE: Duration = Duration::from_millis(700);
@@ -92,17 +102,22 @@ impl Session {
             return;
         }
         self.what_if.forget();
-        self.jobs.cancel(JobKind::Simulate);
+        self.jobs.cancel_after(FIT);
         self.stale = false;
         let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
         let shared = self.refits.shared(&choice);
         self.refits.asked = Some(choice.clone());
         self.refits.begun = Instant::now();
-        self.jobs.start_watched(ctx, JobKind::Fit, "Fitting".to_owned(), move |_| {
-            match analyse_sharing(&recordings, &shared, &choice) {
-                Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
-                Err(problem) => Outcome::Failed(problem),
+        let job = self.jobs.start(ctx, FIT, "Fitting", move |_| {
+            let analysis = analyse_sharing(&recordings, &shared, &choice)?;
+            change(move |session: &mut Self, ctx| session.fitted(ctx, analysis))
+        });
+        job.if_given_up(|session: &mut Self, _| {
+            if session.analysis.is_none() {
+                session.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
             }
+            session.refits.gave_up();
+            session.stale = true;
         });
     }
 
@@ -110,7 +125,7 @@ impl Session {
     pub fn follow_choice(&mut self, ctx: &egui::Context) {
         let Some(asked) = &self.refits.asked else { return };
         self.stale = *asked != self.choice;
-        let busy = self.jobs.is_running(JobKind::Fit);
+        let busy = self.jobs.is_running(FIT);
         // While rules are edited only the states follow: a fit with half a rule is of no use.
         if self.stale && self.refits.live && self.refits.quick() && !busy && self.rules.is_none() {
             self.refit(ctx);
@@ -121,12 +136,11 @@ impl Session {
     pub fn resegment(&mut self, ctx: &egui::Context) {
         let Some(prepared) = self.prepared().cloned() else { return };
         let (index, choice) = (self.current, self.choice.clone());
-        self.jobs.start(ctx, JobKind::Segment, move || {
+        self.jobs.start(ctx, SEGMENT, "", move |_| {
             let recording = choice.given_to(index, &prepared.recording);
-            match segment_by(choice.method, &recording, choice.task, choice.thresholds) {
-                Ok(found) => Outcome::Segmented(index, Box::new(found)),
-                Err(error) => Outcome::Failed(sentence(&error.to_string())),
-            }
+            let found = segment_by(choice.method, &recording, choice.task, choice.thresholds)
+                .map_err(|error| sentence(&error.to_string()))?;
+            change(move |session: &mut Self, _| session.segmented(index, found))
         });
     }
 
@@ -145,10 +159,14 @@ impl Session {
         self.analysis = Some(Arc::clone(&analysis));
         self.fit_problem = None;
         let (recordings, fitted) = (self.recordings.clone(), Arc::clone(&analysis));
-        self.jobs.start(ctx, JobKind::Judge, move || Outcome::Judged(judge(&fitted, &recordings)));
+        self.jobs.start(ctx, JUDGE, "", move |_| {
+            let enough = judge(&fitted, &recordings);
+            change(|session: &mut Self, _| session.enough = enough)
+        });
         let recordings = self.recordings.clone();
-        self.jobs.start_watched(ctx, JobKind::Simulate, "Replaying in the fitted world".to_owned(), move |_| {
-            Outcome::Simulated(replay_all(&analysis.world, &recordings))
+        self.jobs.start(ctx, SIMULATE, "Replaying in the fitted world", move |_| {
+            let replays = replay_all(&analysis.world, &recordings);
+            change(|session: &mut Self, _| session.replays = replays)
         });
     }
 }

@@ -2,13 +2,16 @@
 
 use super::app::App;
 use super::diagnosing::{self, Answer, StartFrom};
-use super::fitting;
+use super::panel::Picture;
+use super::panels::{log, parameters, results, scene, segments};
 use super::plots::LogView;
 use super::prepare::Prepared;
-use super::screenshot::{Panel, contents};
-use super::session::{FitChoice, Session, Workspace};
-use super::theme;
+use super::screenshot::{self, contents};
+use super::session::Session;
 use super::trainer::{Clock, Operator};
+use super::{fitting, theme};
+use crate::ui::fit_choice::FitChoice;
+use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};
 use estimator::diagnose::{Progress, Worlds};
@@ -35,11 +38,11 @@ enum With {
 }
 
 /// What is measured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Subject {
     /// In words.
     pub name: &'static str,
-    panel: Panel,
+    picture: &'static Picture,
     view: LogView,
     workspace: Workspace,
     with: With,
@@ -53,23 +56,23 @@ impl Subject {
 }
 
 /// Every panel that shows a recording, and the pages with a running servo.
-pub const SUBJECTS: [Subject; 12] = [
-    subject("log", Panel::Log),
-    Subject { view: LogView::Xy, ..subject("log, XY", Panel::Log) },
-    subject("segments", Panel::Segments),
-    subject("parameters", Panel::Parameters),
-    subject("results", Panel::Results),
-    subject("scene", Panel::Scene),
-    subject("Calibrate", Panel::Workbench),
-    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose, before", Panel::Diagnose) },
-    Subject { workspace: Workspace::Diagnose, with: With::Answer, ..subject("Diagnose", Panel::Diagnose) },
-    Subject { workspace: Workspace::Diagnose, with: With::Atlas, ..subject("Diagnose, atlas", Panel::Diagnose) },
-    Subject { workspace: Workspace::Train, with: With::Servo, ..subject("Train", Panel::Train) },
-    Subject { workspace: Workspace::Devices, with: With::Servo, ..subject("Devices", Panel::Devices) },
+pub static SUBJECTS: [Subject; 12] = [
+    subject("log", &log::LOG),
+    Subject { view: LogView::Xy, ..subject("log, XY", &log::LOG) },
+    subject("segments", &segments::SEGMENTS),
+    subject("parameters", &parameters::PARAMETERS),
+    subject("results", &results::RESULTS),
+    subject("scene", &scene::SCENE_PICTURE),
+    subject("Calibrate", &screenshot::WORKBENCH),
+    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose, before", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Diagnose, with: With::Answer, ..subject("Diagnose", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Diagnose, with: With::Atlas, ..subject("Diagnose, atlas", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Train, with: With::Servo, ..subject("Train", &screenshot::TRAIN) },
+    Subject { workspace: Workspace::Devices, with: With::Servo, ..subject("Devices", &screenshot::DEVICES) },
 ];
 
-const fn subject(name: &'static str, panel: Panel) -> Subject {
-    Subject { name, panel, view: LogView::Time, workspace: Workspace::Calibrate, with: With::Log }
+const fn subject(name: &'static str, picture: &'static Picture) -> Subject {
+    Subject { name, picture, view: LogView::Time, workspace: Workspace::Calibrate, with: With::Log }
 }
 
 /// Processor time of a picture, s.
@@ -98,7 +101,7 @@ pub struct Costs {
 pub struct Loaded {
     recordings: Vec<Arc<Prepared>>,
     analysis: Option<Arc<estimator::pipeline::Analysis>>,
-    replays: Vec<Option<super::jobs::Replayed>>,
+    replays: Vec<Option<super::replayed::Replayed>>,
     answer: Option<Arc<Answer>>,
     worlds: Option<Arc<Worlds>>,
 }
@@ -208,7 +211,7 @@ fn repeated(once: &Recording, samples: usize, period_s: f64) -> Recording {
 struct Stage {
     ctx: Context,
     app: App,
-    contents: super::screenshot::Contents,
+    contents: screenshot::Contents,
     size: egui::Vec2,
     time_s: f64,
 }
@@ -218,7 +221,7 @@ impl Stage {
         let ctx = Context::default();
         theme::install(&ctx);
         let size = egui::vec2(width as f32, height as f32);
-        Self { ctx, app, contents: contents(subject.panel), size, time_s: 0.0 }
+        Self { ctx, app, contents: contents(subject.picture), size, time_s: 0.0 }
     }
 
     /// Lays one picture out and cuts it up: both times, s, and the triangles.

@@ -1,6 +1,7 @@
 //! An experiment that a person does in Train: which world, what is to be done when, the recording of it.
 
-use super::jobs::{JobKind, Outcome};
+use super::jobs::change;
+use super::recorder::RECORD;
 use super::session::Session;
 use super::trainer::{Operator, Trainer, WorldChoice};
 use crate::experiment::{SIMULATED, Step, Timetable, what_is_known};
@@ -127,7 +128,10 @@ impl Session {
         }
         guided.phase = Phase::Ending;
         let Some(stopping) = self.trainer.stop_recording() else { return };
-        self.jobs.start(ctx, JobKind::Record, move || Outcome::Followed(stopping.wait().map(|finished| finished.path)));
+        self.jobs.start(ctx, RECORD, "", move |_| {
+            let path = stopping.wait().map(|finished| finished.path);
+            change(|session: &mut Self, _| session.followed(path))
+        });
     }
 
     /// The recording of the experiment has its end.

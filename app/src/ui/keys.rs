@@ -1,6 +1,7 @@
 //! Keys that are held or have two strengths: moving the time cursor. Everything else is an action.
 
-use super::session::{Session, Workspace};
+use super::session::Session;
+use crate::ui::workspace::Workspace;
 use egui::{Key, Ui};
 
 /// Share of the visible time that an arrow key moves the cursor by.

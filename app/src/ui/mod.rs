@@ -17,7 +17,7 @@ pub mod comfort;
 pub mod diagnosing;
 pub mod dock;
 pub mod experimenting;
-mod files;
+pub mod files;
 pub mod film;
 pub mod first_picture;
 pub mod fit_choice;
@@ -34,16 +34,20 @@ pub mod mapping;
 pub mod markdown;
 mod menu;
 mod messages;
-mod opening;
-mod overlays;
+pub mod opening;
+pub mod overlays;
 pub mod palette;
+pub mod panel;
+pub mod panel_id;
 pub mod panels;
+pub mod picture_input;
 mod playback;
 pub mod plots;
 pub mod prepare;
 pub mod project;
 pub mod recent;
 mod recorder;
+pub mod replayed;
 mod restore;
 pub mod rules;
 pub mod scene;
@@ -52,6 +56,7 @@ pub mod sensitivity;
 pub mod session;
 #[cfg(feature = "sound")]
 pub mod sound;
+mod stage;
 pub mod teach;
 pub mod theme;
 pub mod tour;
@@ -60,6 +65,7 @@ pub mod undo;
 pub mod video;
 pub mod what_if;
 pub mod widgets;
+pub mod workspace;
 
 use crate::tasks::Chosen;
 use anyhow::Context as _;
@@ -151,7 +157,7 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
         session.open_world(&cc.egui_ctx, world);
     }
     if let Some(log) = &options.log {
-        session.workspace = session::Workspace::Calibrate;
+        session.workspace = workspace::Workspace::Calibrate;
         session.open(&cc.egui_ctx, log);
     }
     let mut app = app::App::new(session);

@@ -1,17 +1,22 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{JobKind, Outcome, Ticket};
+use super::jobs::{Answer, JobKind, Ticket, change, no_change};
 use super::mapping;
 use super::prepare::Prepared;
+use super::project::Source;
 use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
 use estimator::log::{LogError, Watch};
 use haptics::recording::Meta;
 use haptics::world::World;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Reading a log, a project or a world.
+pub const LOAD: JobKind = JobKind::new("load");
 
 /// Bytes that tell JSON from anything else.
 const START_BYTES: u64 = 4096;
@@ -68,17 +73,23 @@ pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
 }
 
 /// Reads a log and prepares it; work for a job.
-pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Outcome {
+pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answer<Session> {
     let progress = |share| ticket.tell(share);
     let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
     match estimator::log::load_watched(&path, meta, &watch) {
         Ok(recordings) => {
             let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-            Outcome::Loaded(path, prepared)
+            change(|session: &mut Session, ctx| session.loaded(ctx, path, prepared))
         }
-        Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
-        Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
-        Err(error) => Outcome::Failed(sentence(&error.to_string())),
+        Err(LogError::Cancelled { .. }) => no_change(),
+        Err(error) if mapping::mends(&error) => {
+            let why = sentence(&error.to_string());
+            change(move |session: &mut Session, ctx| {
+                session.path_field = path.display().to_string();
+                session.map_columns_of(ctx, &path, Some(why));
+            })
+        }
+        Err(error) => Err(sentence(&error.to_string())),
     }
 }
 
@@ -87,8 +98,8 @@ impl Session {
     pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
         let (path, meta) = (path.to_path_buf(), self.meta.clone());
         self.path_field = path.display().to_string();
-        let what = format!("Reading {}", name_of(&path));
-        self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| read(path, meta.as_deref(), ticket));
+        let title = format!("Reading {}", name_of(&path));
+        self.jobs.start(ctx, LOAD, title, move |ticket| read(path, meta.as_deref(), ticket));
     }
 
     /// Reads a log with this sidecar; without one, with the sidecar beside it.
@@ -100,10 +111,32 @@ impl Session {
     /// Reads a world in the background: a file, or a built-in one by its name.
     pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
         let path = path.to_path_buf();
-        self.jobs.start(ctx, JobKind::Load, move || match crate::worlds::find(&path) {
-            Ok(world) => Outcome::World(Box::new(world)),
-            Err(error) => Outcome::Failed(sentence(&format!("{error:#}"))),
+        self.jobs.start(ctx, LOAD, "", move |_| {
+            let world = crate::worlds::find(&path).map_err(|error| sentence(&format!("{error:#}")))?;
+            change(|session: &mut Self, _| session.opened_world = Some(Box::new(world)))
         });
+    }
+
+    /// A log was read.
+    fn loaded(&mut self, ctx: &egui::Context, path: PathBuf, recordings: Vec<Arc<Prepared>>) {
+        let mute = says_nothing(&recordings);
+        self.recent.note(&path);
+        self.path_field.clear();
+        self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
+        self.project_path = None;
+        let again = self.path.as_ref() == Some(&path) && recordings.len() == self.recordings.len();
+        let videos = std::mem::take(&mut self.videos);
+        self.workspace = Workspace::Calibrate;
+        self.show(recordings);
+        self.videos = videos;
+        if !again {
+            self.videos.of_log(&path, &self.recordings);
+        }
+        self.path = Some(path);
+        match mute {
+            Some(why) => self.map_columns(ctx, Some(why)),
+            None => self.refit(ctx),
+        }
     }
 
     /// Opens whatever a file is.

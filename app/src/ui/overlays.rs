@@ -1,6 +1,6 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change};
 use super::plots::choices::Overlaid;
 use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
@@ -8,6 +8,9 @@ use super::session::Session;
 use estimator::segment::SystemState;
 use estimator::signal::lag::lag;
 use std::sync::Arc;
+
+/// Finding the place of a recording on another one.
+pub const ALIGN: JobKind = JobKind::new("align");
 
 /// Quantities that tell best where two recordings match, the best first: forces rise and fall with every contact.
 const TELLING: [&str; 5] = ["Task signals", "Force", "Torque", "Position", "Angle"];
@@ -36,8 +39,9 @@ impl Session {
         let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
             return;
         };
-        self.jobs.start_watched(ctx, JobKind::Align, "Laying recordings over each other".to_owned(), move |_| {
-            Outcome::Aligned(recording, most_alike(&fixed, &moved))
+        self.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
+            let found = most_alike(&fixed, &moved);
+            change(move |session: &mut Self, _| session.aligned(recording, found))
         });
     }
 
@@ -47,12 +51,15 @@ impl Session {
         let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
             return;
         };
-        if likeliest.contains_key(&pair) || self.jobs.is_running(JobKind::Align) {
+        if likeliest.contains_key(&pair) || self.jobs.is_running(ALIGN) {
             return;
         }
         // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
-        self.jobs.start_watched(ctx, JobKind::Align, "Comparing recordings".to_owned(), move |_| {
-            Outcome::MostAlike(pair, most_alike(&fixed, &moved).ok())
+        self.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
+            let found = most_alike(&fixed, &moved).ok();
+            change(move |session: &mut Self, _| {
+                session.plots.likeliest.insert(pair, found);
+            })
         });
     }
 

@@ -1,11 +1,14 @@
 //! A project: which recordings, how they are fitted, and what was looked at, in one small JSON file.
 
+use super::files::{SAVE, SAVE_PROJECT, ask, saved};
 use super::fit_choice::FitChoice;
-use super::jobs::{JobKind, Outcome, Ticket};
+use super::jobs::{Answer, Ticket, change, no_change};
+use super::opening::LOAD;
 use super::plots::choices::KeptChoices;
 use super::prepare::Prepared;
-use super::session::{Session, Workspace};
+use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
 use crate::video::VideoSource;
 use crate::write_whole::write_whole;
 use estimator::log::Watch;
@@ -120,7 +123,7 @@ pub fn is_project(path: &Path) -> bool {
 }
 
 /// Reads every file of a project; work for a job.
-fn read_all(project: Project, ticket: &Ticket) -> Outcome {
+fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
     let mut recordings = Vec::new();
     let count = project.recordings.len().max(1) as f64;
     for (index, source) in project.recordings.iter().enumerate() {
@@ -128,11 +131,14 @@ fn read_all(project: Project, ticket: &Ticket) -> Outcome {
         let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: None };
         match estimator::log::load_watched(&source.log, source.meta.as_deref(), &watch) {
             Ok(read) => recordings.extend(read.into_iter().map(|r| Arc::new(Prepared::new(r)))),
-            Err(estimator::log::LogError::Cancelled { .. }) => return Outcome::Cancelled,
-            Err(error) => return Outcome::Failed(sentence(&error.to_string())),
+            Err(estimator::log::LogError::Cancelled { .. }) => return no_change(),
+            Err(error) => return Err(sentence(&error.to_string())),
         }
     }
-    Outcome::Project(Box::new(project), recordings)
+    change(|session: &mut Session, ctx| {
+        session.opened_project(ctx, project, recordings);
+        session.ask_again(ctx);
+    })
 }
 
 impl Session {
@@ -153,9 +159,7 @@ impl Session {
             self.fail("This project names no recording.");
             return;
         }
-        self.jobs.start_watched(ctx, JobKind::Load, "Opening the project".to_owned(), move |ticket| {
-            read_all(project, ticket)
-        });
+        self.jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
     }
 
     /// A project's files were read.
@@ -198,7 +202,7 @@ impl Session {
     pub fn save_project(&mut self, ctx: &egui::Context) {
         match self.project_path.clone() {
             Some(path) => self.save_project_as(ctx, path),
-            None => super::files::ask(ctx, &mut self.jobs, super::jobs::Purpose::SaveProject),
+            None => ask(ctx, &mut self.jobs, SAVE_PROJECT),
         }
     }
 
@@ -207,9 +211,9 @@ impl Session {
         let project = Project::of(self);
         self.project_path = Some(path.clone());
         self.recent.note(&path);
-        self.jobs.start(ctx, JobKind::Save, move || match project.write(&path) {
-            Ok(()) => Outcome::Saved(path),
-            Err(problem) => Outcome::Failed(problem),
+        self.jobs.start(ctx, SAVE, "", move |_| {
+            project.write(&path)?;
+            saved(path)
         });
     }
 }

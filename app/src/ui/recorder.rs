@@ -1,8 +1,10 @@
 //! The window's part of recording: the card beside the trainer, what becomes of a recording that ended, and recordings that a killed
 //! program left behind.
 
+use super::files::saved;
 use super::icons::Icon;
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change};
+use super::opening::LOAD;
 use super::session::{Session, Tone};
 use super::widgets::{primary_button, recording_light, remark};
 use super::{messages, opening, theme};
@@ -11,6 +13,11 @@ use crate::text::file_name::name_of;
 use crate::text::format;
 use egui::Ui;
 use std::path::Path;
+
+/// Waiting for the end of a recording.
+pub const RECORD: JobKind = JobKind::new("record").writes();
+/// Looking for recordings that a killed program left behind.
+const RECOVER: JobKind = JobKind::new("recover");
 
 /// The card beside the trainer's picture.
 pub fn controls(ui: &mut Ui, session: &mut Session) {
@@ -84,28 +91,25 @@ pub fn stop_and_open(ctx: &egui::Context, session: &mut Session) {
     // A sidecar that was named for another log is not for this one.
     session.meta = None;
     session.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
-    session.jobs.start_watched(ctx, JobKind::Load, "Reading the recording".to_owned(), move |ticket| {
-        match stopping.wait() {
-            Ok(finished) => opening::read(finished.path, None, ticket),
-            Err(problem) => Outcome::Failed(problem),
-        }
-    });
+    session
+        .jobs
+        .start(ctx, LOAD, "Reading the recording", move |ticket| opening::read(stopping.wait()?.path, None, ticket));
 }
 
 /// Recordings that ended without being asked to are told; call once a frame.
 pub fn follow(ctx: &egui::Context, session: &mut Session) {
     while let Some(stopping) = session.trainer.take_ended_recording() {
-        session.jobs.start(ctx, JobKind::Record, move || match stopping.wait() {
-            Ok(finished) => Outcome::Saved(finished.path),
-            Err(problem) => Outcome::Failed(problem),
-        });
+        session.jobs.start(ctx, RECORD, "", move |_| saved(stopping.wait()?.path));
     }
 }
 
 /// Looks for recordings that a killed program left behind, in the background.
 pub fn look_for_unfinished(ctx: &egui::Context, session: &mut Session) {
     let Some(folder) = session.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
-    session.jobs.start(ctx, JobKind::Recover, move || Outcome::Unfinished(folder::unfinished(&folder)));
+    session.jobs.start(ctx, RECOVER, "", move |_| {
+        let unfinished = folder::unfinished(&folder);
+        change(|session: &mut Session, _| session.unfinished = unfinished)
+    });
 }
 
 /// Above the workspace: a recording that has no end, with the way to open it.

@@ -1,6 +1,7 @@
 //! The rules of a task while they are edited: a draft that is tried at once where it can be used.
 
-use super::jobs::{JobKind, Outcome};
+use super::files::{SAVE, saved};
+use super::fitting::SEGMENT;
 use super::session::Session;
 use crate::text::sentence::sentence;
 use estimator::segment::definition::{Definition, StateRule, signals};
@@ -94,7 +95,7 @@ impl Rules {
 
 /// Looks at what was changed, and tells the states anew with it. Call once a frame.
 pub fn follow(ctx: &egui::Context, session: &mut Session) {
-    let running = session.jobs.is_running(JobKind::Segment);
+    let running = session.jobs.is_running(SEGMENT);
     let Some(rules) = session.rules.as_mut().filter(|rules| rules.untried) else { return };
     rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
     if rules.fault.is_some() {
@@ -133,7 +134,7 @@ pub fn save(ctx: &egui::Context, session: &mut Session) {
             session.choice.task = Some(task.like);
             session.choice.own = Some(Arc::new(task));
             session.resegment(ctx);
-            session.jobs.start(ctx, JobKind::Save, move || Outcome::Saved(path));
+            session.jobs.start(ctx, SAVE, "", move |_| saved(path));
         }
         Err(error) => session.fail(sentence(&error.to_string())),
     }

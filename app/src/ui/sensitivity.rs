@@ -1,6 +1,7 @@
 //! How much the simulated force depends on every parameter, and which parameters stand in for each other.
 
-use super::jobs::{JobKind, Outcome};
+use super::fitting::FIT;
+use super::jobs::{JobKind, change, no_change};
 use super::prepare::Prepared;
 use super::session::Session;
 use super::what_if;
@@ -8,6 +9,9 @@ use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Computing how the force depends on the parameters.
+pub const SENSITIVITY: JobKind = JobKind::new("sensitivity");
 
 /// Parameters are changed by this share of their value …
 pub const CHANGE: f64 = 0.1;
@@ -64,16 +68,16 @@ impl Session {
         let Some(analysis) = self.analysis.clone() else { return };
         let there = self.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
         // A fit that is about to change needs none.
-        if there || self.stale || self.jobs.is_running(JobKind::Sensitivity) || self.jobs.is_running(JobKind::Fit) {
+        if there || self.stale || self.jobs.is_running(SENSITIVITY) || self.jobs.is_running(FIT) {
             return;
         }
         let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        let what = "Looking how the force depends on the parameters".to_owned();
-        self.jobs.start_watched(ctx, JobKind::Sensitivity, what, move |ticket| {
+        let title = "Looking how the force depends on the parameters";
+        self.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
             let given = choice.given_to_all(&recordings);
             match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-                Some(found) => Outcome::Sensitive(Arc::new(found)),
-                None => Outcome::Cancelled,
+                Some(found) => change(|session: &mut Self, _| session.sensitivity = Some(Arc::new(found))),
+                None => no_change(),
             }
         });
     }

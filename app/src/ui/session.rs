@@ -1,73 +1,34 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
-use super::checking::On;
 use super::comfort::Comfort;
 use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
 use super::fitting::Refits;
-use super::icons::Icon;
-use super::jobs::{JobKind, Jobs, Outcome, Replayed};
+use super::jobs::{JobKind, Jobs};
 use super::lessons::Lessons;
 use super::mapping::Mapping;
+use super::opening::LOAD;
 use super::plots::PlotChoices;
 use super::prepare::Prepared;
 use super::project::Source;
 use super::recent::Recent;
+use super::replayed::Replayed;
 use super::rules::Rules;
-pub use super::scene::SceneLayers;
+pub use super::scene::layers::SceneLayers;
 use super::trainer::Trainer;
 use super::undo::Undo;
 use super::video::Videos;
 use super::what_if::WhatIf;
+use super::workspace::Workspace;
 use crate::tasks::Chosen;
 use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
 use haptics::world::World;
-use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// The workspaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Workspace {
-    /// Touch a virtual world.
-    #[default]
-    Train,
-    /// Measure a real one.
-    Calibrate,
-    /// What the model gets wrong about it.
-    Diagnose,
-    /// What moves the fingers, and how well.
-    Devices,
-}
-
-impl Workspace {
-    /// All of them: icon and name, and what it is for.
-    pub const CHOICES: [(Self, (Icon, &str), &str); 4] = [
-        (Self::Train, (Icon::Touch, "Train"), "Touch a virtual world (Ctrl+1)"),
-        (Self::Calibrate, (Icon::Calibrate, "Calibrate"), "Measure a real one from a log (Ctrl+2)"),
-        (Self::Diagnose, (Icon::Diagnose, "Diagnose"), "What the model gets wrong, and why (Ctrl+3)"),
-        (Self::Devices, (Icon::Device, "Devices"), "What moves the fingers, and how well (Ctrl+4)"),
-    ];
-
-    /// For people.
-    pub fn title(self) -> &'static str {
-        self.face().1
-    }
-
-    /// For people who look.
-    pub fn icon(self) -> Icon {
-        self.face().0
-    }
-
-    fn face(self) -> (Icon, &'static str) {
-        Self::CHOICES.iter().find(|(w, ..)| *w == self).map_or((Icon::Panel, ""), |(_, face, _)| *face)
-    }
-}
 
 /// How grave a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,13 +131,13 @@ pub struct Session {
     /// Videos of the hand.
     pub videos: Videos,
     /// Set where something appears in a panel that may not stand in the window.
-    pub wanted_pane: Option<super::dock::Pane>,
+    pub wanted_pane: Option<super::panel_id::PanelId>,
     /// What the 3-D view shows.
     pub layers: SceneLayers,
     /// Messages.
     pub banners: Vec<Banner>,
     /// Background work.
-    pub jobs: Jobs,
+    pub jobs: Jobs<Session>,
     /// A world that was opened from a file, for the trainer to take.
     pub opened_world: Option<Box<World>>,
     /// Set by a panel: the trainer should take the calibrated world.
@@ -255,11 +216,7 @@ impl Session {
         self.analysis = None;
         self.fit_problem = None;
         self.diagnosing.forget();
-        self.jobs.cancel(JobKind::Diagnose);
-        self.jobs.cancel(JobKind::Extend);
-        self.jobs.cancel(JobKind::SimulateExtended);
-        self.jobs.cancel(JobKind::Rehearse);
-        self.jobs.cancel(JobKind::Check);
+        self.jobs.cancel_after(LOAD);
         self.plots.forget_recordings();
         self.playing = false;
         self.rules = None;
@@ -272,7 +229,6 @@ impl Session {
         self.refits.forget();
         self.what_if.forget();
         self.videos = Videos::default();
-        self.jobs.cancel(JobKind::Video);
         self.forget_changes();
         self.select(0);
     }
@@ -292,31 +248,20 @@ impl Session {
         }
     }
 
-    /// Ends a job that the user does not want to wait for; what was there before stays.
-    pub fn give_up(&mut self, kind: JobKind) {
-        self.jobs.cancel(kind);
-        if kind == JobKind::Fit && self.analysis.is_none() {
-            self.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
-        }
-        if kind == JobKind::Video {
-            self.gave_up_video();
-        }
-        if kind == JobKind::Curves {
-            self.plots.give_up();
-        }
-        if kind == JobKind::Fit {
-            self.refits.gave_up();
-            self.stale = true;
-        }
-        if kind == JobKind::Diagnose {
-            self.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
+    /// Ends a job that the user does not want to wait for; everything from before stays.
+    pub fn give_up(&mut self, ctx: &egui::Context, kind: JobKind) {
+        if let Some(change) = self.jobs.give_up(kind) {
+            change(self, ctx);
         }
     }
 
     /// Takes in what the jobs bring; call once a frame.
     pub fn poll(&mut self, ctx: &egui::Context) {
-        for outcome in self.jobs.poll() {
-            self.take(ctx, outcome);
+        for answer in self.jobs.poll() {
+            match answer {
+                Ok(change) => change(self, ctx),
+                Err(problem) => self.job_failed(problem),
+            }
         }
         super::recorder::follow(ctx, self);
         self.follow_experiment(ctx);
@@ -328,85 +273,12 @@ impl Session {
         self.follow_what_if(ctx);
     }
 
-    fn take(&mut self, ctx: &egui::Context, outcome: Outcome) {
-        match outcome {
-            Outcome::Loaded(path, recordings) => {
-                let mute = super::opening::says_nothing(&recordings);
-                self.recent.note(&path);
-                self.path_field.clear();
-                self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
-                self.project_path = None;
-                let again = self.path.as_ref() == Some(&path) && recordings.len() == self.recordings.len();
-                let videos = std::mem::take(&mut self.videos);
-                self.workspace = Workspace::Calibrate;
-                self.show(recordings);
-                self.videos = videos;
-                if !again {
-                    self.videos.of_log(&path, &self.recordings);
-                }
-                self.path = Some(path);
-                match mute {
-                    Some(why) => self.map_columns(ctx, Some(why)),
-                    None => self.refit(ctx),
-                }
-            }
-            Outcome::Project(project, recordings) => {
-                self.opened_project(ctx, *project, recordings);
-                self.ask_again(ctx);
-            }
-            Outcome::Unmapped(path, why) => {
-                self.path_field = path.display().to_string();
-                self.map_columns_of(ctx, &path, Some(why));
-            }
-            Outcome::Looked(looked) => self.mapping = Some(Box::new((*looked).into())),
-            Outcome::Previewed(seen) => {
-                if let Some(mapping) = &mut self.mapping {
-                    mapping.preview.seen = Some(*seen);
-                }
-            }
-            Outcome::Mapped { log, sidecar } => {
-                self.mapping = None;
-                self.say_saved(&sidecar);
-                self.open_with(ctx, &log, Some(sidecar));
-            }
-            Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
-            Outcome::Segmented(index, found) => self.segmented(index, *found),
-            Outcome::Simulated(replays) => self.replays = replays,
-            Outcome::Tried(values, replays) => self.what_if.take(values, replays),
-            Outcome::Sensitive(found) => self.sensitivity = Some(found),
-            Outcome::Judged(enough) => self.enough = enough,
-            Outcome::Diagnosed(answer) => self.diagnosed(answer),
-            Outcome::Extended(worlds) => self.extended(ctx, worlds),
-            Outcome::Checked(checked) => self.checked(checked),
-            Outcome::Rehearsed(rehearsal) => self.rehearsed(rehearsal),
-            Outcome::Guided(guided) => self.guided(guided),
-            Outcome::Expert(trace) => self.expert_did_it(trace),
-            Outcome::Graded(debrief) => self.graded(debrief),
-            Outcome::Practise(lesson) => self.lesson_made(ctx, lesson),
-            Outcome::Followed(path) => self.followed(path),
-            Outcome::Performed(path) => self.performed(ctx, &path),
-            Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,
-            Outcome::Curves(made) => self.plots.derived.take(made),
-            Outcome::Aligned(recording, found) => self.aligned(recording, found),
-            Outcome::Video(file, answer) => self.video_was_read(file, answer),
-            Outcome::Picture { file, index, picture } => self.picture_came(ctx, (file, index), picture),
-            Outcome::VideoAligned(file, found) => self.video_aligned(&file, found),
-            Outcome::MostAlike(pair, found) => {
-                self.plots.likeliest.insert(pair, found);
-            }
-            Outcome::Cancelled | Outcome::Chosen(_, None) => {}
-            Outcome::Chosen(purpose, Some(path)) => self.chosen(ctx, purpose, path),
-            Outcome::ChosenMany(_, paths) => self.check(ctx, On::Files(paths)),
-            Outcome::Unfinished(found) => self.unfinished = found,
-            Outcome::World(world) => self.opened_world = Some(world),
-            Outcome::Saved(path) => self.say_saved(&path),
-            Outcome::Failed(problem) => {
-                self.experiments.asks_again = false;
-                if !self.recordings.is_empty() && self.analysis.is_none() {
-                    self.fit_problem = Some(problem.clone());
-                }
-                self.fail(problem);
-            }
+    /// A job has failed.
+    fn job_failed(&mut self, problem: String) {
+        self.experiments.asks_again = false;
+        if !self.recordings.is_empty() && self.analysis.is_none() {
+            self.fit_problem = Some(problem.clone());
         }
+        self.fail(problem);
     }
 }

@@ -1,11 +1,11 @@
 //! Shown around: what is where, in a few cards, the first time and whenever it is asked for.
 
 use super::app::App;
-use super::dock::Pane;
 use super::icons::Icon;
-use super::session::Workspace;
+use super::panel_id::PanelId;
 use super::theme::{self, palette, space};
 use super::widgets::primary_button;
+use crate::ui::workspace::Workspace;
 use egui::{Align2, Area, Color32, Frame, Key, Order, Rect, RichText, Stroke, StrokeKind, Ui, vec2};
 
 /// Width of a card.
@@ -14,7 +14,7 @@ const WIDTH: f32 = 340.0;
 struct Step {
     title: &'static str,
     text: &'static str,
-    at: Option<(Workspace, Pane)>,
+    at: Option<(Workspace, PanelId)>,
 }
 
 const STEPS: [Step; 7] = [
@@ -28,29 +28,29 @@ const STEPS: [Step; 7] = [
         title: "Touch",
         text: "The mouse moves the hand; hold the button to pinch, and lift. The wheel changes how hard. Record what you do to measure \
                the object from it.",
-        at: Some((Workspace::Train, Pane::Trainer)),
+        at: Some((Workspace::Train, PanelId::TRAINER)),
     },
     Step {
         title: "Open a recording",
         text: "Drop a log anywhere on the window: CSV, MCAP or Parquet. Columns with foreign names are asked about once.",
-        at: Some((Workspace::Calibrate, Pane::Recording)),
+        at: Some((Workspace::Calibrate, PanelId::RECORDING)),
     },
     Step {
         title: "See what happened",
         text: "Plots share one time. The coloured band tells the states: drag a boundary, or right-click a state, and the fit follows.",
-        at: Some((Workspace::Calibrate, Pane::Log)),
+        at: Some((Workspace::Calibrate, PanelId::LOG)),
     },
     Step {
         title: "Measured values",
         text: "Every number comes with its error, or with the reason why the recording cannot show it. Click one to try another value \
                on the replay, to freeze it, or to state what you knew before.",
-        at: Some((Workspace::Calibrate, Pane::Results)),
+        at: Some((Workspace::Calibrate, PanelId::RESULTS)),
     },
     Step {
         title: "What the model gets wrong",
         text: "A diagnosis compares the model with what was measured, names the cause, extends the model and measures the gain on data \
                that took no part. Then feel the difference.",
-        at: Some((Workspace::Diagnose, Pane::Diagnose)),
+        at: Some((Workspace::Diagnose, PanelId::DIAGNOSE)),
     },
     Step {
         title: "Everything by its name",

@@ -1,7 +1,8 @@
 //! The video of the hand that belongs to a recording: reading it, its picture at the cursor, and where it lies in time.
 
-use super::dock::Pane;
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change, no_change};
+use super::opening::LOAD;
+use super::panel_id::PanelId;
 use super::prepare::Prepared;
 use super::session::Session;
 use crate::text::file_name::name_of;
@@ -12,6 +13,13 @@ use estimator::signal::lag::lag;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+/// Reading a video.
+const VIDEO: JobKind = JobKind::new("video").after(&LOAD);
+/// Decoding a picture of it.
+const PICTURE: JobKind = JobKind::new("picture");
+/// Finding the place of a video on its recording.
+pub const ALIGN_VIDEO: JobKind = JobKind::new("align-video");
 
 /// Endings that a video beside its log may have.
 const ENDINGS: [&str; 5] = ["mp4", "mov", "mkv", "webm", "avi"];
@@ -113,7 +121,7 @@ impl Session {
                 self.forget_video();
                 let recording = self.current;
                 self.videos.sources.push(VideoSource { file: file.to_path_buf(), recording, begins_at_s });
-                self.wanted_pane = Some(Pane::Video);
+                self.wanted_pane = Some(PanelId::VIDEO);
             }
         }
     }
@@ -123,7 +131,7 @@ impl Session {
         let current = self.current;
         self.videos.sources.retain(|s| s.recording != current);
         (self.videos.loose_s, self.videos.shown) = (None, None);
-        self.jobs.cancel(JobKind::Video);
+        self.jobs.cancel(VIDEO);
         self.videos.tidy();
     }
 
@@ -133,18 +141,18 @@ impl Session {
         match self.videos.answer(&file) {
             Some(Ok(video)) => return State::There(Arc::clone(video)),
             Some(Err(problem)) => return State::Failed(problem.clone()),
-            None if self.jobs.is_running(JobKind::Video) => return State::Reading,
+            None if self.jobs.is_running(VIDEO) => return State::Reading,
             None => {}
         }
-        let what = format!("Reading {}", name_of(&file));
-        self.jobs.start_watched(ctx, JobKind::Video, what, move |ticket| {
+        let job = self.jobs.start(ctx, VIDEO, format!("Reading {}", name_of(&file)), move |ticket| {
             let watch = Watch { progress: &|share| ticket.tell(share), cancelled: ticket.cancelled() };
-            match Video::read(&file, &watch) {
-                Ok(video) => Outcome::Video(file, Ok(Arc::new(video))),
-                Err(VideoError::Cancelled) => Outcome::Cancelled,
-                Err(error) => Outcome::Video(file, Err(sentence(&error.to_string()))),
-            }
+            let answer = match Video::read(&file, &watch) {
+                Err(VideoError::Cancelled) => return no_change(),
+                read => read.map(Arc::new).map_err(|error| sentence(&error.to_string())),
+            };
+            change(|session: &mut Self, _| session.video_was_read(file, answer))
         });
+        job.if_given_up(|session: &mut Self, _| session.gave_up_video());
         State::Reading
     }
 
@@ -187,14 +195,14 @@ impl Session {
     pub fn video_picture(&mut self, ctx: &egui::Context, video: &Arc<Video>, index: usize) -> Option<TextureHandle> {
         let file = self.video_source()?.file.clone();
         let shown = self.videos.shown.as_ref().filter(|s| s.file == file);
-        if shown.is_none_or(|s| s.index != index) && !self.jobs.is_running(JobKind::Picture) {
+        if shown.is_none_or(|s| s.index != index) && !self.jobs.is_running(PICTURE) {
             let (video, file) = (Arc::clone(video), file.clone());
             if self.videos.at_once {
                 self.picture_came(ctx, (file, index), decoded(&video, index));
             } else {
-                self.jobs.start(ctx, JobKind::Picture, move || {
+                self.jobs.start(ctx, PICTURE, "", move |_| {
                     let picture = decoded(&video, index);
-                    Outcome::Picture { file, index, picture }
+                    change(move |session: &mut Self, ctx| session.picture_came(ctx, (file, index), picture))
                 });
             }
         }
@@ -243,15 +251,13 @@ impl Session {
         else {
             return;
         };
-        self.jobs.start_watched(ctx, JobKind::AlignVideo, "Laying the video over the recording".to_owned(), {
-            move |ticket| match video::motion(&file, ticket.cancelled()) {
-                Ok((times, changes)) => {
-                    let found = begins_at(&prepared, &times, &changes);
-                    Outcome::VideoAligned(file, found)
-                }
-                Err(VideoError::Cancelled) => Outcome::Cancelled,
-                Err(error) => Outcome::VideoAligned(file, Err(sentence(&error.to_string()))),
-            }
+        self.jobs.start(ctx, ALIGN_VIDEO, "Laying the video over the recording", move |ticket| {
+            let found = match video::motion(&file, ticket.cancelled()) {
+                Ok((times, changes)) => begins_at(&prepared, &times, &changes),
+                Err(VideoError::Cancelled) => return no_change(),
+                Err(error) => Err(sentence(&error.to_string())),
+            };
+            change(move |session: &mut Self, _| session.video_aligned(&file, found))
         });
     }
 

@@ -1,13 +1,17 @@
 //! What if a parameter had another value: the world with it, its replay and what that leaves of the measured force, live.
 
 use super::fitting::replay_forces;
-use super::jobs::{JobKind, Outcome, Replayed};
+use super::jobs::{JobKind, change};
+use super::replayed::Replayed;
 use super::session::Session;
 use estimator::calibrate;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
 use haptics::world::World;
 use std::collections::BTreeMap;
+
+/// Replaying with a value that is tried.
+const WHAT_IF: JobKind = JobKind::new("what-if");
 
 /// Values that are tried, and what comes of them.
 #[derive(Clone, Debug, Default)]
@@ -91,14 +95,15 @@ impl Session {
 
     /// Replays with the newest tried values when the last replay has come; call once a frame.
     pub fn follow_what_if(&mut self, ctx: &egui::Context) {
-        if !self.what_if.is_behind() || self.jobs.is_running(JobKind::WhatIf) {
+        if !self.what_if.is_behind() || self.jobs.is_running(WHAT_IF) {
             return;
         }
         let Some(analysis) = self.analysis.clone() else { return };
         let (recordings, choice, values) = (self.recordings.clone(), self.choice.clone(), self.what_if.values.clone());
-        self.jobs.start(ctx, JobKind::WhatIf, move || {
+        self.jobs.start(ctx, WHAT_IF, "", move |_| {
             let world = world(&analysis, &choice.given_to_all(&recordings), &values);
-            Outcome::Tried(values, replay_forces(&world, &recordings))
+            let replays = replay_forces(&world, &recordings);
+            change(|session: &mut Self, _| session.what_if.take(values, replays))
         });
     }
 

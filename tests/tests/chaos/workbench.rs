@@ -4,7 +4,7 @@
 use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
 use app::ui::dock::Dock;
-use app::ui::jobs::JobKind;
+use app::ui::fitting::FIT;
 use app::ui::project::Project;
 use app::ui::session::{Session, Tone};
 use rand::RngExt as _;
@@ -65,7 +65,7 @@ impl Bench {
             0 => session.add_log(ctx, &path),
             1 => session.undo(),
             2 => session.refit(ctx),
-            3 => session.jobs.cancel(JobKind::Fit),
+            3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),
             _ => session.open_any(ctx, &path),
         }

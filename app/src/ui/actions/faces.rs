@@ -2,6 +2,7 @@
 
 use super::Action;
 use crate::ui::icons::Icon;
+use crate::ui::panels::list;
 
 impl Action {
     /// Its icon; those that are one of a list of names have that of the list.
@@ -39,7 +40,7 @@ impl Action {
             Self::ToStart => Icon::ToStart,
             Self::ToEnd => Icon::ToEnd,
             Self::Open(workspace) => workspace.icon(),
-            Self::Panel(pane) => pane.icon(),
+            Self::Panel(pane) => list::registration(*pane).map_or(Icon::Panel, |panel| panel.icon),
             Self::Arrange | Self::Layout(_) => Icon::Arrange,
             Self::Theme => Icon::Theme,
             Self::Larger => Icon::Larger,

@@ -3,8 +3,10 @@
 use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
-use crate::ui::dock::Pane;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
+use crate::ui::session::Session;
+use crate::ui::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
 use strum::{EnumIter, IntoEnumIterator as _};
@@ -99,7 +101,7 @@ pub enum Action {
     /// Forgets the open one's name.
     DeleteLayout,
     /// Shows or hides a panel.
-    Panel(Pane),
+    Panel(PanelId),
     /// The other theme.
     Theme,
     /// Larger.
@@ -183,7 +185,7 @@ impl Action {
     pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
         let session = &app.session;
         let layouts = app.dock.names(session.workspace).map(|name| Self::Layout(name.to_owned()));
-        let panels = Pane::of(session.workspace).iter().filter(|p| **p != Pane::Segments).map(|p| Self::Panel(*p));
+        let panels = list::of(session.workspace).into_iter().filter(|p| *p != PanelId::SEGMENTS).map(Self::Panel);
         let recent = session.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
         let recordings = (0..session.recordings.len()).filter(|i| *i != session.current).map(Self::Select);
         let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
@@ -192,7 +194,7 @@ impl Action {
             Self::Open(_) => Workspace::CHOICES.map(|(workspace, ..)| Self::Open(workspace)).to_vec(),
             Self::Panel(_) => {
                 if known {
-                    vec![Self::Panel(Pane::Segments)]
+                    vec![Self::Panel(PanelId::SEGMENTS)]
                 } else {
                     Vec::new()
                 }
@@ -222,7 +224,7 @@ impl Action {
             Self::Select(index) => format!("Show recording {}", index + 1),
             Self::GoTo { what, .. } => format!("Go to: {what}"),
             Self::Open(workspace) => format!("Open {}", workspace.title()),
-            Self::Panel(pane) => format!("Panel: {}", pane.title()),
+            Self::Panel(pane) => format!("Panel: {}", list::registration(*pane).map_or("", |panel| panel.title)),
             Self::Lesson(title) => format!("Lesson: {title}"),
             Self::Answer(_, words) => format!("Answer: {words}"),
             Self::Layout(name) => format!("Arrangement: {name}"),

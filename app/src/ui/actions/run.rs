@@ -5,9 +5,9 @@ use crate::ui::app::App;
 use crate::ui::dock::naming::Naming;
 use crate::ui::files;
 use crate::ui::fit_choice::Stated;
-use crate::ui::jobs::Purpose;
 use crate::ui::rules::Rules;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::session::{Session, Tone};
+use crate::ui::workspace::Workspace;
 use egui::{Context, ViewportCommand};
 
 /// Steps of the size of everything.
@@ -60,18 +60,18 @@ fn with_layouts(action: &Action, app: &mut App) {
 
 fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
-        Action::OpenLog => files::ask(ctx, &mut session.jobs, Purpose::OpenLog),
-        Action::AddLog => files::ask(ctx, &mut session.jobs, Purpose::AddLog),
-        Action::AddVideo => files::ask(ctx, &mut session.jobs, Purpose::OpenVideo),
-        Action::OpenWorld => files::ask(ctx, &mut session.jobs, Purpose::OpenWorld),
-        Action::OpenProject => files::ask(ctx, &mut session.jobs, Purpose::OpenProject),
+        Action::OpenLog => files::ask(ctx, &mut session.jobs, files::OPEN_LOG),
+        Action::AddLog => files::ask(ctx, &mut session.jobs, files::ADD_LOG),
+        Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
+        Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
+        Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
         Action::OpenRecent(path) => session.open_any(ctx, path),
         Action::SaveProject => session.save_project(ctx),
-        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, Purpose::SaveProject),
-        Action::SaveLog => files::ask(ctx, &mut session.jobs, Purpose::SaveLog),
-        Action::SaveWorld => files::ask(ctx, &mut session.jobs, Purpose::SaveWorld),
-        Action::ExportWorld => files::ask(ctx, &mut session.jobs, Purpose::ExportWorld),
-        Action::Report => files::ask(ctx, &mut session.jobs, Purpose::SaveReport),
+        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
+        Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
+        Action::SaveWorld => files::ask(ctx, &mut session.jobs, files::SAVE_WORLD),
+        Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
+        Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
         Action::Reload => session.reload(ctx),
         Action::MapColumns => session.map_columns(ctx, None),
         Action::Undo => session.undo(),

@@ -6,25 +6,26 @@ mod behavior;
 mod layout;
 mod named;
 pub mod naming;
-mod panes;
+pub mod panes;
 mod place;
 
-pub use panes::{Pane, Panels};
-
-use super::session::{Session, Workspace};
+use super::panel_id::PanelId;
+use super::panels::list;
+use super::session::Session;
+use super::workspace::Workspace;
 use behavior::Tiling;
 use egui::{Frame, Margin, Ui};
 use egui_tiles::{TileId, Tree};
 use named::Named;
 use naming::Naming;
+use panes::Panels;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use strum::IntoEnumIterator as _;
 
 /// The arrangement of one workspace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrangement {
-    tree: Tree<Pane>,
+    tree: Tree<PanelId>,
     /// Whether the user has moved anything: shares of the room are then left alone.
     pub moved: bool,
 }
@@ -77,18 +78,18 @@ impl Dock {
     }
 
     /// True when the panel stands somewhere in the workspace.
-    pub fn has(&mut self, workspace: Workspace, pane: Pane) -> bool {
+    pub fn has(&mut self, workspace: Workspace, pane: PanelId) -> bool {
         self.of(workspace).find(pane).is_some()
     }
 
     /// Where the panel was drawn.
-    pub fn rect(&mut self, workspace: Workspace, pane: Pane) -> Option<egui::Rect> {
+    pub fn rect(&mut self, workspace: Workspace, pane: PanelId) -> Option<egui::Rect> {
         let mine = self.of(workspace);
         mine.tree.tiles.rect(mine.find(pane)?)
     }
 
     /// Brings a panel in, or takes it out.
-    pub fn toggle(&mut self, workspace: Workspace, pane: Pane) {
+    pub fn toggle(&mut self, workspace: Workspace, pane: PanelId) {
         let mine = self.of(workspace);
         match mine.find(pane) {
             Some(tile) => drop(mine.tree.remove_recursively(tile)),
@@ -97,7 +98,7 @@ impl Dock {
     }
 
     /// Brings a panel to the front, and in where it is not there.
-    pub fn bring(&mut self, workspace: Workspace, pane: Pane) {
+    pub fn bring(&mut self, workspace: Workspace, pane: PanelId) {
         let mine = self.of(workspace);
         if mine.find(pane).is_none() {
             mine.add(pane);
@@ -108,11 +109,11 @@ impl Dock {
 
 impl Arrangement {
     /// The panels that stand in it.
-    fn panes(&self) -> BTreeSet<Pane> {
-        Pane::iter().filter(|pane| self.find(*pane).is_some()).collect()
+    fn panes(&self) -> BTreeSet<PanelId> {
+        list::ids().filter(|pane| self.find(*pane).is_some()).collect()
     }
 
-    fn find(&self, pane: Pane) -> Option<TileId> {
+    fn find(&self, pane: PanelId) -> Option<TileId> {
         self.tree.tiles.find_pane(&pane)
     }
 
@@ -127,11 +128,12 @@ impl Arrangement {
 
     /// Panels that have nothing to show yet leave their room to the others.
     fn show_only_what_has_contents(&mut self, session: &Session) {
-        for pane in Pane::iter() {
+        for pane in list::ids() {
             if let Some(tile) = self.find(pane) {
+                let has_contents = list::registration(pane).is_none_or(|panel| (panel.has_contents)(session));
                 // Alone, it hides its tabs as well: they would keep the room.
-                self.tree.set_visible(tile, pane.has_contents(session));
-                self.tree.set_visible(self.alone_in(tile), pane.has_contents(session));
+                self.tree.set_visible(tile, has_contents);
+                self.tree.set_visible(self.alone_in(tile), has_contents);
             }
         }
     }
@@ -145,39 +147,39 @@ mod tests {
     fn panels_are_taken_out_brought_in_and_put_back() {
         let mut dock = Dock::default();
         let at = Workspace::Calibrate;
-        assert!(dock.has(at, Pane::Log) && !dock.has(at, Pane::Segments) && !dock.is_moved(at));
-        dock.toggle(at, Pane::Log);
-        dock.toggle(at, Pane::Segments);
-        assert!(!dock.has(at, Pane::Log) && dock.has(at, Pane::Segments) && dock.is_moved(at));
-        dock.bring(at, Pane::Log);
-        assert!(dock.has(at, Pane::Log));
+        assert!(dock.has(at, PanelId::LOG) && !dock.has(at, PanelId::SEGMENTS) && !dock.is_moved(at));
+        dock.toggle(at, PanelId::LOG);
+        dock.toggle(at, PanelId::SEGMENTS);
+        assert!(!dock.has(at, PanelId::LOG) && dock.has(at, PanelId::SEGMENTS) && dock.is_moved(at));
+        dock.bring(at, PanelId::LOG);
+        assert!(dock.has(at, PanelId::LOG));
         dock.reset(at);
-        assert!(!dock.has(at, Pane::Segments) && !dock.is_moved(at));
+        assert!(!dock.has(at, PanelId::SEGMENTS) && !dock.is_moved(at));
     }
 
     #[test]
     fn every_panel_can_be_taken_out_and_comes_back() {
         let mut dock = Dock::default();
         let at = Workspace::Calibrate;
-        for pane in Pane::iter() {
+        for pane in list::ids() {
             if dock.has(at, pane) {
                 dock.toggle(at, pane);
             }
         }
-        assert!(Pane::iter().all(|p| !dock.has(at, p)));
-        dock.bring(at, Pane::Results);
-        dock.bring(at, Pane::Log);
-        assert!(dock.has(at, Pane::Results) && dock.has(at, Pane::Log));
+        assert!(list::ids().all(|p| !dock.has(at, p)));
+        dock.bring(at, PanelId::RESULTS);
+        dock.bring(at, PanelId::LOG);
+        assert!(dock.has(at, PanelId::RESULTS) && dock.has(at, PanelId::LOG));
     }
 
     #[test]
     fn a_panel_comes_in_beside_those_it_belongs_to_and_can_be_read() {
         let mut dock = Dock::default();
         let at = Workspace::Calibrate;
-        for pane in [Pane::Video, Pane::Sensitivity, Pane::Segments] {
+        for pane in [PanelId::VIDEO, PanelId("sensitivity"), PanelId::SEGMENTS] {
             dock.bring(at, pane);
         }
-        for pane in [Pane::Recording, Pane::Scene, Pane::Log] {
+        for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::LOG] {
             dock.toggle(at, pane);
             dock.toggle(at, pane);
         }
@@ -192,7 +194,7 @@ mod tests {
             dock.ui(ui, &mut panels, &mut session);
         });
         output.textures_delta.clear();
-        for pane in [Pane::Video, Pane::Scene, Pane::Segments, Pane::Recording, Pane::Log] {
+        for pane in [PanelId::VIDEO, PanelId::SCENE, PanelId::SEGMENTS, PanelId::RECORDING, PanelId::LOG] {
             rects.push(dock.rect(at, pane).expect("drawn"));
         }
         assert!(rects.iter().all(|r| r.width() > 150.0 && r.height() > 100.0), "{rects:?}");
@@ -204,9 +206,9 @@ mod tests {
     #[test]
     fn an_arrangement_survives_a_file() {
         let mut dock = Dock::default();
-        dock.toggle(Workspace::Calibrate, Pane::Segments);
+        dock.toggle(Workspace::Calibrate, PanelId::SEGMENTS);
         let text = serde_json::to_string(&dock).expect("written");
         let mut again: Dock = serde_json::from_str(&text).expect("read");
-        assert!(again.has(Workspace::Calibrate, Pane::Segments) && again.is_moved(Workspace::Calibrate));
+        assert!(again.has(Workspace::Calibrate, PanelId::SEGMENTS) && again.is_moved(Workspace::Calibrate));
     }
 }

@@ -1,9 +1,9 @@
 //! The dialog in which an arrangement is given its name.
 
 use crate::ui::app::App;
-use crate::ui::session::Workspace;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::primary_button;
+use crate::ui::workspace::Workspace;
 use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
 
 /// Width of the dialog, points.

@@ -2,34 +2,30 @@
 
 pub mod by_pointer;
 mod filmed;
+pub mod practice;
+pub mod sample;
 pub mod samples;
 mod small_png;
 pub mod walk;
 
-use super::scene::SceneLayers;
-use super::screenshot::{self, Panel, PanelInput};
+use super::panel::{Framing, PAGE, Picture, SCENE};
+use super::panels::{diagnose, diagnosis, scene, trainer_view, video};
+use super::picture_input::PictureInput;
+use super::scene::layers::SceneLayers;
+use super::screenshot::{self, pictures};
 use super::session::Session;
 use crate::worlds;
 use anyhow::Context as _;
-use clap::ValueEnum as _;
 use haptics::recording::Task;
+use sample::Sample;
 use samples::Samples;
 use std::fmt::Write as _;
 use std::path::Path;
 
-pub use samples::Sample;
 pub use small_png::small_png;
 
-/// Sizes of whole pages, of single panels and of scenes, pixels.
-const PAGE: [u32; 2] = [1280, 720];
-const PANEL: [u32; 2] = [640, 480];
-const ATLAS: [u32; 2] = [720, 540];
-const COLUMN: [u32; 2] = [440, 760];
-const PRACTICE: [u32; 2] = [720, 760];
-const SCENE: [u32; 2] = [720, 480];
-
 /// One picture of the gallery.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Plate {
     /// Name of its files, without theme and ending.
     pub name: String,
@@ -37,7 +33,8 @@ pub struct Plate {
     pub line: &'static str,
     /// Pixels.
     pub size: [u32; 2],
-    panel: Panel,
+    /// The kind of picture.
+    pub picture: &'static Picture,
     sample: Sample,
     layers: SceneLayers,
     /// Where the time cursor stands, s; a telling moment when absent.
@@ -45,36 +42,15 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// What it is a picture of.
-    pub fn panel(&self) -> Panel {
-        self.panel
-    }
-
     /// The same recording or world in another panel or page.
     #[cfg(test)]
-    pub(super) fn shown_in(&self, panel: Panel) -> Self {
-        Self { name: format!("{} in {panel:?}", self.name), panel, size: PAGE, ..self.clone() }
+    pub(super) fn shown_in(&self, picture: &'static Picture) -> Self {
+        Self { name: format!("{} in {}", self.name, picture.name), picture, size: PAGE, ..self.clone() }
     }
 
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{
-            Assistant, Delay, LeftOver, Log, Parameters, Progress, Results, Scene, Segments, Sensitivity, Trainer, Xy,
-        };
-        matches!(
-            self.panel,
-            Log | Xy
-                | LeftOver
-                | Parameters
-                | Progress
-                | Results
-                | Scene
-                | Segments
-                | Sensitivity
-                | Trainer
-                | Delay
-                | Assistant
-        )
+        matches!(self.picture.framing, Framing::Panel(_))
     }
 
     /// A view of a recording in space with other layers than usual.
@@ -85,24 +61,24 @@ impl Plate {
 
 /// All of them: pages and panels first, then the views of the scene, then the worlds of the trainer.
 pub fn plates() -> Vec<Plate> {
-    let panels = Panel::value_variants().iter().map(|panel| of_panel(*panel));
+    let panels = pictures().map(of_picture);
     let of_blocks = Plate {
         name: "atlas-blocks".to_owned(),
         sample: Sample::Leaking,
         line: "The same of blocks: a part for every channel that was compared",
-        ..of_panel(Panel::Atlas)
+        ..of_picture(&diagnose::ATLAS)
     };
     let of_needle = Plate {
         name: "atlas-needle".to_owned(),
         sample: Sample::Needle,
         line: "The same of a needle: its sheet and its shaft, over depth, speed and time",
-        ..of_panel(Panel::Atlas)
+        ..of_picture(&diagnose::ATLAS)
     };
     let of_hinge = Plate {
         name: "experiment-hinge".to_owned(),
         sample: Sample::Hinge,
         line: "What to record next of a mechanism without a handle: rehearsed, and planned for the real one",
-        ..of_panel(Panel::Experiment)
+        ..of_picture(&diagnosis::EXPERIMENT)
     };
     panels
         .chain([of_blocks, of_needle, of_hinge])
@@ -111,52 +87,9 @@ pub fn plates() -> Vec<Plate> {
         .collect()
 }
 
-fn of_panel(panel: Panel) -> Plate {
-    let (sample, size, line) = match panel {
-        Panel::Log => (Sample::Stack, PANEL, "The log: curves by quantity, the states as a band, one time cursor"),
-        Panel::Xy => (Sample::Needle, PANEL, "XY: the force of a needle over its depth, coloured by state"),
-        Panel::LeftOver => {
-            (Sample::Crank, PANEL, "What is left over: measured less simulated, and less the extended model")
-        }
-        Panel::Segments => (Sample::Stack, PANEL, "Segments: what was done when, found in the recording"),
-        Panel::Rules => (Sample::Stack, PAGE, "Rules of a task, open beside the states that they find"),
-        Panel::Parameters => (Sample::Stack, COLUMN, "Parameters: values with errors, and how each was found"),
-        Panel::Results => (Sample::Crank, COLUMN, "Results: constraints, warnings, what is still missing"),
-        Panel::Scene => (Sample::Stack, SCENE, "The recording in space, in the world that was measured"),
-        Panel::Trainer => (Sample::World("stack"), PANEL, "The virtual world, touched by the scripted operator"),
-        Panel::Assistant => (
-            Sample::World("table"),
-            PANEL,
-            "The assistant: what is held, what may be in it, and the cable that holds it",
-        ),
-        Panel::Workbench => (Sample::Stack, PAGE, "Calibrate: a recording of two blocks, segmented and fitted"),
-        Panel::Train => (Sample::World("stack"), PAGE, "Train: the world, the forces, the servo's punctuality"),
-        Panel::Lessons => (Sample::World("table"), PAGE, "Lessons: from the first touch to the real task"),
-        Panel::Practice => (Sample::World("table"), PAGE, "A lesson is practised, beside an expert's ghost"),
-        Panel::Debrief => (Sample::World("table"), PAGE, "What came of an attempt, beside the experts"),
-        Panel::Devices => (Sample::World("stack"), PAGE, "Devices: what moves the fingers, and how well"),
-        Panel::Diagnose => (Sample::Crank, PAGE, "Diagnose: what the model gets wrong, and why"),
-        Panel::Atlas => (Sample::Askew, ATLAS, "The residual atlas: what is left over against every suspect"),
-        Panel::Experiment => (Sample::Askew, COLUMN, "What to record next, rehearsed on simulated objects"),
-        Panel::Delay => {
-            (Sample::World("stack"), PANEL, "Over half a second: the model under the hand solid, the far world a ghost")
-        }
-        Panel::Guided => (Sample::Askew, PANEL, "An experiment done by hand in Train: two rings to follow"),
-        Panel::Sensitivity => (Sample::Crank, COLUMN, "Sensitivity: what the force depends on, and what goes together"),
-        Panel::Parameter => (Sample::Crank, PAGE, "Another value of a parameter, tried on the replay"),
-        Panel::Arrange => (Sample::Stack, PAGE, "Panels while they are arranged: drag a title, close, bring back"),
-        Panel::Commands => (Sample::Stack, PAGE, "Every command by a few letters of its name"),
-        Panel::Tour => (Sample::Stack, PAGE, "Shown around, the first time"),
-        Panel::Video => {
-            (Sample::Stack, PAGE, "A video of the hand (here of the virtual one) runs with the time cursor")
-        }
-        Panel::Progress => {
-            (Sample::World("stack"), PRACTICE, "Progress: a trainee's learning curve at a lesson (a made-up history)")
-        }
-        Panel::Mapping => (Sample::Foreign, PAGE, "A foreign table: what its columns mean, with a preview"),
-    };
-    let name = panel.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
-    Plate { name, line, size, panel, sample, layers: SceneLayers::default(), at_s: None }
+fn of_picture(picture: &'static Picture) -> Plate {
+    let Picture { name, line, size, sample, .. } = *picture;
+    Plate { name: name.to_owned(), line, size, picture, sample, layers: SceneLayers::default(), at_s: None }
 }
 
 /// The thesis's figures as live views of the scene.
@@ -166,7 +99,7 @@ fn views() -> Vec<Plate> {
         name: format!("scene-{name}"),
         line,
         size: SCENE,
-        panel: Panel::Scene,
+        picture: &scene::SCENE_PICTURE,
         sample,
         layers,
         at_s,
@@ -240,7 +173,7 @@ fn of_world(name: &'static str) -> Option<Plate> {
         name: format!("world-{name}"),
         line,
         size: SCENE,
-        panel: Panel::Trainer,
+        picture: &trainer_view::TRAINER,
         sample: Sample::World(name),
         layers: SceneLayers::default(),
         at_s: None,
@@ -256,23 +189,23 @@ pub struct Studio {
 impl Studio {
     /// Draws one plate.
     pub fn draw(&mut self, plate: &Plate, dark: bool) -> anyhow::Result<image::RgbaImage> {
-        screenshot::draw(self.session(plate)?, plate.panel, plate.size, dark)
+        screenshot::draw(self.session(plate)?, plate.picture, plate.size, dark)
     }
 
     /// What a plate is drawn from.
     pub(super) fn session(&mut self, plate: &Plate) -> anyhow::Result<Session> {
         let input = self.input(plate).with_context(|| format!("the gallery's picture {}", plate.name))?;
         let mut input = input;
-        if plate.panel == Panel::Video {
+        if plate.picture.name == video::PICTURE.name {
             input.video = Some(self.samples.film(&input)?);
         }
-        let mut session = screenshot::session_for(&input, plate.panel)?;
+        let mut session = (plate.picture.session)(&input)?;
         session.layers = plate.layers;
         Ok(session)
     }
 
-    fn input(&mut self, plate: &Plate) -> anyhow::Result<PanelInput> {
-        let mut input = PanelInput { time_s: plate.at_s, ..PanelInput::default() };
+    fn input(&mut self, plate: &Plate) -> anyhow::Result<PictureInput> {
+        let mut input = PictureInput { time_s: plate.at_s, ..PictureInput::default() };
         match plate.sample {
             Sample::World(name) => input.world = Some(worlds::find(Path::new(name))?),
             Sample::Foreign => input.log = Some(self.samples.foreign()?),

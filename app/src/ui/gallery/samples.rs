@@ -2,8 +2,9 @@
 
 use super::filmed::filmed;
 use crate::built_in::built_in;
-use crate::history::{Attempt, Conditions};
-use crate::ui::screenshot::{Panel, PanelInput, session_for};
+use crate::ui::gallery::sample::Sample;
+use crate::ui::picture_input::PictureInput;
+use crate::ui::stage;
 use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
 use crate::video::VideoSource;
 use crate::{experiment, worlds};
@@ -14,7 +15,6 @@ use haptics::law::{EccentricMass, Effect};
 use haptics::recording::{Channel, Recording};
 use haptics::servo::recorder::SensorModel;
 use haptics::world::{Content, World, presets};
-use jiff::{SignedDuration, Timestamp};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,31 +22,6 @@ use tempfile::TempDir;
 
 /// Longest performance, s of simulated time: a script that does not end is cut off.
 const LONGEST_S: f64 = 120.0;
-
-/// What a picture is drawn from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sample {
-    /// The built-in recording of two blocks.
-    Stack,
-    /// The built-in recording of a crank.
-    Crank,
-    /// The scripted operator with the needle.
-    Needle,
-    /// A tool that leads a door.
-    Door,
-    /// A crank with a mass off its axis, or on a tilted table: its recording cannot tell.
-    Askew,
-    /// A block that leaks, or is weighed by a sensor that drifts: its recording cannot tell.
-    Leaking,
-    /// A hinge with a mass off its axis, or on an axis that leans: its recording cannot tell.
-    Hinge,
-    /// A cart on a rail, of which only the way and the force are known.
-    Rail,
-    /// A table whose columns have no meaning yet.
-    Foreign,
-    /// A built-in world, performed live.
-    World(&'static str),
-}
 
 /// Recordings that were made already.
 #[derive(Default)]
@@ -91,9 +66,9 @@ impl Samples {
     }
 
     /// A film of the virtual hand in the middle of a recording, as if a camera stood beside it.
-    pub fn film(&mut self, input: &PanelInput) -> anyhow::Result<VideoSource> {
+    pub fn film(&mut self, input: &PictureInput) -> anyhow::Result<VideoSource> {
         let file = self.folder()?.join("hand.mp4");
-        filmed(&mut session_for(input, Panel::Scene)?, &file)
+        filmed(&mut stage::fitted(input)?, &file)
     }
 
     fn folder(&mut self) -> anyhow::Result<&Path> {
@@ -163,39 +138,6 @@ pub fn hinge() -> (Recording, blind::case::Object) {
     let mut recording = case.recordings.pop().unwrap_or_default();
     "hinge".clone_into(&mut recording.name);
     (recording, object)
-}
-
-/// A made-up trainee's attempts at one lesson: four sessions, slow and hesitating at first.
-pub fn practice() -> Vec<Attempt> {
-    let begun: Timestamp = "2026-11-02T17:00:00Z".parse().unwrap_or_default();
-    (0..23_u32)
-        .map(|k| {
-            let session = k / 6;
-            let scatter = 5.0 * (2.3 * f64::from(k)).sin() + 3.0 * (5.1 * f64::from(k)).cos();
-            let score = 96.0 - 55.0 * (f64::from(k) + 1.0).powf(-0.7) + 0.7 * scatter;
-            let met = |score: f64| score >= 88.0;
-            let began_s = i64::from(session) * 86_400 + i64::from(k % 6) * 150;
-            Attempt {
-                trainee: "Ada".to_owned(),
-                lesson: "pinch".to_owned(),
-                conditions: Conditions::default(),
-                began: begun.saturating_add(SignedDuration::from_secs(began_s)).unwrap_or(begun),
-                duration_s: 18.0 + 30.0 * (f64::from(k) + 1.0).powf(-0.5),
-                completed: k != 1,
-                score: (k != 1).then_some(score),
-                meets_criterion: met(score),
-                proficient: false,
-                measures: serde_json::Value::Null,
-                measures_version: 1,
-                grade_version: 1,
-                recording: Some(PathBuf::from(format!(
-                    "recordings/2026-11-{:02}_pinch_{}.mcap",
-                    2 + session,
-                    k % 6 + 1
-                ))),
-            }
-        })
-        .collect()
 }
 
 /// The recording of an experiment on a world that stands for the real object.

@@ -3,10 +3,11 @@
 
 use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::jobs::JobKind;
+use crate::ui::diagnosing::EXTEND;
 use crate::ui::screenshot::in_whole_window;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::session::{Session, Tone};
 use crate::ui::trainer::Clock;
+use crate::ui::workspace::Workspace;
 use crate::ui::{scene, theme};
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
@@ -288,7 +289,7 @@ impl Walker {
 
     fn extend(&mut self) -> anyhow::Result<()> {
         self.click(Role::Button, "Extend the model")?;
-        self.until("the extended model", |s| s.diagnosing.worlds.is_some() && !s.jobs.is_running(JobKind::Extend))
+        self.until("the extended model", |s| s.diagnosing.worlds.is_some() && !s.jobs.is_running(EXTEND))
     }
 
     fn feel(&mut self) -> anyhow::Result<()> {

@@ -9,16 +9,22 @@ pub use ghost::{Ghost, Wait};
 pub use pointer::{Pointed, pointer_through};
 pub use trace::{Point, Trace, trace_of};
 
-use super::jobs::{JobKind, Outcome};
-use super::session::{Session, Workspace};
+use super::jobs::{JobKind, change};
+use super::session::Session;
 use super::trainer::{Operator, Sensors, Trainer, WorldChoice};
 use crate::recorder::Stopping;
 use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
 use estimator::training::lesson::{Attempted, Grade, Lesson, Progress, attempt, expert, grade, practise};
 use haptics::recording::Meta;
 use haptics::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Letting the expert of a lesson do it.
+const EXPERT: JobKind = JobKind::new("expert");
+/// Grading an attempt at a lesson.
+const GRADE: JobKind = JobKind::new("grade");
 
 /// How far a trainee is with a lesson.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +176,10 @@ impl Session {
     pub fn open_lesson(&mut self, ctx: &egui::Context, lesson: &Arc<Lesson>) {
         if self.open_lesson_only(lesson) {
             let lesson = Arc::clone(lesson);
-            self.jobs.start(ctx, JobKind::Expert, move || Outcome::Expert(trace::of_expert(&lesson).map(Box::new)));
+            self.jobs.start(ctx, EXPERT, "", move |_| {
+                let trace = trace::of_expert(&lesson);
+                change(|session: &mut Self, _| session.expert_did_it(trace))
+            });
         }
     }
 
@@ -186,28 +195,29 @@ impl Session {
     /// The same at once, for pictures.
     pub fn open_lesson_now(&mut self, lesson: &Arc<Lesson>) {
         if self.open_lesson_only(lesson) {
-            self.expert_did_it(trace::of_expert(lesson).map(Box::new));
+            self.expert_did_it(trace::of_expert(lesson));
         }
     }
 
     /// Makes a lesson of the calibrated world, with experts of its own; in the background.
     pub fn practise_on_this(&mut self, ctx: &egui::Context) {
         let Some(world) = self.analysis.as_ref().map(|analysis| analysis.world.clone()) else { return };
-        self.jobs.start_watched(ctx, JobKind::Expert, "Watching an expert in this world".to_owned(), move |_| {
+        self.jobs.start(ctx, EXPERT, "Watching an expert in this world", move |_| {
             let measured = practise::on(world).and_then(|mut lesson| {
                 lesson.expert = Some(expert::measure(&lesson)?);
-                Ok(Box::new(lesson))
+                Ok(lesson)
             });
-            Outcome::Practise(measured.map_err(|error| sentence(&error.to_string())))
+            let lesson = measured.map_err(|error| sentence(&error.to_string()));
+            change(|session: &mut Self, ctx| session.lesson_made(ctx, lesson))
         });
     }
 
     /// The lesson in the calibrated world is ready.
-    pub(super) fn lesson_made(&mut self, ctx: &egui::Context, lesson: Result<Box<Lesson>, String>) {
+    pub(super) fn lesson_made(&mut self, ctx: &egui::Context, lesson: Result<Lesson, String>) {
         match lesson {
             Ok(lesson) => {
                 self.workspace = Workspace::Train;
-                self.open_lesson(ctx, &Arc::from(lesson));
+                self.open_lesson(ctx, &Arc::new(lesson));
             }
             Err(problem) => self.fail(problem),
         }
@@ -339,7 +349,10 @@ impl Session {
         open.phase = Phase::Grading;
         let Some(stopping) = self.trainer.stop_recording() else { return };
         let lesson = Arc::clone(&open.lesson);
-        self.jobs.start(ctx, JobKind::Grade, move || Outcome::Graded(grade_file(&lesson, stopping).map(Box::new)));
+        self.jobs.start(ctx, GRADE, "", move |_| {
+            let debrief = grade_file(&lesson, stopping);
+            change(|session: &mut Self, _| session.graded(debrief))
+        });
     }
 
     /// Ends the attempt and grades it at once, for pictures.
@@ -350,17 +363,17 @@ impl Session {
         }
         let lesson = Arc::clone(&open.lesson);
         let Some(stopping) = self.trainer.stop_recording() else { return };
-        self.graded(grade_file(&lesson, stopping).map(Box::new));
+        self.graded(grade_file(&lesson, stopping));
     }
 
     /// The attempt was graded.
-    pub(super) fn graded(&mut self, debrief: Result<Box<Debrief>, String>) {
+    pub(super) fn graded(&mut self, debrief: Result<Debrief, String>) {
         if let Ok(debrief) = &debrief {
             self.keep_graded(debrief);
         }
         let Some(open) = &mut self.lessons.open else { return };
         match debrief {
-            Ok(debrief) => open.phase = Phase::Debrief(debrief),
+            Ok(debrief) => open.phase = Phase::Debrief(Box::new(debrief)),
             Err(problem) => {
                 open.phase = Phase::Brief;
                 self.fail(problem);
@@ -369,10 +382,10 @@ impl Session {
     }
 
     /// The expert has done the lesson, unseen.
-    pub(super) fn expert_did_it(&mut self, trace: Result<Box<Trace>, String>) {
+    pub(super) fn expert_did_it(&mut self, trace: Result<Trace, String>) {
         let Some(open) = &mut self.lessons.open else { return };
         match trace {
-            Ok(trace) => open.expert = Some(Arc::from(trace)),
+            Ok(trace) => open.expert = Some(Arc::new(trace)),
             Err(problem) => self.fail(problem),
         }
     }

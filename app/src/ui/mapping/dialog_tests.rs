@@ -2,9 +2,10 @@
 
 use super::draft::Role;
 use crate::ui::app::App;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::trainer::Clock;
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::fmt::Write as _;

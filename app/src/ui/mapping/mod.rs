@@ -15,7 +15,9 @@ pub mod preview;
 mod table;
 pub mod words;
 
-use super::jobs::{JobKind, Jobs, Outcome};
+use super::files::SAVE;
+use super::jobs::{JobKind, Jobs, change};
+use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use draft::Draft;
@@ -24,6 +26,9 @@ use facts::FileFacts;
 use haptics::recording::Meta;
 use preview::Preview;
 use std::path::{Path, PathBuf};
+
+/// Looking at a log whose columns are to be mapped.
+const LOOK: JobKind = JobKind::new("look");
 
 /// An open dialog.
 #[derive(Debug)]
@@ -63,11 +68,11 @@ impl From<Looked> for Mapping {
 }
 
 /// Looks at a log in the background; the dialog opens when that is done.
-pub fn look(ctx: &egui::Context, jobs: &mut Jobs, path: &Path, sidecar: Option<PathBuf>, why: Option<String>) {
+pub fn look(ctx: &egui::Context, jobs: &mut Jobs<Session>, path: &Path, sidecar: Option<PathBuf>, why: Option<String>) {
     let path = path.to_path_buf();
-    let what = format!("Looking at {}", name_of(&path));
-    jobs.start_watched(ctx, JobKind::Look, what, move |_| {
-        look_now(path, sidecar, why).map_or_else(Outcome::Failed, |looked| Outcome::Looked(Box::new(looked)))
+    jobs.start(ctx, LOOK, format!("Looking at {}", name_of(&path)), move |_| {
+        let looked = look_now(path, sidecar, why)?;
+        change(|session: &mut Session, _| session.mapping = Some(Box::new(looked.into())))
     });
 }
 
@@ -80,11 +85,15 @@ pub fn look_now(path: PathBuf, sidecar: Option<PathBuf>, why: Option<String>) ->
 }
 
 /// Writes the sidecar in the background; the log is opened with it when that is done.
-pub fn save(ctx: &egui::Context, jobs: &mut Jobs, mapping: &Mapping) {
+pub fn save(ctx: &egui::Context, jobs: &mut Jobs<Session>, mapping: &Mapping) {
     let (meta, path, sidecar) = (mapping.draft.sidecar(), mapping.path.clone(), mapping.sidecar.clone());
-    jobs.start(ctx, JobKind::Save, move || match write_sidecar(&meta, &sidecar) {
-        Ok(()) => Outcome::Mapped { log: path, sidecar },
-        Err(error) => Outcome::Failed(sentence(&error.to_string())),
+    jobs.start(ctx, SAVE, "", move |_| {
+        write_sidecar(&meta, &sidecar).map_err(|error| sentence(&error.to_string()))?;
+        change(move |session: &mut Session, ctx| {
+            session.mapping = None;
+            session.say_saved(&sidecar);
+            session.open_with(ctx, &path, Some(sidecar));
+        })
     });
 }
 

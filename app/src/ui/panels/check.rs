@@ -2,10 +2,10 @@
 
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
+use crate::ui::checking::CHECK;
 use crate::ui::checking::{Checked, Holds, On, holds};
 use crate::ui::files;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{bar, compact, icon_button, plain_card, remark};
@@ -52,14 +52,14 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
 fn ask(ui: &mut Ui, session: &mut Session) {
     let ctx = ui.ctx().clone();
     ui.horizontal(|ui| {
-        let busy = session.jobs.is_running(JobKind::Check);
+        let busy = session.jobs.is_running(CHECK);
         let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
         let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
         let response = ui.add(field.desired_width(width));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING_TO_CHECK_ON));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE_FILES).on_hover_text(words::CHOOSE_FILES_MORE).clicked() {
-            files::ask_many(&ctx, &mut session.jobs, Purpose::Check);
+            files::ask_for_recordings_to_check(&ctx, &mut session.jobs);
         }
         if busy {
             ui.add(egui::Spinner::new().size(16.0));

@@ -1,12 +1,15 @@
 //! The devices page, right column: what the running device can do, what it does now, and a soft push to try it.
 
-use super::{Panel, trainer_timing};
+use super::trainer_timing;
 use crate::text::format::{number, short_time};
 use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Direction, HandDevice, Operator, Trainer, spec_sentences};
 use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
+use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
@@ -15,7 +18,6 @@ use haptics::servo::{Snapshot, passivity};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const DEVICE: &str = "Device";
     pub const NO_DEVICE_IS_RUNNING: &str = "No device is running";
     pub const NO_DEVICE_IS_RUNNING_MORE: &str = "Choose one on the left.";
     pub const SCRIPT_MORE: &str = "Does the task of the world like a person.";
@@ -64,15 +66,17 @@ mod words {
 /// From this width on there are two columns, points: the live values need half of it.
 const TWO_COLUMNS: f32 = 780.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Devices, 1)],
+    ..Registration::new(PanelId::DEVICE_DETAIL, "Device", Icon::Device, || Box::new(DeviceDetail::default()))
+};
+
 /// The running device.
 #[derive(Default)]
 pub struct DeviceDetail;
 
 impl Panel for DeviceDetail {
-    fn title(&self) -> &'static str {
-        words::DEVICE
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         if let Err(problem) = session.trainer.ensure_running() {
             session.fail(problem);

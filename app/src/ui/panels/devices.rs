@@ -1,11 +1,14 @@
 //! The devices page, left column: everything that could move the fingers, one line each, to be chosen.
 
-use super::Panel;
 use super::remote::RemoteCard;
+use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{HandDevice, Operator};
 use crate::ui::widgets::{card, plain_card};
+use crate::ui::workspace::Workspace;
 use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, Ui};
 use haptics::device::haply;
 use std::sync::Arc;
@@ -13,7 +16,6 @@ use std::time::{Duration, Instant};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const DEVICES: &str = "Devices";
     pub const BUILT_IN: &str = "Built in";
     pub const OPEN_A_LOG: &str = "Open a log in Calibrate first.";
     pub const NO_PORT_FOUND: &str = "no port found";
@@ -28,6 +30,13 @@ mod words {
 
 /// Ports are looked for this often.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Devices, 0)],
+    at_the_left: true,
+    ..Registration::new(PanelId::DEVICES, "Devices", Icon::Device, || Box::new(DeviceList::default()))
+};
 
 /// The list of devices.
 #[derive(Default)]
@@ -45,10 +54,6 @@ pub(super) enum Choice {
 }
 
 impl Panel for DeviceList {
-    fn title(&self) -> &'static str {
-        words::DEVICES
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.look_for_ports(ui);
         let mut chosen = None;

@@ -1,15 +1,17 @@
 //! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
 
-use super::Panel;
 use crate::ui::atlas::Sheet;
-use crate::ui::diagnosing::{Answer, StartFrom};
-use crate::ui::files;
+use crate::ui::diagnosing::{Answer, DIAGNOSE, StartFrom};
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions, inks};
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
@@ -68,15 +70,31 @@ const CHOICES: f32 = 216.0;
 /// Height of a plot's heading.
 const HEAD: f32 = 20.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Diagnose, 0)],
+    at_the_left: true,
+    pictures: &[&ATLAS],
+    ..Registration::new(PanelId::DIAGNOSE, "Measured and modelled", Icon::Panel, || Box::new(DiagnosePanel::default()))
+};
+
+/// The residual atlas.
+pub static ATLAS: Picture = Picture {
+    name: "atlas",
+    place: 180,
+    help: "The residual atlas",
+    line: "The residual atlas: what is left over against every suspect",
+    size: [720, 540],
+    sample: Sample::Askew,
+    session: stage::atlas,
+    framing: Framing::LargePanel(|| Box::new(DiagnosePanel::default())),
+};
+
 /// The curves of the diagnosis.
 #[derive(Default)]
 pub struct DiagnosePanel;
 
 impl Panel for DiagnosePanel {
-    fn title(&self) -> &'static str {
-        words::BEGIN
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
@@ -100,25 +118,25 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         let text = words::NOTHING_YET_MORE;
         empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
             }
             if ui.link(words::RECORD_ONE).clicked() {
                 session.workspace = Workspace::Train;
             }
         });
-    } else if session.jobs.is_running(JobKind::Diagnose) {
+    } else if session.jobs.is_running(DIAGNOSE) {
         let text = words::BUSY_MORE;
         empty_state(ui, words::BUSY, text, |ui| {
             ui.add(egui::Spinner::new().size(20.0));
             ui.add_space(space::S);
             if ui.button((Icon::Close, words::CANCEL)).clicked() {
-                session.give_up(JobKind::Diagnose);
+                session.give_up(ui.ctx(), DIAGNOSE);
             }
         });
     } else if let Some(problem) = session.diagnosing.problem.clone() {
         empty_state(ui, (Icon::Doubt, words::CANNOT), &problem, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN_ANOTHER)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
             }
             ui.add_space(space::XS);
             start_from(ui, session);

@@ -2,10 +2,10 @@
 
 use super::debrief;
 use crate::text::format;
-use crate::ui::dock::Pane;
 use crate::ui::icons::{self, Icon};
 use crate::ui::lessons::{Open, Phase};
 use crate::ui::markdown;
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
@@ -73,7 +73,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
         Some(Wish::Back) => session.back_to_brief(),
         Some(Wish::End(answer)) => session.end_lesson(&ctx, answer),
         Some(Wish::OpenLog(path)) => session.open(&ctx, &path),
-        Some(Wish::Progress) => session.wanted_pane = Some(Pane::Progress),
+        Some(Wish::Progress) => session.wanted_pane = Some(PanelId::PROGRESS),
         None => {}
     }
 }

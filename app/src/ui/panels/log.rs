@@ -1,25 +1,29 @@
 //! The log: plots with one time axis, the states under them, the time slider.
 
-use super::Panel;
 use super::incoming::incoming;
 use super::overlay::{overlay_legend, overlay_menu};
 use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
 use crate::text::format::number;
-use crate::ui::files;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::Purpose;
+use crate::ui::opening::LOAD;
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::plots::shift::Grasp;
 use crate::ui::plots::{
     Drawn, GUTTER, LogView, PlotCache, PlotChoices, RowInput, RowKind, Sources, XyCache, axis_height, can_compare,
     curves, row,
 };
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
+use egui_tiles::ContainerKind;
 use std::sync::Arc;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
@@ -48,6 +52,54 @@ const LEFT_OVER_HEIGHT: f32 = 0.62;
 /// Height of band, subtasks, legend and slider together.
 const FOOT: f32 = 102.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 2), (Workspace::Diagnose, 3)],
+    neighbours: &[
+        (PanelId::SCENE, ContainerKind::Vertical, false),
+        (PanelId::VIDEO, ContainerKind::Vertical, false),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&LOG, &XY, &LEFT_OVER],
+    ..Registration::new(PanelId::LOG, "Plots", Icon::Curves, || Box::new(LogPanel::default()))
+};
+
+/// Plots, band and time slider.
+pub static LOG: Picture = Picture {
+    name: "log",
+    place: 0,
+    help: "Plots, band and time slider",
+    line: "The log: curves by quantity, the states as a band, one time cursor",
+    size: PANEL,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
+/// One signal against another.
+pub static XY: Picture = Picture {
+    name: "xy",
+    place: 10,
+    help: "One signal against another",
+    line: "XY: the force of a needle over its depth, coloured by state",
+    size: PANEL,
+    sample: Sample::Needle,
+    session: stage::xy,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
+/// What the models leave of the measured forces.
+pub static LEFT_OVER: Picture = Picture {
+    name: "left-over",
+    place: 20,
+    help: "What the models leave of the measured forces",
+    line: "What is left over: measured less simulated, and less the extended model",
+    size: PANEL,
+    sample: Sample::Crank,
+    session: stage::left_over,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
 /// The log panel.
 #[derive(Default)]
 pub struct LogPanel {
@@ -56,14 +108,10 @@ pub struct LogPanel {
 }
 
 impl Panel for LogPanel {
-    fn title(&self) -> &'static str {
-        words::LOG
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            if let Some((preview, progress)) = session.jobs.preview() {
+            if let Some((preview, progress)) = session.jobs.preview(LOAD) {
                 incoming(ui, preview, &progress);
                 return;
             }
@@ -79,7 +127,11 @@ impl Panel for LogPanel {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
                 LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
             };
-            plots.derived.settle(ui.ctx(), &mut session.jobs);
+            let job =
+                plots.derived.settle(ui.ctx(), &mut session.jobs, |session: &mut Session| &mut session.plots.derived);
+            if let Some(job) = job {
+                job.if_given_up(|session: &mut Session, _| session.plots.give_up());
+            }
             session.plots = plots;
             band(ui, session, area);
             transport(ui, session, area);
@@ -104,7 +156,7 @@ fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
     let text = words::NO_RECORDING_YET_MORE;
     empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
         if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
         }
         if ui.link(words::OR_RECORD_ONE).clicked() {
             session.workspace = Workspace::Train;

@@ -1,4 +1,4 @@
-//! One panel a file, behind one trait.
+//! One panel a file, behind one trait; [`list`] names them all.
 
 pub(super) mod answers;
 mod assistant;
@@ -18,6 +18,7 @@ mod guide;
 mod incoming;
 mod legend;
 mod lessons;
+pub mod list;
 pub mod log;
 mod marks;
 pub mod measured;
@@ -46,14 +47,3 @@ pub mod transport;
 pub mod video;
 mod why_not;
 mod xy;
-
-use super::session::Session;
-
-/// A part of the window that shows and changes the session.
-pub trait Panel {
-    /// Its name, for people and for tests.
-    fn title(&self) -> &'static str;
-
-    /// Draws it into all the room there is.
-    fn ui(&mut self, ui: &mut egui::Ui, session: &mut Session);
-}

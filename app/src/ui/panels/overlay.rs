@@ -1,7 +1,7 @@
 //! Recordings laid over the shown one: the menu that chooses them, and the legend with their shifts.
 
 use crate::ui::icons::{self, Icon};
-use crate::ui::jobs::JobKind;
+use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, recording as color, space};
 use crate::ui::widgets::{quiet_icon_button, swatch};
@@ -80,7 +80,7 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
         let drag = DragValue::new(&mut entry.offset_s).speed(speed.min(0.02)).max_decimals(decimals).suffix(unit);
         ui.add(drag).on_hover_text(words::SHIFT_MORE);
     }
-    let running = session.jobs.is_running(JobKind::Align);
+    let running = session.jobs.is_running(ALIGN);
     let hint = words::ALIGN_MORE;
     if ui
         .add_enabled(!running, egui::Button::new((Icon::Align.atom(icons::SMALL, None), words::ALIGN)).small())

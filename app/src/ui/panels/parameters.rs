@@ -1,11 +1,14 @@
 //! The fitted parameters: value ± error in sensible units; what the recording cannot show is greyed, with its reason.
 
-use super::Panel;
 use crate::text::format;
 use crate::ui::fit_choice::Stated;
+use crate::ui::fitting::FIT;
+use crate::ui::fitting::SIMULATE;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
-use crate::ui::jobs::JobKind;
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, remark};
@@ -35,16 +38,24 @@ mod words {
 const LINE: f32 = 21.0;
 
 /// The parameter table.
+pub static PARAMETERS: Picture = Picture {
+    name: "parameters",
+    place: 50,
+    help: "The parameter table",
+    line: "Parameters: values with errors, and how each was found",
+    size: COLUMN,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ParametersPanel::default())),
+};
+
+/// The parameter table.
 #[derive(Default)]
 pub struct ParametersPanel;
 
 impl Panel for ParametersPanel {
-    fn title(&self) -> &'static str {
-        words::PARAMETERS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        let busy = session.jobs.is_running(JobKind::Fit);
+        let busy = session.jobs.is_running(FIT);
         let analysis = session.analysis.clone();
         let task = analysis.as_ref().map(|a| format::object(a.task.name()));
         card(
@@ -228,7 +239,7 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
     }
     if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
         residual(ui, session, simulation);
-    } else if session.jobs.is_running(JobKind::Simulate) {
+    } else if session.jobs.is_running(SIMULATE) {
         ui.label(theme::caption(ui, words::REPLAYING_THE_MOTION));
     }
 }

@@ -1,24 +1,27 @@
 //! *Progress*: who practises, their learning curve at a lesson, and their attempts.
 
-use super::Panel;
 use crate::history::Attempt;
 use crate::text::format;
 use crate::ui::files;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::Purpose;
 use crate::ui::learning::{Learned, Practised};
+use crate::ui::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::plots::{decimals, inks, marks};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{call, compact, empty_state, plain_card};
+use crate::ui::workspace::Workspace;
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
     TextEdit, Ui, pos2, vec2,
 };
+use egui_tiles::ContainerKind;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const PROGRESS: &str = "Progress";
     pub const WHO_PRACTISES: &str = "Who practises";
     pub const CHOOSE_WHO_PRACTISES: &str =
         "Choose who practises, or add them: their attempts at lessons are kept and shown here.";
@@ -68,15 +71,31 @@ const ROW: f32 = 18.0;
 /// Attempts that the table shows at most: the last ones.
 const MOST_ROWS: usize = 200;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 2)],
+    neighbours: &[(PanelId::TRAINER, ContainerKind::Tabs, false)],
+    pictures: &[&PROGRESS_PICTURE],
+    ..Registration::new(PanelId::PROGRESS, "Progress", Icon::Progress, || Box::new(ProgressPanel::default()))
+};
+
+/// How a trainee gets better, from a made-up history.
+pub static PROGRESS_PICTURE: Picture = Picture {
+    name: "progress",
+    place: 210,
+    help: "How a trainee gets better, from a made-up history",
+    line: "Progress: a trainee's learning curve at a lesson (a made-up history)",
+    size: [720, 760],
+    sample: Sample::World("stack"),
+    session: stage::progress,
+    framing: Framing::Panel(|| Box::new(ProgressPanel::default())),
+};
+
 /// The progress of who practises.
 #[derive(Default)]
 pub struct ProgressPanel;
 
 impl Panel for ProgressPanel {
-    fn title(&self) -> &'static str {
-        words::PROGRESS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -348,7 +367,7 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let hint = words::SAVE_AS_A_TABLE_MORE;
             if ui.link(words::SAVE_AS_A_TABLE).on_hover_text(hint).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveHistory);
+                files::ask(ui.ctx(), &mut session.jobs, files::SAVE_HISTORY);
             }
         });
     });

@@ -1,14 +1,16 @@
 //! The left column of the calibration: which recording, how it is read, refit, save.
 
-use super::Panel;
 use crate::text::format;
-use crate::ui::files;
+use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
+use crate::ui::fitting::FIT;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{call, fact, icon_button, plain_card, primary_button};
+use crate::ui::workspace::Workspace;
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
@@ -67,6 +69,13 @@ mod words {
     pub const REFIT: &str = "Refit";
 }
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 0)],
+    at_the_left: true,
+    ..Registration::new(PanelId::RECORDING, "Recording and fit", Icon::Fit, || Box::new(RecordingPanel::default()))
+};
+
 /// The recording panel.
 #[derive(Default)]
 pub struct RecordingPanel {
@@ -76,10 +85,6 @@ pub struct RecordingPanel {
 }
 
 impl Panel for RecordingPanel {
-    fn title(&self) -> &'static str {
-        words::RECORDING
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -98,7 +103,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(size, layout, |ui| {
         if icon_button(ui, Icon::Open, true, words::OPEN).on_hover_text(words::OPEN_MORE).clicked() {
-            files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
+            files::ask(&ctx, &mut session.jobs, files::OPEN_LOG);
         }
         let field = TextEdit::singleline(&mut session.path_field).hint_text(words::PATH);
         ui.add(field.desired_width(ui.available_width()))
@@ -166,7 +171,7 @@ fn fit(ui: &mut Ui, session: &mut Session) {
     thresholds(ui, session);
     part(ui, session);
     by_hand(ui, session);
-    let running = session.jobs.is_running(JobKind::Fit);
+    let running = session.jobs.is_running(FIT);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
         let text = if session.analysis.is_some() { words::REFIT } else { words::FIT };
@@ -297,35 +302,43 @@ impl RecordingPanel {
             "report.html".clone_into(&mut self.report);
         }
         ui.label(theme::caption(ui, words::SAVE_LOG));
-        if save_line(ui, session, &mut self.log, Purpose::SaveLog, true) {
+        if save_line(ui, session, &mut self.log, (files::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
             files::save_log(ui.ctx(), session, &self.log);
         }
         ui.label(theme::caption(ui, words::SAVE_WORLD));
         let fitted = session.analysis.is_some();
-        if save_line(ui, session, &mut self.world, Purpose::SaveWorld, fitted) {
+        if save_line(ui, session, &mut self.world, (files::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted)
+        {
             files::save_world(ui.ctx(), session, &self.world);
         }
         ui.label(theme::caption(ui, words::SAVE_REPORT));
         let is_file = !session.sources.is_empty();
-        if save_line(ui, session, &mut self.report, Purpose::SaveReport, is_file) {
+        if save_line(
+            ui,
+            session,
+            &mut self.report,
+            (files::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
+            is_file,
+        ) {
             files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
         }
     }
 }
 
 /// A path field with `…` and `Save`; true when it is to be saved there.
-fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
-    let (place, does) = match purpose {
-        Purpose::SaveReport => (words::WHERE_REPORT, words::WRITE_REPORT),
-        Purpose::SaveWorld => (words::WHERE_WORLD, words::WRITE_WORLD),
-        _ => (words::WHERE_LOG, words::WRITE_LOG),
-    };
+fn save_line(
+    ui: &mut Ui,
+    session: &mut Session,
+    field: &mut String,
+    (dialog, place, does): (Dialog, &str, &str),
+    enabled: bool,
+) -> bool {
     ui.add_enabled_ui(enabled, |ui| {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let save = icon_button(ui, Icon::Save, enabled, does).on_hover_text(does);
             if icon_button(ui, Icon::More, enabled, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, purpose);
+                files::ask(ui.ctx(), &mut session.jobs, dialog);
             }
             let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
             edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, enabled, place));

@@ -1,20 +1,24 @@
 //! Everything that was found: parameters, constraints, warnings, and what to do with them.
 
-use super::Panel;
-use super::parameters::ParametersPanel;
+use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::plots::places;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, plain_card, primary_button, remark};
+use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Ui};
+use egui_tiles::ContainerKind;
 use estimator::estimate::{Constraint, ConstraintKind};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const RESULTS: &str = "Results";
     pub const CONSTRAINTS: &str = "Constraints";
     pub const TURNS_ABOUT_A_CENTRE: &str = "Turns about a centre";
     pub const SLIDES_ALONG_A_LINE: &str = "Slides along a line";
@@ -41,6 +45,26 @@ mod words {
     pub const PRACTISE_ON_THIS: &str = "Practise on this";
 }
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 3), (Workspace::Diagnose, 5)],
+    neighbours: &[(PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
+    pictures: &[&parameters::PARAMETERS, &RESULTS],
+    ..Registration::new(PanelId::RESULTS, "Results", Icon::Panel, || Box::new(ResultsPanel::default()))
+};
+
+/// Parameters, constraints and warnings.
+pub static RESULTS: Picture = Picture {
+    name: "results",
+    place: 60,
+    help: "Parameters, constraints and warnings",
+    line: "Results: constraints, warnings, what is still missing",
+    size: COLUMN,
+    sample: Sample::Crank,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ResultsPanel::default())),
+};
+
 /// The right column of the calibration.
 #[derive(Default)]
 pub struct ResultsPanel {
@@ -48,10 +72,6 @@ pub struct ResultsPanel {
 }
 
 impl Panel for ResultsPanel {
-    fn title(&self) -> &'static str {
-        words::RESULTS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;

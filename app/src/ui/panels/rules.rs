@@ -1,10 +1,10 @@
 //! The editor of a task's rules: which states there are, when they hold, what they show, and which subtasks they make up. What is
 //! changed is tried at once on the recording below.
 
-use super::Panel;
 use super::rules_table::{states, subtasks};
 use crate::text::format;
 use crate::ui::icons::Icon;
+use crate::ui::panel::Panel;
 use crate::ui::rules::{self, Rules};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, space};
@@ -16,7 +16,6 @@ use haptics::recording::Task;
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
     pub const ADD_A_STATE: &str = "Add a state";
-    pub const RULES: &str = "Rules";
     pub const CLOSE: &str = "Close";
     pub const CLOSE_MORE: &str = "The rules stay as they are for this recording";
     pub const RESET: &str = "Reset";
@@ -53,10 +52,6 @@ enum Asked {
 }
 
 impl Panel for RulesPanel {
-    fn title(&self) -> &'static str {
-        words::RULES
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         rules::follow(ui.ctx(), session);
         let Some(mut open) = session.rules.take() else { return };

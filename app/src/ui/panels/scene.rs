@@ -1,22 +1,26 @@
 //! The recording in space: the hand follows the cursor, path, forces and constraints lie over it.
 
-use super::Panel;
+use super::rules::RulesPanel;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
+use crate::ui::panel::{Framing, Panel, Picture, Registration, SCENE};
+use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
-use crate::ui::scene::{
-    Legend, Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, options_for, scene_view, scene_world,
-};
+use crate::ui::scene::layers::SceneLayers;
+use crate::ui::scene::{Legend, Likeness, Mechanism, Rig, Wheel, camera_for, options_for, scene_view, scene_world};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{palette, space};
 use crate::ui::widgets::{empty_state, sheet};
+use crate::ui::workspace::Workspace;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui_tiles::ContainerKind;
 use render::Camera;
 use std::sync::Arc;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const SCENE: &str = "Scene";
     pub const THE_RECORDED_HAND: &str =
         "The recorded hand moves here, with its path, forces and the constraints that were found.";
     pub const THE_RECORDING_IN_SPACE: &str = "The recording in space";
@@ -31,6 +35,30 @@ const WIDE: f32 = 420.0;
 const HIGH: f32 = 180.0;
 /// Room that the button beside the switches needs, points.
 const RESET: f32 = 120.0;
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 1), (Workspace::Diagnose, 2)],
+    neighbours: &[
+        (PanelId::VIDEO, ContainerKind::Horizontal, true),
+        (PanelId::LOG, ContainerKind::Vertical, true),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&SCENE_PICTURE],
+    ..Registration::new(PanelId::SCENE, "In space", Icon::Scene, || Box::new(ScenePanel::default()))
+};
+
+/// The recording in space.
+pub static SCENE_PICTURE: Picture = Picture {
+    name: "scene",
+    place: 70,
+    help: "The recording in space",
+    line: "The recording in space, in the world that was measured",
+    size: SCENE,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ScenePanel::default())),
+};
 
 /// The 3-D view of the recording.
 pub struct ScenePanel {
@@ -48,11 +76,12 @@ impl Default for ScenePanel {
 }
 
 impl Panel for ScenePanel {
-    fn title(&self) -> &'static str {
-        words::SCENE
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if session.rules.is_some() {
+            // The rules take the place of the picture, so that the states below are seen to follow.
+            RulesPanel.ui(ui, session);
+            return;
+        }
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some(prepared) = session.prepared().cloned() else {

@@ -1,22 +1,28 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
+use super::boundaries;
 use super::rules::parameter;
-use super::{Panel, boundaries};
 use crate::text::format;
 use crate::text::states::{state_of_task, state_short};
+use crate::ui::fitting::FIT;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
+use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
+use egui_tiles::ContainerKind;
 use estimator::segment::score::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const SEGMENTS: &str = "Segments";
     pub const STATES_AND_SUBTASKS: &str = "States and subtasks";
     pub const NUMBERS_OF_STATES: &str = "1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none";
     pub const NO_STATES_YET: &str = "No states yet";
@@ -47,15 +53,31 @@ const LINE: f32 = 21.0;
 /// Height of the subtasks' line.
 const SUBTASKS: f32 = 18.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 4), (Workspace::Diagnose, 4)],
+    neighbours: &[(PanelId::RESULTS, ContainerKind::Tabs, false), (PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
+    pictures: &[&SEGMENTS],
+    ..Registration::new(PanelId::SEGMENTS, "States", Icon::States, || Box::new(SegmentsPanel::default()))
+};
+
+/// States and subtasks.
+pub static SEGMENTS: Picture = Picture {
+    name: "segments",
+    place: 30,
+    help: "States and subtasks",
+    line: "Segments: what was done when, found in the recording",
+    size: PANEL,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(SegmentsPanel::default())),
+};
+
 /// The segmentation by itself.
 #[derive(Default)]
 pub struct SegmentsPanel;
 
 impl Panel for SegmentsPanel {
-    fn title(&self) -> &'static str {
-        words::SEGMENTS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
         card(
@@ -88,7 +110,7 @@ fn spaced(sequence: &str) -> String {
 
 /// The band between the given edges, with its names to the left, and the legend below.
 pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
-    let busy = session.jobs.is_running(crate::ui::jobs::JobKind::Fit);
+    let busy = session.jobs.is_running(FIT);
     let analysis = session.analysis.clone();
     let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());

@@ -1,12 +1,15 @@
 //! Beside the trainer's picture: world, operator, recording, forces, timing.
 
-use super::{Panel, legend};
+use super::legend;
 use crate::text::format;
-use crate::ui::jobs::Purpose;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
 use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
+use crate::ui::workspace::Workspace;
 use crate::ui::{files, recorder};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
@@ -52,7 +55,6 @@ mod words {
     pub const STALE_MORE: &str = "No fresh sample from the device: the force is zero";
     pub const INVALID: &str = "Invalid";
     pub const INVALID_MORE: &str = "A value was not a number and was refused";
-    pub const TRAINER_CONTROLS: &str = "Trainer controls";
     pub const RECORDING: &str = "Recording";
     pub const WORLD: &str = "World";
     pub const OPERATOR: &str = "Operator";
@@ -66,15 +68,17 @@ mod words {
 /// Seconds that the running curve shows.
 const STRIP_S: f64 = 8.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 1)],
+    ..Registration::new(PanelId::TRAINER_SIDE, "Trainer", Icon::Panel, || Box::new(TrainerSide::default()))
+};
+
 /// The right column of the trainer.
 #[derive(Default)]
 pub struct TrainerSide;
 
 impl Panel for TrainerSide {
-    fn title(&self) -> &'static str {
-        words::TRAINER_CONTROLS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // Commands name them, wherever one is.
         session.lessons.load();
@@ -160,7 +164,7 @@ fn world_choice(
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link(words::OPEN).clicked() {
-                    files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
+                    files::ask(ui.ctx(), &mut session.jobs, files::OPEN_WORLD);
                 }
             });
         }

@@ -1,20 +1,24 @@
 //! The virtual world, touched with the mouse.
 
-use super::{Panel, guide, lessons, marks, steering};
+use super::{guide, lessons, marks, steering};
 use crate::ui::assistant;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Clock, HandDevice, Operator, Steering, Trainer, task_hint};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
+use crate::ui::workspace::Workspace;
 use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
-    pub const TRAINER: &str = "Trainer";
     pub const NO_SERVO: &str = "The servo is not running";
     pub const NO_SERVO_MORE: &str = "See the message above; then choose a world again.";
     pub const MOUSE: &str = "Mouse";
@@ -54,6 +58,62 @@ const KEY_SPEED_M_S: f64 = 0.04;
 /// Newtons of pinch a point of scrolling.
 const WHEEL_N: f64 = 0.004;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 0)],
+    at_the_left: true,
+    pictures: &[&TRAINER, &DELAY, &ASSISTANT, &GUIDED],
+    ..Registration::new(PanelId::TRAINER, "Virtual world", Icon::World, || Box::new(TrainerView::default()))
+};
+
+/// The virtual world.
+pub static TRAINER: Picture = Picture {
+    name: "trainer",
+    place: 80,
+    help: "The virtual world",
+    line: "The virtual world, touched by the scripted operator",
+    size: PANEL,
+    sample: Sample::World("stack"),
+    session: stage::trainer,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// The virtual world over half a second, on a model.
+pub static DELAY: Picture = Picture {
+    name: "delay",
+    place: 90,
+    help: "The virtual world over half a second, on a model",
+    line: "Over half a second: the model under the hand solid, the far world a ghost",
+    size: PANEL,
+    sample: Sample::World("stack"),
+    session: stage::delay,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// The assistant over the virtual world.
+pub static ASSISTANT: Picture = Picture {
+    name: "assistant",
+    place: 100,
+    help: "The assistant over the virtual world",
+    line: "The assistant: what is held, what may be in it, and the cable that holds it",
+    size: PANEL,
+    sample: Sample::World("table"),
+    session: stage::assistant,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// That experiment done by hand in the virtual world, half done.
+pub static GUIDED: Picture = Picture {
+    name: "guided",
+    place: 200,
+    help: "That experiment done by hand in the virtual world, half done",
+    line: "An experiment done by hand in Train: two rings to follow",
+    size: PANEL,
+    sample: Sample::Askew,
+    session: stage::guided,
+    framing: Framing::LargePanel(|| Box::new(TrainerView::default())),
+};
+
 /// The picture of the trainer, and what the mouse does in it.
 pub struct TrainerView {
     rig: Rig,
@@ -80,10 +140,6 @@ fn home() -> Camera {
 }
 
 impl Panel for TrainerView {
-    fn title(&self) -> &'static str {
-        words::TRAINER
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // The window's first picture comes before the servo, which takes a processor for itself.
         if session.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {

@@ -1,20 +1,25 @@
 //! The video of the hand: its picture at the time cursor, and where it lies in time.
 
-use super::Panel;
 use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::files;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
+use crate::ui::video::ALIGN_VIDEO;
 use crate::ui::video::State;
 use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
+use crate::ui::workspace::Workspace;
 use crate::video::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
     vec2,
 };
+use egui_tiles::ContainerKind;
 use std::sync::Arc;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
@@ -43,21 +48,40 @@ mod words {
     pub const ALIGN_SPOKEN: &str = "Align video";
     pub const WHERE: &str = "Where in the video";
     pub const REMOVE: &str = "Take the video away";
-    pub const VIDEO: &str = "Video";
 }
 
 /// Room for the controls below the picture, points.
 const CONTROLS: f32 = 64.0;
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 6), (Workspace::Diagnose, 6)],
+    neighbours: &[
+        (PanelId::SCENE, ContainerKind::Horizontal, false),
+        (PanelId::LOG, ContainerKind::Vertical, true),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&PICTURE],
+    ..Registration::new(PanelId::VIDEO, "Video of the hand", Icon::Video, || Box::new(VideoPanel::default()))
+};
+
+/// The Calibrate workspace with a video of the hand; the log's, or the one that is named.
+pub static PICTURE: Picture = Picture {
+    name: "video",
+    place: 250,
+    help: "The Calibrate workspace with a video of the hand; the log's, or the one that is named",
+    line: "A video of the hand (here of the virtual one) runs with the time cursor",
+    size: PAGE,
+    sample: Sample::Stack,
+    session: stage::video,
+    framing: Framing::Page,
+};
 
 /// The video panel.
 #[derive(Default)]
 pub struct VideoPanel;
 
 impl Panel for VideoPanel {
-    fn title(&self) -> &'static str {
-        words::VIDEO
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
         sheet(ui).show(ui, |ui| {
@@ -81,7 +105,7 @@ fn none(ui: &mut Ui, session: &mut Session) {
     let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
     empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
         if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
         }
     });
 }
@@ -95,7 +119,7 @@ fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
                 session.read_video_again();
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
                 session.forget_video();
@@ -197,7 +221,7 @@ fn place(ui: &mut Ui, session: &mut Session) {
     if ui.add(drag).on_hover_text(hint).changed() {
         session.shift_video(begins_at_s);
     }
-    let free = !session.jobs.is_running(JobKind::AlignVideo);
+    let free = !session.jobs.is_running(ALIGN_VIDEO);
     let hint = words::ALIGN_MORE;
     let align = ui.add_enabled(free, egui::Button::new((Icon::Align, words::ALIGN))).on_hover_text(hint);
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));

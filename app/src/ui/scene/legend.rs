@@ -1,8 +1,9 @@
 //! What the marks in the picture mean, with the numbers behind them: a strip below it.
 
+use super::Likeness;
+use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
-use super::{Likeness, SceneLayers};
 use crate::text::format::{number, significant};
 use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;

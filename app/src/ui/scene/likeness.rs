@@ -1,8 +1,8 @@
 //! How like the real thing the replay is, in numbers (thesis, figures 5.18 to 5.22): its forces beside the measured ones, and where
 //! the virtual object was while the measured fingers held it.
 
-use crate::ui::jobs::Replayed;
 use crate::ui::prepare::Prepared;
+use crate::ui::replayed::Replayed;
 use haptics::Vec2;
 use haptics::world::World;
 

@@ -1,7 +1,7 @@
 //! The pictures of the render crate inside the window.
 
 mod callback;
-mod layers;
+pub mod layers;
 mod legend;
 mod likeness;
 mod markers;
@@ -12,7 +12,6 @@ mod vectors;
 mod view;
 
 pub use callback::{announce, picture, warm_up};
-pub use layers::SceneLayers;
 pub use legend::Legend;
 pub use likeness::Likeness;
 pub use mechanism::Mechanism;

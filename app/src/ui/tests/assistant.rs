@@ -2,8 +2,9 @@
 
 use super::{empty, train_window};
 use crate::ui::app::App;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::trainer::{Clock, Operator, WorldChoice};
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haptics::Vec2;

@@ -3,11 +3,11 @@
 use super::experiment::{asked_about, pair, quiet, settled};
 use super::until;
 use crate::ui::app::App;
+use crate::ui::experimenting::REHEARSE;
 use crate::ui::gallery::samples::{leaking, leaking_world};
 use crate::ui::guided::Phase;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::Workspace;
 use crate::ui::trainer::WorldChoice;
+use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -29,7 +29,7 @@ fn a_carry_is_rehearsed_with_a_leak_and_with_a_drift() {
     let mut harness = open(folder.path());
     harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
     harness.run_steps(2);
-    until(&mut harness, "the rehearsal's end", |app| !app.session.jobs.is_running(JobKind::Rehearse));
+    until(&mut harness, "the rehearsal's end", |app| !app.session.jobs.is_running(REHEARSE));
     let session = &harness.state().session;
     let rehearsal = session.diagnosing.rehearsal.clone().expect("rehearsed");
     let (right, all) = rehearsal.settled();

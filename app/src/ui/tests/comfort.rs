@@ -3,7 +3,8 @@
 use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
 use crate::ui::lessons::Phase;
-use crate::ui::screenshot::{self, Panel};
+use crate::ui::screenshot;
+use crate::ui::tests::picture;
 use crate::ui::trainer::{HoldCause, Operator, PAUSED, Trainer, WorldChoice};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
@@ -148,12 +149,12 @@ fn the_pause_and_the_left_handed_page_are_drawn_in_both_themes() {
     for dark in [false, true] {
         let mut session = in_train(folder.path());
         session.trainer.ensure_running().expect("a loop");
-        let usual = screenshot::draw(in_train(folder.path()), Panel::Train, [1280, 720], dark).expect("drawn");
-        let tall = screenshot::draw(in_train(folder.path()), Panel::Train, [1280, 1500], dark).expect("drawn");
+        let usual = screenshot::draw(in_train(folder.path()), picture("train"), [1280, 720], dark).expect("drawn");
+        let tall = screenshot::draw(in_train(folder.path()), picture("train"), [1280, 1500], dark).expect("drawn");
         keep(&format!("comfort-{dark}"), &tall);
         session.comfort.left_handed = true;
         session.trainer.lose_focus();
-        let picture = screenshot::draw(session, Panel::Train, [1280, 720], dark).expect("drawn");
+        let picture = screenshot::draw(session, picture("train"), [1280, 720], dark).expect("drawn");
         keep(&format!("paused-{dark}"), &picture);
         assert_ne!(picture, usual);
         let caution = super::theme::Palette::of(dark).caution;

@@ -2,11 +2,12 @@
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
-use crate::ui::diagnosing;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::diagnosing::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
 use crate::ui::trainer::{Operator, WorldChoice};
-use crate::ui::{screenshot, theme};
+use crate::ui::workspace::Workspace;
+use crate::ui::{diagnosing, screenshot, theme};
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -75,7 +76,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     let mut harness = window(loaded(RIPPLED.clone()));
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let answer = harness.state().session.diagnosing.answer.clone().expect("an answer");
     assert_eq!(answer.diagnosis.causes[0].id, "position-ripple");
     for label in [
@@ -88,9 +89,9 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     }
     harness.get_by_role_and_label(egui::Role::Button, "Extend the model").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Extend);
+    until_done(&mut harness, EXTEND);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
-    until_done(&mut harness, JobKind::SimulateExtended);
+    until_done(&mut harness, SIMULATE_EXTENDED);
     let replayed = harness.state().session.extended_replay().expect("played through the extended world");
     assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
@@ -151,7 +152,7 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
-        crate::ui::panels::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
+        crate::ui::panel::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
     });
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);
@@ -202,7 +203,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     assert!(harness.query_by_role_and_label(egui::Role::RadioButton, "Inertia").is_some());
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let session = &mut harness.state_mut().session;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
@@ -214,7 +215,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let answer = harness.state().session.diagnosing.answer.clone().expect("another answer");
     assert!(answer.diagnosis.baseline.model.contains("coulomb-friction"), "{}", answer.diagnosis.baseline.model);
 }
@@ -224,8 +225,8 @@ fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
     session.diagnose(&ctx);
-    session.give_up(JobKind::Diagnose);
-    assert!(!session.jobs.is_running(JobKind::Diagnose));
+    session.give_up(&ctx, DIAGNOSE);
+    assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);
     assert!(harness.query_by_label("Try again").is_some());
     assert!(harness.state().session.diagnosing.problem.as_ref().is_some_and(|p| p.contains("cancelled")));
@@ -271,8 +272,8 @@ fn the_picture_has_curves_of_all_three_kinds_in_both_themes() {
         return;
     }
     for dark in [false, true] {
-        let picture = screenshot::draw(diagnosed(RIPPLED.clone()), screenshot::Panel::Diagnose, [1280, 720], dark)
-            .expect("drawn");
+        let picture =
+            screenshot::draw(diagnosed(RIPPLED.clone()), picture("diagnose"), [1280, 720], dark).expect("drawn");
         let simulated = theme::role(dark, render::ColorRole::Simulated);
         for (what, color) in [("model", simulated), ("extended", theme::Palette::of(dark).good)] {
             let found = count_near(&picture, color);

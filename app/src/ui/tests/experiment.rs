@@ -3,11 +3,12 @@
 use super::{harness, until};
 use crate::experiment::simulated_object;
 use crate::ui::app::App;
+use crate::ui::experimenting::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::trainer::{Clock, WorldChoice};
+use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -88,7 +89,7 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        !s.jobs.is_running(JobKind::Rehearse)
+        !s.jobs.is_running(REHEARSE)
     });
     let rehearsal = harness.state().session.diagnosing.rehearsal.clone().expect("rehearsed");
     let ids: Vec<&str> = rehearsal.outcomes.iter().map(|o| o.id.as_str()).collect();
@@ -124,7 +125,7 @@ fn a_cancelled_rehearsal_leaves_nothing() {
     harness.get_by_role_and_label(Role::Link, "Cancel").click();
     harness.run_steps(3);
     let session = &harness.state().session;
-    assert!(!session.jobs.is_running(JobKind::Rehearse) && session.diagnosing.rehearsal.is_none());
+    assert!(!session.jobs.is_running(REHEARSE) && session.diagnosing.rehearsal.is_none());
     assert!(harness.query_by_label("Rehearse it").is_some());
 }
 
@@ -235,7 +236,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     assert!(harness.query_by_label("Do it in Train …").is_none(), "there is no handle to hold");
     harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
     harness.run_steps(2);
-    until(&mut harness, "the rehearsal", |app| !app.session.jobs.is_running(JobKind::Rehearse));
+    until(&mut harness, "the rehearsal", |app| !app.session.jobs.is_running(REHEARSE));
     let session = &harness.state().session;
     assert_eq!(session.diagnosing.rehearsal_problem, None);
     let rehearsal = session.diagnosing.rehearsal.clone().expect("rehearsed");

@@ -3,8 +3,9 @@
 use super::{in_train, train_window, until};
 use crate::ui::app::App;
 use crate::ui::lessons::{Debrief, Phase};
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::trainer::Operator;
+use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

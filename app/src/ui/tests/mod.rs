@@ -27,11 +27,13 @@ mod workbench;
 
 use super::app::App;
 use super::jobs::JobKind;
+use super::panel::Picture;
 use super::prepare::Prepared;
-use super::screenshot::{self, Panel};
-use super::session::{self, Session, Workspace};
+use super::screenshot;
+use super::session::{self, Session};
 use super::theme;
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use haptics::recording::{Channel, Recording};
 use std::io::Write;
@@ -120,9 +122,14 @@ pub fn in_train(folder: &Path) -> Session {
     session
 }
 
+/// A picture by its name.
+pub fn picture(name: &str) -> &'static Picture {
+    screenshot::pictures().find(|picture| picture.name == name).expect("a picture of this name")
+}
+
 /// A window that shows a session in Train.
 pub fn train_window(session: Session) -> Harness<'static, App> {
-    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
+    harness(screenshot::app_for(session, picture("train")), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
 }
 
 pub fn harness<'a, S: 'a>(

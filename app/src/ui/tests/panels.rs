@@ -2,46 +2,26 @@
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel;
-use crate::ui::panels::diagnose::DiagnosePanel;
-use crate::ui::panels::diagnosis::DiagnosisPanel;
-use crate::ui::panels::log::LogPanel;
+use crate::ui::fitting::FIT;
+use crate::ui::panel::Panel;
+use crate::ui::panels::list::PANELS;
 use crate::ui::panels::parameters::ParametersPanel;
 use crate::ui::panels::recording::RecordingPanel;
 use crate::ui::panels::results::ResultsPanel;
-use crate::ui::panels::scene::ScenePanel;
-use crate::ui::panels::segments::SegmentsPanel;
-use crate::ui::panels::trainer_side::TrainerSide;
-use crate::ui::panels::trainer_view::TrainerView;
 use crate::ui::session::Session;
+use crate::ui::tests::picture;
 use crate::ui::{screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
 use haptics::recording::Recording;
-
-fn panels() -> Vec<Box<dyn Panel>> {
-    vec![
-        Box::new(LogPanel::default()),
-        Box::new(SegmentsPanel),
-        Box::new(ParametersPanel),
-        Box::new(ResultsPanel::default()),
-        Box::new(ScenePanel::default()),
-        Box::new(RecordingPanel::default()),
-        Box::new(TrainerView::default()),
-        Box::new(TrainerSide),
-        Box::new(DiagnosePanel),
-        Box::new(DiagnosisPanel),
-    ]
-}
 
 #[test]
 fn every_panel_draws_every_kind_of_session() {
     let sessions: [fn() -> Session; 5] =
         [empty, || session(STACK.clone()), || session(CRANK.clone()), || session(cart()), || session(clockless_path())];
     for make in sessions {
-        for mut panel in panels() {
-            let title = panel.title();
+        for registration in PANELS {
+            let (title, mut panel) = (registration.title, (registration.new)());
             let mut harness = harness(make(), [420.0, 700.0], move |ui, session: &mut Session| panel.ui(ui, session));
             // Tiny windows too.
             harness.set_size(egui::vec2(60.0, 40.0));
@@ -75,7 +55,7 @@ fn refit_starts_a_job_and_brings_a_fit() {
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();
     harness.run_steps(1);
-    assert!(harness.state().jobs.is_running(JobKind::Fit) || harness.state().analysis.is_some());
+    assert!(harness.state().jobs.is_running(FIT) || harness.state().analysis.is_some());
     until(&mut harness, "the fit", |session| session.analysis.is_some());
 }
 
@@ -114,7 +94,7 @@ fn doubtful_spans_are_shaded_and_listed() {
     }
     for dark in [false, true] {
         let marks = |recording: &Recording| {
-            let picture = screenshot::draw(session(recording.clone()), screenshot::Panel::Log, [900, 560], dark);
+            let picture = screenshot::draw(session(recording.clone()), picture("log"), [900, 560], dark);
             count_near(&picture.expect("drawn"), theme::Palette::of(dark).caution)
         };
         let (with, without) = (marks(&recording), marks(&cart()));

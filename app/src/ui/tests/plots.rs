@@ -3,13 +3,15 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::fitting::{analyse, replay_all, replay_forces};
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel as _;
+use crate::ui::overlays::ALIGN;
+use crate::ui::panel::Panel as _;
 use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::LogView;
 use crate::ui::plots::choices::{XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
+use crate::ui::workspace::Workspace;
 use crate::ui::{diagnosing, screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
@@ -165,7 +167,7 @@ fn the_extended_curve_and_what_is_left_stand_in_the_picture() {
                 choice.toggle("layer: extended");
             }
             session.seek(6.0);
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1100, 760], dark).expect("drawn");
+            let picture = screenshot::draw(session, picture("log"), [1100, 760], dark).expect("drawn");
             keep(&format!("left-over-{shown}-{dark}"), &picture);
             picture
         };
@@ -220,7 +222,7 @@ fn xy_pictures_have_the_states_colours_or_those_of_time() {
             session.plots.view = LogView::Xy;
             session.plots.xy.color = color;
             session.seek(6.0);
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1000, 640], dark).expect("drawn");
+            let picture = screenshot::draw(session, picture("log"), [1000, 640], dark).expect("drawn");
             keep(&format!("xy-{color:?}-{dark}"), &picture);
             // Without the band below.
             image::imageops::crop_imm(&picture, 260, 50, 730, 440).to_image()
@@ -246,7 +248,7 @@ fn another_recording_is_laid_over_and_aligned() {
     harness.run_steps(3);
     assert!(harness.query_by_label("stack again").is_some(), "in the legend");
     press(&mut harness, Role::Button, "Align");
-    until(&mut harness, "the place", |s| !s.jobs.is_running(JobKind::Align));
+    until(&mut harness, "the place", |s| !s.jobs.is_running(ALIGN));
     let offset_s = harness.state().plots.overlaid[0].offset_s;
     assert!((offset_s + later_s).abs() < 2e-3, "{offset_s} s");
     harness.state_mut().plots.overlaid[0].offset_s = 0.0;
@@ -286,7 +288,7 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
                 session.toggle_overlay(1);
                 session.shift_overlay(1, 0.4);
             }
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1100, 720], dark).expect("drawn");
+            let picture = screenshot::draw(session, picture("log"), [1100, 720], dark).expect("drawn");
             keep(&format!("overlay-{overlay}-{dark}"), &picture);
             picture
         };
@@ -315,7 +317,7 @@ fn nothing_of_the_log_is_cut_where_there_is_little_room() {
         }
     }
     if !no_driver() {
-        let picture = screenshot::draw(make(), screenshot::Panel::Log, [640, 520], false).expect("drawn");
+        let picture = screenshot::draw(make(), picture("log"), [640, 520], false).expect("drawn");
         keep("little-room", &picture);
     }
 }

@@ -4,14 +4,15 @@ use super::thresholds::LAYER;
 use super::{harness, no_driver, until};
 use crate::history::{Attempt, Conditions};
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
-use crate::ui::gallery::samples::practice;
-use crate::ui::jobs::Outcome;
+use crate::ui::gallery::practice::practice;
 use crate::ui::learning::Practised;
-use crate::ui::screenshot::{self, Panel};
-use crate::ui::session::{Session, Workspace};
-use crate::ui::theme;
+use crate::ui::panel_id::PanelId;
+use crate::ui::screenshot;
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
 use crate::ui::trainer::Clock;
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -23,7 +24,7 @@ fn window<'a>(database: &Path) -> Harness<'a, App> {
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Train;
     let mut app = App::new(session);
-    app.dock.bring(Workspace::Train, Pane::Progress);
+    app.dock.bring(Workspace::Train, PanelId::PROGRESS);
     let mut harness = harness(app, [1280.0, 1000.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_history(&ctx, database.to_path_buf());
@@ -80,8 +81,8 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     // A table of everything, where the dialog says.
     let table = folder.path().join("grace.csv");
     let ctx = harness.ctx.clone();
-    let answer = Outcome::Chosen(crate::ui::jobs::Purpose::SaveHistory, Some(table.clone()));
-    harness.state_mut().session.jobs.start(&ctx, crate::ui::jobs::JobKind::Dialog, move || answer);
+    let answer = files::answered(files::SAVE_HISTORY, table.clone());
+    harness.state_mut().session.jobs.start(&ctx, files::SAVE, "", move |_| answer);
     until(&mut harness, "the table", |app| app.session.banners.iter().any(|b| b.text == "Saved grace.csv."));
     assert_eq!(std::fs::read_to_string(&table).expect("written").lines().count(), 25);
     drop(harness);
@@ -124,7 +125,7 @@ fn the_curve_has_its_band_its_sessions_and_the_experts_level_in_both_themes() {
             if expert {
                 session.learning.experts.insert("pinch".to_owned(), 92.0);
             }
-            screenshot::draw(session, Panel::Progress, [720, 760], dark).expect("drawn")
+            screenshot::draw(session, picture("progress"), [720, 760], dark).expect("drawn")
         };
         let (with, without) = (picture(true), picture(false));
         let count = |image, color| super::count_near(image, color);

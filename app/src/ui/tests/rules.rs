@@ -1,8 +1,8 @@
 //! The editor of a task's rules: chips, faults, live states, saving.
 
 use super::{CRANK, STACK, harness, session, until};
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel as _;
+use crate::ui::fitting::SEGMENT;
+use crate::ui::panel::Panel as _;
 use crate::ui::panels::rules::RulesPanel;
 use crate::ui::rules::Rules;
 use crate::ui::session::Session;
@@ -22,7 +22,7 @@ fn open(mut session: Session) -> Harness<'static, Session> {
 /// Until nothing is told anew any more.
 fn settle(harness: &mut Harness<'_, Session>) {
     harness.run_steps(2);
-    until(harness, "the states", |session| !session.jobs.is_running(JobKind::Segment));
+    until(harness, "the states", |session| !session.jobs.is_running(SEGMENT));
 }
 
 fn carried_s(session: &Session) -> f64 {

@@ -3,10 +3,12 @@
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
 use crate::ui::fitting::replay_all;
-use crate::ui::panels::Panel;
+use crate::ui::panel::Panel;
 use crate::ui::panels::scene::ScenePanel;
+use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::{Likeness, options_for, scene_world};
-use crate::ui::session::{SceneLayers, Session};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
 use crate::ui::{screenshot, theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -178,7 +180,7 @@ fn every_layer_is_seen_in_its_colour() {
             session.layers = layers;
             let (first, last) = session.view_s;
             session.seek(0.5 * (first + last));
-            screenshot::draw(session, screenshot::Panel::Scene, [640, 420], dark).expect("drawn")
+            screenshot::draw(session, picture("scene"), [640, 420], dark).expect("drawn")
         };
         let bare = draw(none);
         let added = |layers, color| {

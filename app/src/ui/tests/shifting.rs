@@ -2,7 +2,7 @@
 
 use super::plots::{again, log, two};
 use super::{CRANK, session, until};
-use crate::ui::jobs::JobKind;
+use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
@@ -117,11 +117,12 @@ fn a_search_for_its_place_that_was_cancelled_is_begun_again_by_the_next_hand_on_
     let from = grip(&mut harness, 700.0);
     harness.drag_at(from);
     harness.run_steps(1);
-    assert!(harness.state().jobs.is_running(JobKind::Align), "the hand on the curve begins the search");
-    harness.state_mut().give_up(JobKind::Align);
+    assert!(harness.state().jobs.is_running(ALIGN), "the hand on the curve begins the search");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().give_up(&ctx, ALIGN);
     harness.drop_at(from);
     harness.run_steps(2);
-    assert!(harness.state().plots.likeliest.is_empty() && !harness.state().jobs.is_running(JobKind::Align));
+    assert!(harness.state().plots.likeliest.is_empty() && !harness.state().jobs.is_running(ALIGN));
     let from = grip(&mut harness, 700.0);
     drag(&mut harness, from, 690.0);
     until(&mut harness, "the likeliest place", |s| s.plots.likeliest.get(&(0, 1)).is_some_and(Option::is_some));

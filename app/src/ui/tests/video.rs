@@ -2,10 +2,11 @@
 
 use super::{STACK, clockless_path, empty, harness, session, until};
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
+use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::video::State;
+use crate::ui::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
 use egui::Role;
 use egui_kittest::Harness;
@@ -50,7 +51,7 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_dropped(&ctx, std::slice::from_ref(&file));
     harness.run_steps(2);
-    assert!(harness.state_mut().dock.has(Workspace::Calibrate, Pane::Video), "its panel has come");
+    assert!(harness.state_mut().dock.has(Workspace::Calibrate, PanelId::VIDEO), "its panel has come");
     until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
     harness.state_mut().session.seek(4.0);
     until(&mut harness, "the picture at the cursor", |app| app.session.videos.shown() == Some(100));

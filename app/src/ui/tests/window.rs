@@ -4,8 +4,8 @@ use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
 use crate::ui::app::App;
 use crate::ui::recorder;
-use crate::ui::session::Workspace;
 use crate::ui::trainer::{Clock, Operator};
+use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable;
 use haptics::recording::Meta;
 

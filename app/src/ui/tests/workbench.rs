@@ -3,9 +3,9 @@
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
 use crate::ui::actions::Action;
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::Workspace;
+use crate::ui::diagnosing::DIAGNOSE;
+use crate::ui::panel_id::PanelId;
+use crate::ui::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -135,10 +135,7 @@ fn the_palette_finds_and_does() {
     harness.run_steps(2);
     assert!(!harness.state().palette.is_open());
     assert_eq!(harness.state().session.workspace, Workspace::Diagnose);
-    assert!(
-        harness.state().session.jobs.is_running(JobKind::Diagnose)
-            || harness.state().session.diagnosing.answer.is_some()
-    );
+    assert!(harness.state().session.jobs.is_running(DIAGNOSE) || harness.state().session.diagnosing.answer.is_some());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(2);
     harness.key_press(Key::Escape);
@@ -154,15 +151,19 @@ fn panels_are_arranged_and_put_back() {
     Action::Arrange.run(&ctx, harness.state_mut());
     harness.run_steps(2);
     assert!(harness.query_by_label("Plots").is_some());
-    Action::Panel(Pane::Sensitivity).run(&ctx, harness.state_mut());
-    Action::Panel(Pane::Scene).run(&ctx, harness.state_mut());
+    Action::Panel(PanelId("sensitivity")).run(&ctx, harness.state_mut());
+    Action::Panel(PanelId::SCENE).run(&ctx, harness.state_mut());
     settle(&mut harness);
     assert!(harness.query_by_label("What the force depends on").is_some());
     let at = Workspace::Calibrate;
-    assert!(harness.state_mut().dock.has(at, Pane::Sensitivity) && !harness.state_mut().dock.has(at, Pane::Scene));
+    assert!(
+        harness.state_mut().dock.has(at, PanelId("sensitivity")) && !harness.state_mut().dock.has(at, PanelId::SCENE)
+    );
     Action::ResetLayout.run(&ctx, harness.state_mut());
     harness.run_steps(2);
-    assert!(!harness.state_mut().dock.has(at, Pane::Sensitivity) && harness.state_mut().dock.has(at, Pane::Scene));
+    assert!(
+        !harness.state_mut().dock.has(at, PanelId("sensitivity")) && harness.state_mut().dock.has(at, PanelId::SCENE)
+    );
 }
 
 #[test]

@@ -3,15 +3,17 @@
 use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::autosave::State;
-use crate::ui::dock::Pane;
 use crate::ui::dock::naming::Naming;
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
 use crate::ui::plots::LogView;
 use crate::ui::prepare::Prepared;
 use crate::ui::project::{Project, Source};
-use crate::ui::screenshot::Panel;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::session::{Session, Tone};
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
+use crate::ui::tests::picture;
 use crate::ui::tests::{CRANK, STACK, cart, empty, session};
+use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable as _;
 use haptics::recording::{Channel, Recording};
 use std::sync::Arc;
@@ -19,7 +21,7 @@ use std::sync::Arc;
 const WORKSPACES: [Workspace; 4] = [Workspace::Train, Workspace::Calibrate, Workspace::Diagnose, Workspace::Devices];
 
 fn page(app: App) -> Stage {
-    Stage::new(app, Panel::Workbench, true, [1280.0, 720.0])
+    Stage::new(app, picture("workbench"), true, [1280.0, 720.0])
 }
 
 /// Another window over the same results: they take seconds to compute.
@@ -60,9 +62,9 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut full = diagnosed(RIPPLED.clone());
     full.look_at_sensitivity();
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
-        for pane in Pane::of(workspace) {
+        for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
-            app.dock.bring(workspace, *pane);
+            app.dock.bring(workspace, pane);
             found += &page(app).look(&format!("{workspace:?} with {pane:?}"));
         }
         let mut app = in_workspace(like(&full), workspace);
@@ -78,14 +80,14 @@ fn every_panel_alone_can_be_read() {
     let mut full = session(STACK.clone());
     full.look_at_sensitivity();
     for workspace in WORKSPACES {
-        for pane in Pane::of(workspace) {
+        for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
-            for other in Pane::of(workspace).iter().filter(|other| *other != pane) {
-                if app.dock.has(workspace, *other) {
-                    app.dock.toggle(workspace, *other);
+            for other in list::of(workspace).into_iter().filter(|other| *other != pane) {
+                if app.dock.has(workspace, other) {
+                    app.dock.toggle(workspace, other);
                 }
             }
-            app.dock.bring(workspace, *pane);
+            app.dock.bring(workspace, pane);
             found += &page(app).look(&format!("{workspace:?}, only {pane:?}"));
         }
     }
@@ -188,7 +190,7 @@ fn long_names_of_channels_and_recordings_can_be_read() {
             session.toggle_overlay(1);
             session.plots.view = view;
             let mut app = App::new(session);
-            for pane in [Pane::Recording, Pane::Scene, Pane::Results].iter().filter(|_| only) {
+            for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::RESULTS].iter().filter(|_| only) {
                 app.dock.toggle(Workspace::Calibrate, *pane);
             }
             found += &page(app).look(&format!("long names, {view:?}, alone {only}"));
