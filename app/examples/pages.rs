@@ -2,7 +2,7 @@
 
 use app::ui::picture_input::PictureInput;
 use app::ui::screenshot::{DEVICES, TRAIN, picture};
-use app::worlds::BUILT_IN;
+use haptics::world::presets::BUILT_IN;
 use std::path::PathBuf;
 
 fn main() -> anyhow::Result<()> {

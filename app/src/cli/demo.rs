@@ -2,7 +2,7 @@
 
 use super::{Output, diagnose, fit, report, screenshot};
 use crate::built_in::{BuiltInRecording, RECORDINGS, write};
-use crate::report::Sheet;
+use crate::report::collect::Sheet;
 use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;

@@ -1,7 +1,9 @@
 //! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
 
 use super::tool::{insert, is_tool};
-use super::{MotionPlan, Timetable, perform};
+use crate::experiment::motion_plan::MotionPlan;
+use crate::experiment::perform::perform;
+use crate::experiment::timetable::Timetable;
 use estimator::diagnose::{Diagnosis, Experiment, NextExperiment, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Recording, Task};

@@ -3,7 +3,8 @@
 //! A file is called after when its attempt began, and never before one that waits already, so that they are taken in in the order in
 //! which they were made, also when the clock was set back between them.
 
-use super::{Attempt, Store};
+use crate::history::attempt::Attempt;
+use crate::history::store::Store;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

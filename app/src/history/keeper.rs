@@ -1,6 +1,8 @@
 //! The history beside the window: a thread that has the database, asked and answered without waiting.
 
-use super::{Attempt, Query, Store, aside};
+use super::aside;
+use crate::history::attempt::Attempt;
+use crate::history::store::{Query, Store};
 use jiff::Timestamp;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};

@@ -12,7 +12,8 @@
 //! known already when one of the same trainee, lesson, conditions, beginning, duration, end and score is there. One that is kept as it is
 //! made is never known.
 
-use super::{Attempt, Conditions, schema};
+use super::schema;
+use crate::history::attempt::{Attempt, Conditions};
 use jiff::Timestamp;
 use rusqlite::{Connection, OptionalExtension as _, Row, Transaction, TransactionBehavior, params};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Runs the stages over one log: segment, fit, calibrate, simulate, diagnose. What fails is a sentence in its place.
 
 use super::source::Source;
-use crate::ui::plots::Residuals;
+use crate::ui::plots::residuals::Residuals;
 use crate::ui::prepare::Prepared;
 use estimator::diagnose::{self, Diagnosis};
 use estimator::estimate::Parameter;

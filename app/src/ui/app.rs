@@ -1,17 +1,18 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
-use super::actions::{self, Action};
 use super::autosave::{Autosave, State};
-use super::dock::Dock;
 use super::dock::panes::Panels;
 use super::icons::Icon;
 use super::palette::{self, CommandPalette};
 use super::session::{Session, Tone};
 use super::theme::{self, space};
 use super::tour::{self, Tour};
-use super::trainer::WorldChoice;
 use super::widgets::{icon_button, segmented};
 use super::{menu, messages, restore};
+use crate::ui::actions::list::Action;
+use crate::ui::actions::search;
+use crate::ui::dock::arrangement::Dock;
+use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::workspace::Workspace;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
@@ -57,7 +58,7 @@ impl App {
         // A dialog waits for an answer first.
         if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() && self.dock.naming.is_none()
         {
-            actions::keys(ui, self);
+            search::keys(ui, self);
             super::keys::handle(ui, &mut self.session);
         }
         dropped_files(&ctx, &mut self.session);

@@ -2,12 +2,12 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
-use super::assistant::Assistant;
 use super::comfort::Comfort;
-use super::dock::Dock;
 use super::project::Project;
 use super::recent::Recent;
 use super::session::Session;
+use crate::ui::assistant::readings::Assistant;
+use crate::ui::dock::arrangement::Dock;
 use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::fs::File;

@@ -2,8 +2,8 @@
 //! start to the next.
 
 use super::guided;
-use super::lessons;
 use super::session::{Session, Tone};
+use crate::ui::lessons::actions;
 use egui::PointerButton;
 use serde::{Deserialize, Serialize};
 
@@ -61,15 +61,15 @@ impl Session {
             return;
         };
         match phase {
-            lessons::Phase::Watching => self.watch_lesson(),
-            lessons::Phase::Practising => self.practise_lesson(),
-            lessons::Phase::Testing | lessons::Phase::Asking => {
+            actions::Phase::Watching => self.watch_lesson(),
+            actions::Phase::Practising => self.practise_lesson(),
+            actions::Phase::Testing | actions::Phase::Asking => {
                 self.test_lesson();
                 self.say(Tone::Done, "The attempt begins anew; what was recorded of it is removed.".to_owned());
             }
-            lessons::Phase::Brief | lessons::Phase::Debrief(_) => self.back_to_brief(),
+            actions::Phase::Brief | actions::Phase::Debrief(_) => self.back_to_brief(),
             // The recording is being read.
-            lessons::Phase::Grading => {}
+            actions::Phase::Grading => {}
         }
     }
 }

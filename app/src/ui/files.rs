@@ -4,6 +4,7 @@ use super::checking::On;
 use super::jobs::{Answer, JobKind, Jobs, change, no_change};
 use super::session::Session;
 use crate::export::{Format, export};
+use crate::report::of_files;
 use crate::text::sentence::sentence;
 use crate::write_whole::write_whole;
 use std::path::PathBuf;
@@ -191,7 +192,7 @@ pub fn save_report(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
     let (sources, choice) = (session.sources.clone(), session.choice.clone());
     session.jobs.start(ctx, SAVE, "Writing the report", move |_| {
         let given = |index, recording| choice.given_to(index, &recording);
-        crate::report::of_files(&sources_of(&sources), &path, given)?;
+        of_files::of_files(&sources_of(&sources), &path, given)?;
         saved(path)
     });
 }

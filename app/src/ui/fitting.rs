@@ -3,11 +3,11 @@
 use super::film::Film;
 use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, change};
-use super::plots::Levels;
 use super::prepare::Prepared;
 use super::replayed::Replayed;
 use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::plots::levels::Levels;
 use estimator::online::enough::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, segment_by};

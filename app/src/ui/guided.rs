@@ -3,8 +3,11 @@
 use super::jobs::change;
 use super::recorder::RECORD;
 use super::session::Session;
-use super::trainer::{Operator, Trainer, WorldChoice};
-use crate::experiment::{SIMULATED, Step, Timetable, what_is_known};
+use crate::experiment::perform::what_is_known;
+use crate::experiment::simulated::SIMULATED;
+use crate::experiment::timetable::{Step, Timetable};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Operator, Trainer};
 use estimator::diagnose::{Diagnosis, Experiment};
 use haptics::device::HandGoal;
 use haptics::recording::Meta;

@@ -1,7 +1,9 @@
 //! Who practises, and how they get better: what the window knows of the history.
 
 use super::session::{Session, Tone};
-use crate::history::{Answer, Attempt, Conditions, History, Query};
+use crate::history::attempt::{Attempt, Conditions};
+use crate::history::keeper::{Answer, History};
+use crate::history::store::Query;
 use estimator::training::progress::{self, CurvePoint, LearningCurve, Try};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,12 +1,12 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
 use super::jobs::{Answer, JobKind, Ticket, change, no_change};
-use super::mapping;
 use super::prepare::Prepared;
 use super::project::Source;
 use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::mapping::state;
 use crate::ui::workspace::Workspace;
 use estimator::log::{LogError, Watch};
 use haptics::recording::Meta;
@@ -42,7 +42,7 @@ pub enum FileKind {
 pub fn kind_of(path: &Path) -> FileKind {
     let mut start = Vec::new();
     let read = std::fs::File::open(path).and_then(|f| f.take(START_BYTES).read_to_end(&mut start));
-    if crate::video::looks_like_video(&start) {
+    if crate::video::reading::looks_like_video(&start) {
         return FileKind::Video;
     }
     let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
@@ -82,7 +82,7 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
             change(|session: &mut Session, ctx| session.loaded(ctx, path, prepared))
         }
         Err(LogError::Cancelled { .. }) => no_change(),
-        Err(error) if mapping::mends(&error) => {
+        Err(error) if state::mends(&error) => {
             let why = sentence(&error.to_string());
             change(move |session: &mut Session, ctx| {
                 session.path_field = path.display().to_string();
@@ -204,7 +204,7 @@ impl Session {
 
     /// Opens the mapping dialog for a log.
     pub fn map_columns_of(&mut self, ctx: &egui::Context, path: &Path, why: Option<String>) {
-        mapping::look(ctx, &mut self.jobs, path, self.meta.clone(), why);
+        state::look(ctx, &mut self.jobs, path, self.meta.clone(), why);
     }
 }
 

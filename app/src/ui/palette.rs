@@ -1,9 +1,10 @@
 //! The command palette: every action by a few letters of its name.
 
-use super::actions::{self, Action};
 use super::app::App;
 use super::icons;
 use super::theme::{self, palette, space};
+use crate::ui::actions::list::Action;
+use crate::ui::actions::search;
 use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 
 /// Width of the list, points.
@@ -85,7 +86,7 @@ pub fn show(ui: &Ui, app: &mut App) {
 
 /// What has the letters that were typed.
 fn found_for(app: &App) -> Vec<Action> {
-    let mut found = actions::matching(app, &app.palette.query);
+    let mut found = search::matching(app, &app.palette.query);
     if app.palette.query.is_empty() {
         // What can be done now stands first.
         found.sort_by_key(|action| action.why_not(app).is_some());
@@ -122,7 +123,7 @@ fn line(ui: &mut Ui, app: &mut App, action: &Action, index: usize) -> bool {
     let ink = if why.is_none() { p.text } else { p.faint };
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink2(vec2(10.0, 0.0))));
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let right = why.map_or_else(|| actions::key_text(ui, action), str::to_owned);
+        let right = why.map_or_else(|| search::key_text(ui, action), str::to_owned);
         ui.label(RichText::new(right).size(11.0).color(p.secondary));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let (place, _) = ui.allocate_exact_size(vec2(icons::SIZE, icons::SIZE), Sense::hover());

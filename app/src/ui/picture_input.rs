@@ -1,6 +1,6 @@
 //! The wishes of whoever asks for a picture.
 
-use crate::video::VideoSource;
+use crate::video::reading::VideoSource;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::path::PathBuf;

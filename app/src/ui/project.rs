@@ -9,7 +9,7 @@ use super::prepare::Prepared;
 use super::session::Session;
 use crate::text::sentence::sentence;
 use crate::ui::workspace::Workspace;
-use crate::video::VideoSource;
+use crate::video::reading::VideoSource;
 use crate::write_whole::write_whole;
 use estimator::log::Watch;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! A recording played through a world.
 
 use super::film::Film;
-use super::plots::Levels;
+use crate::ui::plots::levels::Levels;
 use estimator::simulate::Simulation;
 use std::sync::Arc;
 

@@ -6,10 +6,12 @@ use super::panel::{Framing, PAGE, Picture};
 use super::panels::list;
 use super::picture_input::PictureInput;
 use super::session::Session;
+use super::stage;
 use super::theme::{self, space};
-use super::trainer::Clock;
 use super::workspace::Workspace;
-use super::{scene, stage};
+use crate::ui::scene::callback;
+use crate::ui::scene::view;
+use crate::ui::trainer::live::Clock;
 use anyhow::{Context as _, anyhow};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -217,7 +219,7 @@ pub fn draw(
         .with_render_cursor(false)
         .with_context_setup(move |ctx| {
             theme::install(ctx);
-            scene::announce(ctx, &surface);
+            callback::announce(ctx, &surface);
         })
         .renderer(WgpuTestRenderer::from_render_state(state))
         .build_ui(move |ui| {
@@ -240,7 +242,7 @@ pub(super) fn app_for(session: Session, picture: &'static Picture) -> App {
 }
 
 /// Where a window of this size (points) shows the plane of the trainer's world.
-pub fn trainer_place(size: [f32; 2]) -> Option<scene::Place> {
+pub fn trainer_place(size: [f32; 2]) -> Option<view::Place> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Train;

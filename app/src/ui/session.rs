@@ -3,25 +3,27 @@
 use super::comfort::Comfort;
 use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
-pub use super::fit_choice::FitChoice;
+use crate::ui::fit_choice::FitChoice;
+use crate::ui::scene::layers::SceneLayers;
+
 use super::fitting::Refits;
 use super::jobs::{JobKind, Jobs};
-use super::lessons::Lessons;
-use super::mapping::Mapping;
 use super::opening::LOAD;
-use super::plots::PlotChoices;
 use super::prepare::Prepared;
 use super::project::Source;
 use super::recent::Recent;
 use super::replayed::Replayed;
 use super::rules::Rules;
-pub use super::scene::layers::SceneLayers;
-use super::trainer::Trainer;
+use crate::ui::lessons::actions::Lessons;
+use crate::ui::mapping::state::Mapping;
+use crate::ui::plots::choices::PlotChoices;
+
 use super::undo::Undo;
 use super::video::Videos;
 use super::what_if::WhatIf;
 use super::workspace::Workspace;
 use crate::tasks::Chosen;
+use crate::ui::trainer::live::Trainer;
 use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
@@ -111,9 +113,9 @@ pub struct Session {
     /// Experiments that would tell it better.
     pub experiments: Experiments,
     /// Where the trainer's picture was drawn last.
-    pub trainer_place: Option<super::scene::Place>,
+    pub trainer_place: Option<crate::ui::scene::view::Place>,
     /// What the assistant shows over the trainer's picture.
-    pub assistant: super::assistant::Assistant,
+    pub assistant: crate::ui::assistant::readings::Assistant,
     /// Lessons.
     pub lessons: Lessons,
     /// What is still missing for the parameters of the fit.

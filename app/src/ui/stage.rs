@@ -1,21 +1,22 @@
 //! Sessions with everything computed, for pictures.
 
-use super::diagnosing;
-use super::experimenting;
 use super::fit_choice::FitChoice;
-use super::fitting;
 use super::gallery::practice::practice as attempts;
-use super::mapping::{self, Mapping};
 use super::panel_id::PanelId;
 use super::picture_input::PictureInput;
 use super::plots::choices::XyAxis;
-use super::plots::{LogView, can_compare};
 use super::prepare::Prepared;
 use super::rules::Rules;
 use super::session::Session;
-use super::trainer::{Clock, Operator, Trainer, WorldChoice};
 use super::workspace::Workspace;
-use crate::history::History;
+use super::{diagnosing, experimenting, fitting};
+use crate::history::keeper::History;
+use crate::ui::mapping::state;
+use crate::ui::mapping::state::Mapping;
+use crate::ui::plots::choices::LogView;
+use crate::ui::plots::curves::can_compare;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::Progress;
 use estimator::signal::transform::Transform;
@@ -154,7 +155,7 @@ pub fn mapping(input: &PictureInput) -> anyhow::Result<Session> {
     let mut session = new();
     session.workspace = Workspace::Calibrate;
     let path = input.log.clone().context("name a log with --log: the dialog maps its columns")?;
-    let looked = mapping::look_now(path, input.meta.clone(), None).map_err(|problem| anyhow!(problem))?;
+    let looked = state::look_now(path, input.meta.clone(), None).map_err(|problem| anyhow!(problem))?;
     let mut mapping = Mapping::from(looked);
     mapping.preview.read_now(&mapping.path, mapping.draft.sidecar());
     session.mapping = Some(Box::new(mapping));

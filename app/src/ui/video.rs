@@ -7,7 +7,8 @@ use super::prepare::Prepared;
 use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
-use crate::video::{self, Video, VideoError, VideoSource, Watch};
+use crate::video::reading;
+use crate::video::reading::{Video, VideoError, VideoSource, Watch};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use estimator::signal::lag::lag;
 use std::path::{Path, PathBuf};
@@ -252,7 +253,7 @@ impl Session {
             return;
         };
         self.jobs.start(ctx, ALIGN_VIDEO, "Laying the video over the recording", move |ticket| {
-            let found = match video::motion(&file, ticket.cancelled()) {
+            let found = match reading::motion(&file, ticket.cancelled()) {
                 Ok((times, changes)) => begins_at(&prepared, &times, &changes),
                 Err(VideoError::Cancelled) => return no_change(),
                 Err(error) => Err(sentence(&error.to_string())),

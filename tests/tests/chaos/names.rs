@@ -1,7 +1,7 @@
 //! Names that nobody should choose: of files, columns, states, trainees, worlds. They are kept as they are, and stay where they belong.
 
 use crate::{Chaos, logs};
-use app::history::{Query, Store};
+use app::history::store::{Query, Store};
 use app::ui::project::{Project, Source};
 use estimator::log;
 use haptics::recording::{Channel, Recording};

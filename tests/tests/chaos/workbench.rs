@@ -3,7 +3,7 @@
 
 use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
-use app::ui::dock::Dock;
+use app::ui::dock::arrangement::Dock;
 use app::ui::fitting::FIT;
 use app::ui::project::Project;
 use app::ui::session::{Session, Tone};

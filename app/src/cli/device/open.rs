@@ -1,7 +1,7 @@
 //! Which devices there are, and how one is made from what stands on the command line.
 
 use crate::operator;
-use crate::ui::trainer::Remote;
+use crate::ui::trainer::remote::Remote;
 use anyhow::Context;
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};

@@ -1,12 +1,13 @@
 //! What a test found, in plain words and as JSON.
 
 mod board;
-mod limits;
+pub mod limits;
 mod push;
 
-pub use limits::{Limits, limit_sentence, limits};
-
 use super::super::Output;
+use crate::cli::device::report::limits::Limits;
+use crate::cli::device::report::limits::limit_sentence;
+use crate::cli::device::report::limits::limits;
 use crate::text::format::short_time;
 use haptics::Vec2;
 use haptics::device::DeviceSpec;

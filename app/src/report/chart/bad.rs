@@ -1,8 +1,9 @@
 //! Where a recording is not to be trusted: gaps, that no curve may cross, and stretches of channels that stand still or at a limit.
 
-use super::{Frame, key, short};
+use crate::report::chart::frame::{Frame, key, short};
 use crate::text::format;
-use crate::ui::plots::{Columns, Samples, decimate_in};
+use crate::ui::plots::decimate::{Columns, decimate_in};
+use crate::ui::plots::levels::Samples;
 use crate::ui::prepare::{Prepared, Trace};
 use egui_plot::PlotPoint;
 use estimator::log::gaps;
@@ -144,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_curve_is_broken_at_a_gap_and_keeps_its_ends() {
-        use crate::ui::plots::Levels;
+        use crate::ui::plots::levels::Levels;
         let times: Vec<f64> = (0..8000).map(|i| f64::from(i) * 1e-3 + if i < 5000 { 0.0 } else { 2.0 }).collect();
         let prepared = Prepared::new(Recording { time_s: Some(times.clone()), ..Recording::default() });
         let levels = Levels::new(times.clone());

@@ -1,6 +1,7 @@
 //! Which state held when, and to which subtask it belongs.
 
-use super::{LEFT, RIGHT, WIDE, bad, key, short};
+use super::bad;
+use crate::report::chart::frame::{LEFT, RIGHT, WIDE, key, short};
 use crate::report::style::state_variable;
 use crate::text::format;
 use crate::text::states::{state_of_task, state_short};

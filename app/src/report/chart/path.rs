@@ -1,6 +1,7 @@
 //! The path through space, and the constraints that were found over it. Both axes have one scale.
 
-use super::{Frame, bad, key, range_of};
+use super::bad;
+use crate::report::chart::frame::{Frame, key, range_of};
 use crate::ui::prepare::Prepared;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;

@@ -1,8 +1,8 @@
 //! What the simulation gets wrong: causes with their evidence and gain, what else they could be, what to record next.
 
-use super::failed;
-use crate::report::chart;
+use crate::report::chart::cloud;
 use crate::report::collect::Content;
+use crate::report::page::whole::failed;
 use crate::text::diagnosis_words::{
     compared_unit, gain_unit, headline, listed, residual_unit, said_in_words, shown_unit, small, state_in_words,
     symbol, title,
@@ -58,7 +58,7 @@ fn answer(content: &Content, diagnosis: &Diagnosis) -> Markup {
         @for drawn in &content.drawn {
             @if let Some(curves) = &drawn.residuals {
                 @if content.recordings.len() > 1 { h4 { (drawn.prepared.recording.name) } }
-                (chart::residuals(curves, found))
+                (cloud::residuals(curves, found))
             }
         }
     }

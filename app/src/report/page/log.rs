@@ -1,8 +1,7 @@
 //! The section of one log.
 
 use super::{diagnosis, recording, replay, results, unknown};
-use crate::report::Sheet;
-use crate::report::collect::Content;
+use crate::report::collect::{Content, Sheet};
 use crate::text::diagnosis_words::{headline_of, small};
 use crate::text::format;
 use crate::text::sentence::sentence;

@@ -1,8 +1,10 @@
 //! What was recorded, what looks wrong with it, and what happened when.
 
-use super::fact;
-use crate::report::chart;
+use crate::report::chart::bad;
+use crate::report::chart::band;
+use crate::report::chart::signals;
 use crate::report::collect::{Content, Drawn};
+use crate::report::page::whole::fact;
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::text::states::state_of_task;
@@ -116,7 +118,7 @@ pub fn course(content: &Content) -> Markup {
                     None if drawn.prepared.clockless() => p class="muted" { "No states: they are told from velocities, and this log has no clock." },
                     None => p class="muted" { "No states were told in this recording." },
                 }
-                (chart::signals(drawn))
+                (signals::signals(drawn))
                 @if let Some(segmentation) = &drawn.segmentation { (intervals(segmentation)) }
             }
             @if all > content.drawn.len() {
@@ -127,11 +129,11 @@ pub fn course(content: &Content) -> Markup {
 }
 
 fn states(segmentation: &Segmentation, drawn: &Drawn) -> Markup {
-    let holes = chart::holes(&drawn.prepared);
+    let holes = bad::holes(&drawn.prepared);
     html! {
         figure {
-            figcaption { b { "States and subtasks" } (chart::legend(segmentation, &holes)) }
-            (chart::band(segmentation, drawn.prepared.span(), &holes))
+            figcaption { b { "States and subtasks" } (band::legend(segmentation, &holes)) }
+            (band::band(segmentation, drawn.prepared.span(), &holes))
         }
     }
 }

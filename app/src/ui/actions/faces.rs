@@ -1,6 +1,6 @@
 //! What the actions look like in menus and in the palette.
 
-use super::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::icons::Icon;
 use crate::ui::panels::list;
 

@@ -1,6 +1,6 @@
 //! What actions do.
 
-use super::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::dock::naming::Naming;
 use crate::ui::files;

@@ -1,7 +1,7 @@
 //! What the assistant says, in words: every number with its error.
 
-use super::{Assistant, Circle};
 use crate::text::format::{number, object, with_error};
+use crate::ui::assistant::readings::{Assistant, Circle};
 use estimator::assistant::{Guess, Held, Known, Slip, Warning};
 use estimator::online::Pull;
 

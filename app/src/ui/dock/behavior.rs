@@ -16,7 +16,9 @@ const LEAST: f32 = 120.0;
 
 /// Draws the panels of a session.
 pub struct Tiling<'a> {
+    /// The panels.
     pub panels: &'a mut Panels,
+    /// The session that they show.
     pub session: &'a mut Session,
     /// Every panel has its title.
     pub arranging: bool,

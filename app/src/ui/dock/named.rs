@@ -1,6 +1,6 @@
 //! Arrangements that the user has given names, several a workspace.
 
-use super::{Arrangement, Dock};
+use crate::ui::dock::arrangement::{Arrangement, Dock};
 use crate::ui::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! Where a panel comes in when it is brought back: where it stood in the standard arrangement, or beside those that it belongs to.
 
-use super::Arrangement;
+use crate::ui::dock::arrangement::Arrangement;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use egui_tiles::{Container, ContainerKind, Tile, TileId};

@@ -1,9 +1,10 @@
 //! The recorded hand, filmed: a video for pictures of the video's panel.
 
-use crate::ui::scene::{camera_for, options_for, scene_world};
+use crate::ui::scene::overlay::{camera_for, options_for, scene_world};
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::video::{VideoSource, Writer};
+use crate::video::reading::VideoSource;
+use crate::video::writer::Writer;
 use anyhow::Context as _;
 use render::{Headless, SceneView, ViewOptions};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! A made-up history of practice, for pictures.
 
-use crate::history::{Attempt, Conditions};
+use crate::history::attempt::{Attempt, Conditions};
 use jiff::{SignedDuration, Timestamp};
 use std::path::PathBuf;
 

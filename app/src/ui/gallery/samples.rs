@@ -2,12 +2,16 @@
 
 use super::filmed::filmed;
 use crate::built_in::built_in;
+use crate::experiment::perform;
+use crate::experiment::simulated;
+use crate::experiment::timetable;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::picture_input::PictureInput;
 use crate::ui::stage;
-use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
-use crate::video::VideoSource;
-use crate::{experiment, worlds};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::video::reading::VideoSource;
+use crate::worlds;
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::{Experiment, SensorFault};
 use haptics::Vec2;
@@ -142,11 +146,11 @@ pub fn hinge() -> (Recording, blind::case::Object) {
 
 /// The recording of an experiment on a world that stands for the real object.
 pub fn done_with(world: &World, asked: &Experiment, name: &str) -> anyhow::Result<Recording> {
-    let table = experiment::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
+    let table = timetable::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
     let sensing = (&SensorFault::default(), SensorModel::TYPICAL.force_noise_n);
-    let mut recording = experiment::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
+    let mut recording = perform::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
     // Here it is the real one.
-    recording.meta.other.remove(experiment::SIMULATED);
+    recording.meta.other.remove(simulated::SIMULATED);
     name.clone_into(&mut recording.name);
     Ok(recording)
 }

@@ -4,11 +4,12 @@
 use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::diagnosing::EXTEND;
+use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::{Session, Tone};
-use crate::ui::trainer::Clock;
+use crate::ui::theme;
+use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
-use crate::ui::{scene, theme};
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
 use egui::{Event, Key, Modifiers, Pos2, Role, pos2};
@@ -115,7 +116,7 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
     let surface = state.clone();
     let builder = builder.with_context_setup(move |ctx| {
         theme::install(ctx);
-        scene::announce(ctx, &surface);
+        callback::announce(ctx, &surface);
     });
     Ok(builder.renderer(WgpuTestRenderer::from_render_state(state)).build_ui_state(show, app))
 }

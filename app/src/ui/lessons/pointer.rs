@@ -1,10 +1,10 @@
 //! A person's hand on the mouse that does what the expert did, more slowly: for pictures and tests of a manual clock.
 
-use super::Phase;
 use super::trace::Point;
 use crate::text::sentence::sentence;
+use crate::ui::lessons::actions::Phase;
 use crate::ui::session::Session;
-use crate::ui::trainer::Pinch;
+use crate::ui::trainer::pinch::Pinch;
 use estimator::training::lesson::Lesson;
 use haptics::Vec2;
 use haptics::world::State;

@@ -1,6 +1,6 @@
 //! What a hand did, thinned for pictures: the expert's and the trainee's beside each other.
 
-use super::sentence;
+use crate::text::sentence::sentence;
 use estimator::training::lesson::Lesson;
 use estimator::training::lesson::perform::perform;
 use haptics::Vec2;

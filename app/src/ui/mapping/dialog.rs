@@ -1,10 +1,11 @@
 //! The dialog's frame: heading, columns on the left, preview on the right, what to do below.
 
 use super::preview::PREVIEW;
-use super::{Mapping, options, plot, save, table};
+use super::{options, plot, table};
 use crate::text::file_name::name_of;
 use crate::ui::files::SAVE;
 use crate::ui::icons::Icon;
+use crate::ui::mapping::state::{Mapping, save};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{plain_card, primary_button, remark, sheet};

@@ -4,7 +4,7 @@ use super::draft::Role;
 use crate::ui::app::App;
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Clock;
+use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

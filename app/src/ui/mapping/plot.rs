@@ -1,10 +1,11 @@
 //! The preview: the path or the curves, what is still missing, and what is doubtful.
 
-use super::Mapping;
 use super::preview::Seen;
 use crate::text::format;
 use crate::ui::icons::Icon;
-use crate::ui::plots::{decimate, marks, time_axis, value_axis};
+use crate::ui::mapping::state::Mapping;
+use crate::ui::plots::axes::{marks, time_axis, value_axis};
+use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, mix, palette, space};

@@ -1,6 +1,6 @@
 //! Which parts of the assistant are shown over the picture.
 
-use crate::ui::assistant;
+use crate::ui::assistant::readings;
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::widgets::{call, card};
@@ -31,7 +31,7 @@ mod words {
 
 /// The card beside the trainer's picture.
 pub fn assistant(ui: &mut Ui, session: &mut Session) {
-    let silent = assistant::silent(session);
+    let silent = readings::silent(session);
     let parts = &mut session.assistant;
     let mut on = parts.on;
     let switch = |ui: &mut Ui| {

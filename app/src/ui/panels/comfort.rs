@@ -2,7 +2,7 @@
 
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 

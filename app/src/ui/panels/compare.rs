@@ -2,7 +2,7 @@
 
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::WorldChoice;
+use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
 use egui::{Align, Key, Layout, Ui};
 

@@ -3,7 +3,7 @@
 use crate::text::format::{number, with_error};
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{card_with_head, fact, segmented};
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};

@@ -11,11 +11,11 @@ use crate::ui::icons::Icon;
 use crate::ui::opening::LOAD;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
+use crate::ui::plots::choices::{LogView, PlotChoices};
+use crate::ui::plots::curves::{Drawn, Sources, can_compare, curves};
+use crate::ui::plots::row::{GUTTER, PlotCache, RowInput, RowKind, axis_height, row};
 use crate::ui::plots::shift::Grasp;
-use crate::ui::plots::{
-    Drawn, GUTTER, LogView, PlotCache, PlotChoices, RowInput, RowKind, Sources, XyCache, axis_height, can_compare,
-    curves, row,
-};
+use crate::ui::plots::xy::XyCache;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};

@@ -2,11 +2,12 @@
 
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::assistant::{NEEDLE, only_thing};
+use crate::ui::assistant::readings::{NEEDLE, only_thing};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Trainer, Watch, watched_task};
+use crate::ui::trainer::live::Trainer;
+use crate::ui::trainer::watch::{Watch, task_of as watched_task};
 use crate::ui::widgets::{bar, card, compact, plain_card, remark, segmented};
 use egui::{Align, Layout, RichText, Ui};
 use estimator::estimate::Parameter;

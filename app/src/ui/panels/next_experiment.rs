@@ -2,13 +2,12 @@
 //! Train, loaded from a file.
 
 use super::motion_plan;
-use crate::experiment::{Outcome, Rehearsal};
+use crate::experiment::rehearse::{Outcome, Rehearsal};
 use crate::text::diagnosis_words::{listed, one, small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::diagnosing::is_mechanism;
-use crate::ui::experimenting::REHEARSE;
-use crate::ui::experimenting::{ROUNDS, Stage};
+use crate::ui::experimenting::{REHEARSE, ROUNDS, Stage};
 use crate::ui::files;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
@@ -178,7 +177,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
 /// What every round named, in lines.
 fn came_out(outcome: &Outcome) -> String {
     let names = |ids: &[String]| listed(&ids.iter().map(|id| title(id)).collect::<Vec<_>>());
-    let round = |(k, round): (usize, &crate::experiment::Round)| {
+    let round = |(k, round): (usize, &crate::experiment::rehearse::Round)| {
         let named = if round.named.is_empty() { "nothing".to_owned() } else { names(&round.named) };
         let open = if round.open.is_empty() { String::new() } else { format!("; or {}", names(&round.open)) };
         format!("{}: {named}{open}", k + 1)

@@ -4,7 +4,7 @@ use crate::text::format::number;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::USUAL_CONTROL_N_S_M;
+use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
 use crate::ui::widgets::{card, fact, remark};
 use egui::{Align, Layout, Ui};
 

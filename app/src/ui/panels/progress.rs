@@ -1,19 +1,19 @@
 //! *Progress*: who practises, their learning curve at a lesson, and their attempts.
 
-use crate::history::Attempt;
+use crate::history::attempt::Attempt;
 use crate::text::format;
-use crate::ui::files;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::learning::{Learned, Practised};
 use crate::ui::panel::{Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::plots::{decimals, inks, marks};
+use crate::ui::plots::axes::{decimals, marks};
+use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
-use crate::ui::stage;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{call, compact, empty_state, plain_card};
 use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
     TextEdit, Ui, pos2, vec2,

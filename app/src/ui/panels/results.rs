@@ -7,7 +7,7 @@ use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::plots::places;
+use crate::ui::plots::doubts::places;
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};

@@ -3,7 +3,7 @@
 use crate::operator;
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Script;
+use crate::ui::trainer::script::Script;
 use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;

@@ -2,7 +2,7 @@
 
 use crate::text::format;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::Snapshot;

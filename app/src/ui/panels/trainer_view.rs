@@ -1,16 +1,19 @@
 //! The virtual world, touched with the mouse.
 
 use super::{guide, lessons, marks, steering};
-use crate::ui::assistant;
+use crate::ui::assistant::draw;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
+use crate::ui::scene::rig::Rig;
+use crate::ui::scene::view::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Clock, HandDevice, Operator, Steering, Trainer, task_hint};
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::trainer::task::task_hint;
 use crate::ui::widgets::{empty_state, key_hint, sheet};
 use crate::ui::workspace::Workspace;
 use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
@@ -223,7 +226,7 @@ fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
         marks::device(ui, view, snapshot);
     }
     marks::flashes(ui, view, &session.trainer.impacts);
-    assistant::draw(ui, view, session);
+    draw::draw(ui, view, session);
     guide::ghost(ui, view, session);
     guide::expert(ui, view, session);
 }
@@ -235,7 +238,7 @@ impl TrainerView {
         let struck_m_s = session.trainer.struck_m_s.take();
         let limit_n = session.trainer.config().limits.max_force_n;
         let seen = session.trainer.seen().filter(|_| session.trainer.held().is_none());
-        let slip_m_s = seen.map_or(0.0, crate::ui::trainer::slip_m_s);
+        let slip_m_s = seen.map_or(0.0, crate::ui::trainer::heard::slip_m_s);
         let excess = seen.is_some_and(|state| state.tip_force_n.iter().any(|force| force.norm() > limit_n));
         if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
             return;

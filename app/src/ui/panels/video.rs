@@ -2,19 +2,17 @@
 
 use crate::text::file_name::name_of;
 use crate::text::format;
-use crate::ui::files;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::video::ALIGN_VIDEO;
-use crate::ui::video::State;
+use crate::ui::video::{ALIGN_VIDEO, State};
 use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
 use crate::ui::workspace::Workspace;
-use crate::video::Video;
+use crate::ui::{files, stage};
+use crate::video::reading::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
     vec2,

@@ -124,7 +124,7 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
 
 /// The models and the band of the noise.
 fn layers<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
-    let inks = super::inks(ui);
+    let inks = crate::ui::plots::residual_plot::inks(ui);
     let entry = |label: &str, hint: &str, color, width, switch| Entry {
         label: label.to_owned(),
         brief: None,

@@ -1,12 +1,12 @@
 //! What the marks in the picture mean, with the numbers behind them: a strip below it.
 
-use super::Likeness;
 use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use crate::text::format::{number, significant};
 use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
+use crate::ui::scene::likeness::Likeness;
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, role, space};
 use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};

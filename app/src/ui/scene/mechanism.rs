@@ -2,7 +2,7 @@
 //! the recording knows none. The rail is as long as the way that was recorded.
 
 use crate::text::format;
-use crate::ui::plots::{decimals, marks};
+use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::prepare::Prepared;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align2, FontId, Pos2, Rect, Ui};

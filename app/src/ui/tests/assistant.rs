@@ -3,7 +3,8 @@
 use super::{empty, train_window};
 use crate::ui::app::App;
 use crate::ui::session::Session;
-use crate::ui::trainer::{Clock, Operator, WorldChoice};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

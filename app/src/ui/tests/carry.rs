@@ -6,7 +6,7 @@ use crate::ui::app::App;
 use crate::ui::experimenting::REHEARSE;
 use crate::ui::gallery::samples::{leaking, leaking_world};
 use crate::ui::guided::Phase;
-use crate::ui::trainer::WorldChoice;
+use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;

@@ -2,10 +2,12 @@
 
 use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
-use crate::ui::lessons::Phase;
+use crate::ui::lessons::actions::Phase;
 use crate::ui::screenshot;
 use crate::ui::tests::picture;
-use crate::ui::trainer::{HoldCause, Operator, PAUSED, Trainer, WorldChoice};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::hold::{Cause as HoldCause, PAUSED};
+use crate::ui::trainer::live::{Operator, Trainer};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::Harness;

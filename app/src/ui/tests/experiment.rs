@@ -1,13 +1,14 @@
 //! The experiment that a diagnosis asks for: rehearsed, done by hand, loaded; and what it settles.
 
 use super::{harness, until};
-use crate::experiment::simulated_object;
+use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
 use crate::ui::experimenting::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
 use crate::ui::session::Session;
-use crate::ui::trainer::{Clock, WorldChoice};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;

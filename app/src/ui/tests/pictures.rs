@@ -2,8 +2,9 @@
 
 use super::thresholds::{COLORS, DARK, INK, LIGHT, MARGIN, SURFACE};
 use super::{STACK, count_near, empty, no_driver, session};
+use crate::ui::gallery::plates;
 use crate::ui::tests::picture;
-use crate::ui::{gallery, screenshot, theme};
+use crate::ui::{screenshot, theme};
 use crate::video::tests::no_reader;
 use estimator::segment::SystemState;
 use std::collections::HashSet;
@@ -50,7 +51,7 @@ fn a_whole_workspace_is_drawn_without_anything() {
 }
 
 /// Draws one plate of the gallery in both themes and looks at what every picture must have.
-fn look_at(plate: &gallery::Plate, studio: &mut gallery::Studio) {
+fn look_at(plate: &plates::Plate, studio: &mut plates::Studio) {
     for dark in [false, true] {
         let name = format!("{}, dark {dark}", plate.name);
         let picture = studio.draw(plate, dark).expect("drawn");
@@ -80,15 +81,15 @@ fn nothing_outside(picture: &image::RgbaImage, window: egui::Color32, name: &str
     assert!(stray.is_none(), "{name}: something is drawn outside, at {stray:?}");
 }
 
-fn look_at_all(wanted: impl Fn(&gallery::Plate) -> bool) {
+fn look_at_all(wanted: impl Fn(&plates::Plate) -> bool) {
     if no_driver() {
         return;
     }
-    let mut studio = gallery::Studio::default();
+    let mut studio = plates::Studio::default();
     // Without the program that reads videos there is no picture of one.
     let without = no_reader();
-    let there = |plate: &gallery::Plate| !without || plate.picture.name != "video";
-    let plates: Vec<_> = gallery::plates().into_iter().filter(wanted).filter(there).collect();
+    let there = |plate: &plates::Plate| !without || plate.picture.name != "video";
+    let plates: Vec<_> = plates::plates().into_iter().filter(wanted).filter(there).collect();
     assert!(!plates.is_empty());
     for plate in plates {
         look_at(&plate, &mut studio);
@@ -108,7 +109,7 @@ fn every_page_is_drawn_in_light_and_dark() {
 
 #[test]
 fn every_view_of_a_recording_is_drawn_in_light_and_dark() {
-    look_at_all(gallery::Plate::is_view);
+    look_at_all(plates::Plate::is_view);
 }
 
 #[test]

@@ -2,17 +2,16 @@
 
 use super::thresholds::LAYER;
 use super::{harness, no_driver, until};
-use crate::history::{Attempt, Conditions};
+use crate::history::attempt::{Attempt, Conditions};
 use crate::ui::app::App;
 use crate::ui::gallery::practice::practice;
 use crate::ui::learning::Practised;
 use crate::ui::panel_id::PanelId;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
-use crate::ui::trainer::Clock;
+use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, theme};
+use crate::ui::{files, screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

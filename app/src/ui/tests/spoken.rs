@@ -4,7 +4,7 @@ use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
 use crate::ui::panels::list;
-use crate::ui::plots::LogView;
+use crate::ui::plots::choices::LogView;
 use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use crate::ui::workspace::Workspace;

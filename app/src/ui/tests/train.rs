@@ -3,7 +3,10 @@
 use super::{empty, harness, until_quiet};
 use crate::operator;
 use crate::ui::app::App;
-use crate::ui::trainer::{Operator, USUAL_CONTROL_N_S_M, WorldChoice, task_hint};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
+use crate::ui::trainer::live::Operator;
+use crate::ui::trainer::task::task_hint;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::device::Mistake;

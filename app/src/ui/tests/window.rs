@@ -4,7 +4,7 @@ use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
 use crate::ui::app::App;
 use crate::ui::recorder;
-use crate::ui::trainer::{Clock, Operator};
+use crate::ui::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable;
 use haptics::recording::Meta;

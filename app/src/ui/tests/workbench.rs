@@ -1,7 +1,7 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
-use crate::ui::actions::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::diagnosing::DIAGNOSE;
 use crate::ui::panel_id::PanelId;

@@ -1,6 +1,6 @@
 //! Which world is touched.
 
-use super::Trainer;
+use crate::ui::trainer::live::Trainer;
 use haptics::world::{World, presets};
 
 /// Which world is touched.

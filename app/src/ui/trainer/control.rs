@@ -1,6 +1,6 @@
 //! The passivity controller's switch: the observer always watches, the controller acts on choice.
 
-use super::{Operator, Trainer};
+use crate::ui::trainer::live::{Operator, Trainer};
 
 /// The most damping that can be chosen, N s/m: forces stay within the device's limits anyhow.
 pub const MOST_CONTROL_N_S_M: f64 = 50.0;

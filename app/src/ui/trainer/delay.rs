@@ -1,7 +1,7 @@
 //! A slow line between the operator and the world: what it is, and what is seen over it.
 
-use super::{Operator, Trainer};
 use crate::text::sentence::sentence;
+use crate::ui::trainer::live::{Operator, Trainer};
 use haptics::device::Device;
 use haptics::servo::rate::SAFE_HZ;
 use haptics::servo::{ServoConfig, Swap, TickRecord};

@@ -1,6 +1,7 @@
 //! Which device moves the fingers, and how it is made.
 
-use super::{Pinch, Remote};
+use crate::ui::trainer::pinch::Pinch;
+use crate::ui::trainer::remote::Remote;
 use haptics::Vec2;
 use haptics::device::haply::{HaplyHand, Tally};
 use haptics::device::udp::{UdpDevice, UdpMonitor};

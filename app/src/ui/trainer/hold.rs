@@ -1,8 +1,8 @@
 //! The world held still: the window lost the focus, or the device does not answer any more. Its clock stands, so no time counts, and the
 //! force on the fingers goes; when it goes on the force comes up slowly.
 
-use super::{Operator, Steering, Trainer};
-use crate::ui::trainer::HandDevice;
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::{Operator, Trainer};
 use std::time::Instant;
 
 /// The key of the sidecar under which a recording says that it was held: how often, and for how long.

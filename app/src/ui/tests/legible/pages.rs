@@ -3,12 +3,13 @@
 use super::faults::faults;
 use super::painted::Paint;
 use crate::ui::app::App;
-use crate::ui::gallery::{Plate, Studio, plates};
+use crate::ui::gallery::plates::plates;
+use crate::ui::gallery::plates::{Plate, Studio};
 use crate::ui::panel::Picture;
+use crate::ui::scene::callback;
 use crate::ui::screenshot::{self, in_whole_window};
-use crate::ui::tests::keep;
-use crate::ui::tests::picture;
-use crate::ui::{scene, theme};
+use crate::ui::tests::{keep, picture};
+use crate::ui::theme;
 use egui_kittest::wgpu::WgpuTestRenderer;
 use egui_kittest::{Harness, HarnessBuilder};
 use std::fmt::Write as _;
@@ -85,7 +86,7 @@ fn drawing<State>(builder: HarnessBuilder<State>) -> HarnessBuilder<State> {
     let surface = state.clone();
     let builder = builder.with_context_setup(move |ctx| {
         theme::install(ctx);
-        scene::announce(ctx, &surface);
+        callback::announce(ctx, &surface);
     });
     builder.with_render_cursor(false).renderer(WgpuTestRenderer::from_render_state(state))
 }

@@ -1,0 +1,156 @@
+//! Readings of the assistant, from the online estimates and the live world.
+
+use crate::ui::lessons::actions::Phase;
+use crate::ui::session::Session;
+use crate::ui::trainer::live::Trainer;
+use estimator::assistant::{Held, Known, Load, Look, Warnings, collision, warnings};
+use estimator::online::{Pull, Report};
+use haptics::Vec2;
+use haptics::world::{Block, Shape, State, World};
+use serde::{Deserialize, Serialize};
+
+/// Parts of the assistant that are switched on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+// One switch for each part is what the user sees.
+#[allow(clippy::struct_excessive_bools)]
+pub struct Assistant {
+    /// All of it.
+    pub on: bool,
+    /// Weight, width and stiffness of what is held.
+    pub held: bool,
+    /// How near it is to slipping.
+    pub slip: bool,
+    /// What may be in it.
+    pub contents: bool,
+    /// Warning of too much force.
+    pub force: bool,
+    /// Warning of a blow that comes.
+    pub collision: bool,
+    /// Warning of the edge of the workspace.
+    pub edge: bool,
+    /// Draws what holds an object.
+    pub constraint: bool,
+}
+
+impl Default for Assistant {
+    fn default() -> Self {
+        Self {
+            on: true,
+            held: true,
+            slip: true,
+            contents: true,
+            force: true,
+            collision: true,
+            edge: true,
+            constraint: true,
+        }
+    }
+}
+
+/// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Circle {
+    pub(crate) center_m: Vec2,
+    pub(crate) center_error_m: Vec2,
+    pub(crate) radius: Known,
+}
+
+/// What there is to say at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Said {
+    pub(crate) held: Option<Held>,
+    /// Middle of what is held, m in the world.
+    pub(crate) held_at_m: Vec2,
+    pub(crate) warnings: Warnings,
+    pub(crate) pulls: Vec<Pull>,
+    pub(crate) circle: Option<Circle>,
+}
+
+/// Why nothing is said now, in a sentence; `None` while it is.
+pub fn silent(session: &Session) -> Option<&'static str> {
+    match session.lessons.open.as_ref()?.phase {
+        Phase::Testing | Phase::Asking => Some("In a test you are on your own."),
+        // The world stands still behind what came of it.
+        Phase::Grading | Phase::Debrief(_) => Some("The attempt is over. It goes on with the next one."),
+        Phase::Brief | Phase::Watching | Phase::Practising => None,
+    }
+}
+
+pub(crate) fn said(session: &Session) -> Option<Said> {
+    if !session.assistant.on || silent(session).is_some() {
+        return None;
+    }
+    let trainer = &session.trainer;
+    let (_, world) = trainer.scene()?;
+    let state = trainer.seen()?;
+    let delay = trainer.delay();
+    let late_s = if delay.is_none() || delay.predicted { 0.0 } else { delay.round_trip_s };
+    let load = Load { limit_n: limit_n(session), late_s };
+    let report = trainer.watch.report();
+    let held_body = collision::held(state);
+    Some(Said {
+        held: report.as_deref().and_then(|report| Held::of(report, &look(world, held_body))),
+        held_at_m: middle(state, held_body),
+        warnings: warnings(world, state, &load),
+        pulls: report.as_deref().map(|r| r.pulls.clone()).unwrap_or_default(),
+        circle: report.as_deref().and_then(circle),
+    })
+}
+
+/// The most that a finger should press, N: by the lesson, or what the servo sends at most.
+fn limit_n(session: &Session) -> f64 {
+    let by_lesson = session.lessons.open.as_ref().map(|open| open.lesson.limit_n);
+    by_lesson.unwrap_or_else(|| max_force_n(&session.trainer))
+}
+
+fn max_force_n(trainer: &Trainer) -> f64 {
+    trainer.config().limits.max_force_n
+}
+
+/// What one sees of a body without touching it, and what such a vessel weighs when it is empty.
+fn look(world: &World, body: Option<usize>) -> Look {
+    let Some(block) = body.and_then(|k| world.blocks.get(k)) else { return Look::default() };
+    Look {
+        height_m: Some(block.height_m),
+        round: block.shape == Shape::Barrel,
+        empty_kg: block.content.map(|content| block.mass_kg - content.mass_kg),
+        called: called(block),
+        borne: block.shape == Shape::Needle,
+    }
+}
+
+/// What a needle is called: its sheet bears and pulls it, and its weight is not told.
+pub const NEEDLE: &str = "needle";
+
+/// What anybody sees that a thing is, where it is neither block nor barrel.
+fn called(block: &Block) -> Option<&'static str> {
+    match block.shape {
+        Shape::Needle => Some(NEEDLE),
+        Shape::Cup => Some("paper-cup"),
+        Shape::Block | Shape::Barrel => None,
+    }
+}
+
+/// The same for the only thing of a world; the estimator beside the servo knows no names.
+pub fn only_thing(world: &World) -> Option<&'static str> {
+    match world.blocks.as_slice() {
+        [only] => called(only),
+        _ => None,
+    }
+}
+
+fn middle(state: &State, body: Option<usize>) -> Vec2 {
+    let tips = state.input.tip_in_world;
+    body.and_then(|k| state.bodies.get(k)).map_or(0.5 * (tips[0] + tips[1]), |b| b.center_m)
+}
+
+fn circle(report: &Report) -> Option<Circle> {
+    let of = |name: &str| {
+        let parameter = report.parameters.iter().find(|p| p.object == "crank" && p.name == name && p.identified)?;
+        parameter.value.zip(parameter.std_error.filter(|e| e.is_finite()))
+    };
+    let (x, y, (value, std_error)) = (of("center_x_m")?, of("center_y_m")?, of("radius_m")?);
+    let radius = Known { value, std_error };
+    Some(Circle { center_m: Vec2::new(x.0, y.0), center_error_m: Vec2::new(x.1, y.1), radius })
+}
