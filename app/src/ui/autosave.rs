@@ -4,9 +4,10 @@
 
 use super::comfort::Comfort;
 use super::project::Project;
+use super::project_files::project_of;
 use super::recent::Recent;
 use super::session::Session;
-use crate::ui::assistant::readings::Assistant;
+use crate::ui::assistant::state::Assistant;
 use crate::ui::dock::arrangement::Dock;
 use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
@@ -147,7 +148,7 @@ fn read(path: &Path) -> Option<State> {
 
 fn state(session: &Session, dock: &Dock, toured: bool) -> State {
     State {
-        project: Project::of(session),
+        project: project_of(session),
         project_path: session.project_path.clone(),
         dock: dock.clone(),
         comfort: session.comfort,

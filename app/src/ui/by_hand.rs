@@ -158,7 +158,7 @@ mod tests {
         let (_, now, _) = place(&session, carry);
         assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
         assert_eq!(place(&session, carry + 1).0, now, "no hole");
-        let after = crate::ui::fitting::analyse(&session.recordings, &session.choice).expect("fits");
+        let after = crate::ui::refits::analyse(&session.recordings, &session.choice).expect("fits");
         let (before, after) = (before.expect("weighed"), after.fit.parameter("block-1", "weight_N").cloned());
         let after = after.expect("weighed");
         assert!(after.samples < before.samples * 3 / 4, "{} of {} samples", after.samples, before.samples);

@@ -1,11 +1,11 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::checking::On;
 use super::jobs::{Answer, JobKind, Jobs, change, no_change};
 use super::session::Session;
 use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
+use crate::ui::checked::On;
 use crate::write_whole::write_whole;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -1,15 +1,17 @@
 //! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
 
 use super::app::App;
-use super::diagnosing::{self, Answer, StartFrom};
 use super::panel::Picture;
 use super::panels::{log, parameters, results, scene, segments};
 use super::prepare::Prepared;
 use super::screenshot::{self, contents};
 use super::session::Session;
-use super::{fitting, theme};
+use super::theme;
+use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::{Answer, StartFrom};
 use crate::ui::fit_choice::FitChoice;
 use crate::ui::plots::choices::LogView;
+use crate::ui::refits;
 use crate::ui::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
@@ -111,7 +113,7 @@ impl Loaded {
     pub fn over_and_over(once: Recording, samples: usize) -> Result<Self, String> {
         let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
         let long = repeated(&once, samples, period_s);
-        let mut analysis = fitting::analyse(&[Arc::new(Prepared::new(once))], &FitChoice::default())?;
+        let mut analysis = refits::analyse(&[Arc::new(Prepared::new(once))], &FitChoice::default())?;
         let last_s = long.time_s.as_ref().and_then(|t| t.last().copied()).unwrap_or_default();
         for segmentation in analysis.segmentations.iter_mut().flatten() {
             let states = std::mem::take(&mut segmentation.states);
@@ -123,7 +125,7 @@ impl Loaded {
             segmentation.states = (0..turns).flat_map(later).filter(|i| i.t0 < last_s).collect();
         }
         let recordings = vec![Arc::new(Prepared::new(long))];
-        let replays = fitting::replay_all(&analysis.world, &recordings);
+        let replays = refits::replay_all(&analysis.world, &recordings);
         Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays, answer: None, worlds: None })
     }
 
@@ -139,8 +141,8 @@ impl Loaded {
     pub fn diagnosed(once: Recording, samples: usize) -> Result<Self, String> {
         let mut loaded = Self::over_and_over(once, samples)?;
         let (choice, from) = (FitChoice::default(), StartFrom::default());
-        let answer = diagnosing::ask(&loaded.recordings, &choice, from, Progress::default())?;
-        let worlds = diagnosing::extend(&loaded.recordings, &choice, from, &answer)?;
+        let answer = diagnosis_state::ask(&loaded.recordings, &choice, from, Progress::default())?;
+        let worlds = diagnosis_state::extend(&loaded.recordings, &choice, from, &answer)?;
         loaded.answer = Some(Arc::new(answer));
         loaded.worlds = Some(Arc::new(worlds));
         Ok(loaded)

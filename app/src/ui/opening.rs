@@ -1,76 +1,18 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{Answer, JobKind, Ticket, change, no_change};
+use super::jobs::{Answer, Ticket, change, no_change};
 use super::prepare::Prepared;
 use super::project::Source;
 use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
+use crate::ui::mapping::actions::look;
 use crate::ui::mapping::state;
 use crate::ui::workspace::Workspace;
 use estimator::log::{LogError, Watch};
-use haptics::recording::Meta;
-use haptics::world::World;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Reading a log, a project or a world.
-pub const LOAD: JobKind = JobKind::new("load");
-
-/// Bytes that tell JSON from anything else.
-const START_BYTES: u64 = 4096;
-/// Endings that the log of a sidecar may have.
-const LOG_ENDINGS: [&str; 6] = ["csv", "mcap", "parquet", "tsv", "txt", "dat"];
-
-/// What a file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileKind {
-    /// A table of samples in any format, or what the reader of logs will refuse in one sentence.
-    Log,
-    /// A world.
-    World,
-    /// The facts about a log.
-    Sidecar,
-    /// Recordings, and how they are fitted.
-    Project,
-    /// A video of the hand.
-    Video,
-}
-
-/// Tells what a file is.
-pub fn kind_of(path: &Path) -> FileKind {
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|f| f.take(START_BYTES).read_to_end(&mut start));
-    if crate::video::reading::looks_like_video(&start) {
-        return FileKind::Video;
-    }
-    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
-    if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
-        return FileKind::Log;
-    }
-    if super::project::is_project(path) {
-        return FileKind::Project;
-    }
-    let named = path.file_name().is_some_and(|n| n.to_string_lossy().to_lowercase().ends_with(".meta.json"));
-    if named || is_sidecar(path) { FileKind::Sidecar } else { FileKind::World }
-}
-
-/// True for JSON that says something about a log and nothing else.
-fn is_sidecar(path: &Path) -> bool {
-    let Ok(text) = haptics::text_file::read(path) else { return false };
-    let meta: Option<Meta> = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok();
-    meta.is_some_and(|meta| {
-        meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err()
-    })
-}
-
-/// Why a mapping should be offered for recordings that could be read: nothing in them has a name that the program knows.
-pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
-    let warnings = &recordings.first()?.recording.warnings;
-    let mute = warnings.iter().any(|w| w.kind == "no-known-column");
-    mute.then(|| "No column has a name that the program knows: say what they mean.".to_owned())
-}
 
 /// Reads a log and prepares it; work for a job.
 pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answer<Session> {
@@ -204,7 +146,7 @@ impl Session {
 
     /// Opens the mapping dialog for a log.
     pub fn map_columns_of(&mut self, ctx: &egui::Context, path: &Path, why: Option<String>) {
-        state::look(ctx, &mut self.jobs, path, self.meta.clone(), why);
+        look(ctx, &mut self.jobs, path, self.meta.clone(), why);
     }
 }
 

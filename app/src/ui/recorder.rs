@@ -4,13 +4,13 @@
 use super::files::saved;
 use super::icons::Icon;
 use super::jobs::{JobKind, change};
-use super::opening::LOAD;
 use super::session::{Session, Tone};
 use super::widgets::{primary_button, recording_light, remark};
 use super::{messages, opening, theme};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::file_kind::LOAD;
 use egui::Ui;
 use std::path::Path;
 

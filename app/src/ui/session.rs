@@ -1,29 +1,29 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use super::comfort::Comfort;
-use super::diagnosing::Diagnosing;
-use super::experimenting::Experiments;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::experiments::Experiments;
 use crate::ui::fit_choice::FitChoice;
 use crate::ui::scene::layers::SceneLayers;
 
-use super::fitting::Refits;
 use super::jobs::{JobKind, Jobs};
-use super::opening::LOAD;
 use super::prepare::Prepared;
 use super::project::Source;
 use super::recent::Recent;
 use super::replayed::Replayed;
 use super::rules::Rules;
-use crate::ui::lessons::actions::Lessons;
+use crate::ui::file_kind::LOAD;
+use crate::ui::lessons::state::Lessons;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::PlotChoices;
+use crate::ui::refits::Refits;
 
 use super::undo::Undo;
-use super::video::Videos;
 use super::what_if::WhatIf;
 use super::workspace::Workspace;
 use crate::tasks::Chosen;
 use crate::ui::trainer::live::Trainer;
+use crate::ui::videos::Videos;
 use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
@@ -115,7 +115,7 @@ pub struct Session {
     /// Where the trainer's picture was drawn last.
     pub trainer_place: Option<crate::ui::scene::view::Place>,
     /// What the assistant shows over the trainer's picture.
-    pub assistant: crate::ui::assistant::readings::Assistant,
+    pub assistant: crate::ui::assistant::state::Assistant,
     /// Lessons.
     pub lessons: Lessons,
     /// What is still missing for the parameters of the fit.
@@ -201,15 +201,6 @@ impl Session {
         }
     }
 
-    /// Reads the same log again.
-    pub fn reload(&mut self, ctx: &egui::Context) {
-        match self.path.clone() {
-            Some(_) if self.sources.len() > 1 => self.restore(ctx, super::project::Project::of(self)),
-            Some(path) => self.open(ctx, &path),
-            None => self.fail("There is no file to reload: open a log first."),
-        }
-    }
-
     /// Shows prepared recordings from the start.
     pub fn show(&mut self, recordings: Vec<Arc<Prepared>>) {
         self.recordings = recordings;
@@ -255,32 +246,5 @@ impl Session {
         if let Some(change) = self.jobs.give_up(kind) {
             change(self, ctx);
         }
-    }
-
-    /// Takes in what the jobs bring; call once a frame.
-    pub fn poll(&mut self, ctx: &egui::Context) {
-        for answer in self.jobs.poll() {
-            match answer {
-                Ok(change) => change(self, ctx),
-                Err(problem) => self.job_failed(problem),
-            }
-        }
-        super::recorder::follow(ctx, self);
-        self.follow_experiment(ctx);
-        self.follow_history();
-        self.follow_lesson(ctx);
-        let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-        self.note_changes(now_s, held);
-        self.follow_choice(ctx);
-        self.follow_what_if(ctx);
-    }
-
-    /// A job has failed.
-    fn job_failed(&mut self, problem: String) {
-        self.experiments.asks_again = false;
-        if !self.recordings.is_empty() && self.analysis.is_none() {
-            self.fit_problem = Some(problem.clone());
-        }
-        self.fail(problem);
     }
 }

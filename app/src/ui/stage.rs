@@ -6,15 +6,17 @@ use super::panel_id::PanelId;
 use super::picture_input::PictureInput;
 use super::plots::choices::XyAxis;
 use super::prepare::Prepared;
-use super::rules::Rules;
 use super::session::Session;
 use super::workspace::Workspace;
-use super::{diagnosing, experimenting, fitting};
 use crate::history::keeper::History;
+use crate::ui::diagnosis_state;
+use crate::ui::editing_rules;
+use crate::ui::experiments;
 use crate::ui::mapping::state;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::LogView;
 use crate::ui::plots::curves::can_compare;
+use crate::ui::refits;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use anyhow::{Context as _, anyhow};
@@ -55,10 +57,10 @@ fn fitted_then(
     }
     session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
     session.choice = FitChoice { task: input.task, ..FitChoice::default() };
-    match fitting::analyse(&session.recordings, &session.choice) {
+    match refits::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
-            session.replays = fitting::replay_all(&analysis.world, &session.recordings);
-            session.enough = fitting::judge(&analysis, &session.recordings);
+            session.replays = refits::replay_all(&analysis.world, &session.recordings);
+            session.enough = refits::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
             session.refits.answered(&session.choice.clone());
         }
@@ -145,7 +147,7 @@ pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
 /// The open rules of the task.
 pub fn rules(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.rules = Rules::open(session);
+        session.rules = editing_rules::open(session);
         Ok(())
     })
 }
@@ -318,11 +320,11 @@ fn try_another_value(session: &mut Session) {
 fn diagnose(session: &mut Session) {
     session.workspace = Workspace::Diagnose;
     let from = session.diagnosing.from;
-    match diagnosing::ask(&session.recordings, &session.choice, from, Progress::default()) {
+    match diagnosis_state::ask(&session.recordings, &session.choice, from, Progress::default()) {
         Ok(answer) => {
-            match diagnosing::extend(&session.recordings, &session.choice, from, &answer) {
+            match diagnosis_state::extend(&session.recordings, &session.choice, from, &answer) {
                 Ok(worlds) => {
-                    session.diagnosing.replays = fitting::replay_forces(&worlds.after, &session.recordings);
+                    session.diagnosing.replays = refits::replay_forces(&worlds.after, &session.recordings);
                     session.diagnosing.worlds = Some(Arc::new(worlds));
                 }
                 Err(problem) => session.diagnosing.worlds_problem = Some(problem),
@@ -337,8 +339,7 @@ fn diagnose(session: &mut Session) {
 fn rehearse(session: &mut Session) -> anyhow::Result<()> {
     diagnose(session);
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
-    let made =
-        experimenting::rehearse_now(&session.recordings, &session.choice, &answer, experimenting::ROUNDS, &|_| true);
+    let made = experiments::rehearse_now(&session.recordings, &session.choice, &answer, experiments::ROUNDS, &|_| true);
     session.experiments.shows_plan = true;
     session.diagnosing.rehearsal = Some(Arc::new(made.map_err(|problem| anyhow!(problem.unwrap_or_default()))?));
     Ok(())
@@ -350,7 +351,7 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
-    let guided = experimenting::guided_as_if(&session.recordings, &session.choice, &answer, &first);
+    let guided = experiments::guided_as_if(&session.recordings, &session.choice, &answer, &first);
     session.guided(guided);
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     session.trainer.recordings_folder = Some(folder.path().to_path_buf());

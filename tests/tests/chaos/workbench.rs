@@ -4,8 +4,9 @@
 use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
 use app::ui::dock::arrangement::Dock;
-use app::ui::fitting::FIT;
 use app::ui::project::Project;
+use app::ui::project_files::project_of;
+use app::ui::refits::FIT;
 use app::ui::session::{Session, Tone};
 use rand::RngExt as _;
 use std::path::Path;
@@ -103,7 +104,7 @@ pub fn jobs(chaos: &mut Chaos) {
     autosave.end(&session, &dock, true);
     drop(autosave);
     let (_, Kept { project, .. }) = Autosave::begin(&kept_in).expect("the next start");
-    assert_eq!(project, Project::of(&session), "what was open is found");
+    assert_eq!(project, project_of(&session), "what was open is found");
 }
 
 fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context, log: &Path) {

@@ -3,9 +3,9 @@
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::dock::naming::Naming;
+use crate::ui::editing_rules;
 use crate::ui::files;
 use crate::ui::fit_choice::Stated;
-use crate::ui::rules::Rules;
 use crate::ui::session::{Session, Tone};
 use crate::ui::workspace::Workspace;
 use egui::{Context, ViewportCommand};
@@ -77,7 +77,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Undo => session.undo(),
         Action::Redo => session.redo(),
         Action::Fit => session.refit(ctx),
-        Action::Rules => session.rules = Rules::open(session),
+        Action::Rules => session.rules = editing_rules::open(session),
         Action::ForgetStates => session.forget_states(ctx),
         Action::ForgetStated => session.choice.stated = Stated::default(),
         Action::FitShown => session.choice.only_s = Some(session.view_s),

@@ -1,7 +1,8 @@
 //! The assistant's marks over the picture: a plate beside what is held, lines of warnings, and marks where they are about.
 
 use super::words::{self, Urgency};
-use crate::ui::assistant::readings::{Assistant, Circle, Said, said};
+use crate::ui::assistant::readings::{Circle, Said, said};
+use crate::ui::assistant::state::Assistant;
 use crate::ui::scene::view::SceneResponse;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, role, space};

@@ -3,4 +3,5 @@
 
 pub mod draw;
 pub mod readings;
+pub mod state;
 pub mod words;

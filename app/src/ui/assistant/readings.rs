@@ -1,52 +1,12 @@
 //! Readings of the assistant, from the online estimates and the live world.
 
-use crate::ui::lessons::actions::Phase;
+use crate::ui::lessons::state::Phase;
 use crate::ui::session::Session;
 use crate::ui::trainer::live::Trainer;
 use estimator::assistant::{Held, Known, Load, Look, Warnings, collision, warnings};
 use estimator::online::{Pull, Report};
 use haptics::Vec2;
 use haptics::world::{Block, Shape, State, World};
-use serde::{Deserialize, Serialize};
-
-/// Parts of the assistant that are switched on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
-// One switch for each part is what the user sees.
-#[allow(clippy::struct_excessive_bools)]
-pub struct Assistant {
-    /// All of it.
-    pub on: bool,
-    /// Weight, width and stiffness of what is held.
-    pub held: bool,
-    /// How near it is to slipping.
-    pub slip: bool,
-    /// What may be in it.
-    pub contents: bool,
-    /// Warning of too much force.
-    pub force: bool,
-    /// Warning of a blow that comes.
-    pub collision: bool,
-    /// Warning of the edge of the workspace.
-    pub edge: bool,
-    /// Draws what holds an object.
-    pub constraint: bool,
-}
-
-impl Default for Assistant {
-    fn default() -> Self {
-        Self {
-            on: true,
-            held: true,
-            slip: true,
-            contents: true,
-            force: true,
-            collision: true,
-            edge: true,
-            constraint: true,
-        }
-    }
-}
 
 /// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius, m.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! What the assistant says, in words: every number with its error.
 
 use crate::text::format::{number, object, with_error};
-use crate::ui::assistant::readings::{Assistant, Circle};
+use crate::ui::assistant::readings::Circle;
+use crate::ui::assistant::state::Assistant;
 use estimator::assistant::{Guess, Held, Known, Slip, Warning};
 use estimator::online::Pull;
 

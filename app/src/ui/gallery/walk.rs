@@ -3,7 +3,7 @@
 
 use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::diagnosing::EXTEND;
+use crate::ui::diagnosis_state::EXTEND;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::{Session, Tone};

@@ -1,7 +1,7 @@
 //! Attempts that are over go into the history of who practises.
 
 use crate::history::attempt::{Attempt, Conditions};
-use crate::ui::lessons::actions::Debrief;
+use crate::ui::lessons::state::Debrief;
 use crate::ui::session::Session;
 use jiff::{SignedDuration, Timestamp};
 

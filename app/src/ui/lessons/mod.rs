@@ -4,4 +4,5 @@ pub mod actions;
 pub mod ghost;
 pub mod kept;
 pub mod pointer;
+pub mod state;
 pub mod trace;

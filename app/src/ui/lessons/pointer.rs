@@ -2,7 +2,7 @@
 
 use super::trace::Point;
 use crate::text::sentence::sentence;
-use crate::ui::lessons::actions::Phase;
+use crate::ui::lessons::state::Phase;
 use crate::ui::session::Session;
 use crate::ui::trainer::pinch::Pinch;
 use estimator::training::lesson::Lesson;

@@ -3,7 +3,7 @@
 use super::preview::Seen;
 use crate::text::format;
 use crate::ui::icons::Icon;
-use crate::ui::mapping::state::Mapping;
+use crate::ui::mapping::state::{Mapping, View};
 use crate::ui::plots::axes::{marks, time_axis, value_axis};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};
@@ -14,18 +14,6 @@ use egui::{RichText, ScrollArea, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;
 use render::ColorRole;
-
-/// What is drawn.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum View {
-    /// The path where there is one, else the first curves.
-    #[default]
-    Automatic,
-    /// The path in the plane.
-    Path,
-    /// The curves of a group.
-    Curves(usize),
-}
 
 /// Draws the preview.
 pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {

@@ -2,8 +2,7 @@
 
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
-use crate::ui::checking::CHECK;
-use crate::ui::checking::{Checked, Holds, On, holds};
+use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::files;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;

@@ -1,7 +1,7 @@
 //! What came of an attempt: the score, every judged measure beside the experts', the way of the hand beside an expert's.
 
 use crate::ui::icons::Icon;
-use crate::ui::lessons::actions::Debrief;
+use crate::ui::lessons::state::Debrief;
 use crate::ui::lessons::trace::Trace;
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::widgets::{compact, remark};

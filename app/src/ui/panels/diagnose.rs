@@ -1,7 +1,7 @@
 //! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
 
 use crate::ui::atlas::Sheet;
-use crate::ui::diagnosing::{Answer, DIAGNOSE, StartFrom};
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, StartFrom};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::panel::{Framing, Panel, Picture, Registration};
@@ -167,7 +167,7 @@ fn begin(ui: &mut Ui, session: &mut Session) {
 /// The model of a mechanism to start from; true when it was changed.
 pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     let task = session.choice.task;
-    let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosing::is_mechanism(&p.recording, task));
+    let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
     if !mechanism {
         return false;
     }

@@ -4,7 +4,7 @@ use super::{causes, check, diagnose, next_experiment, why_not};
 use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::diagnosing::{Answer, DIAGNOSE, EXTEND};
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};

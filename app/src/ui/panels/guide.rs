@@ -4,8 +4,8 @@ use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::guided::{Guided, Phase};
 use crate::ui::icons::Icon;
-use crate::ui::lessons::actions;
 use crate::ui::lessons::ghost::Wait;
+use crate::ui::lessons::state;
 use crate::ui::lessons::trace::Point;
 use crate::ui::scene::view::SceneResponse;
 use crate::ui::session::Session;
@@ -134,7 +134,7 @@ pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
 /// The same where an expert's fingers go in a lesson that is practised.
 pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
     let lessons = &session.lessons;
-    let Some(open) = lessons.open.as_deref().filter(|open| open.phase == actions::Phase::Practising) else { return };
+    let Some(open) = lessons.open.as_deref().filter(|open| open.phase == state::Phase::Practising) else { return };
     let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
     let now_s = open.ghost.time_s;
     let Some(point) = trace.at(now_s).filter(|_| now_s < trace.duration_s()) else { return };

@@ -3,7 +3,7 @@
 use super::debrief;
 use crate::text::format;
 use crate::ui::icons::{self, Icon};
-use crate::ui::lessons::actions::{Open, Phase};
+use crate::ui::lessons::state::{Open, Phase};
 use crate::ui::markdown;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
@@ -204,7 +204,7 @@ fn asking(ui: &mut Ui, open: &Open) -> Option<Wish> {
     wish
 }
 
-fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::actions::Debrief, trainee: Option<&str>) -> Option<Wish> {
+fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::state::Debrief, trainee: Option<&str>) -> Option<Wish> {
     let mut wish = buttons(
         ui,
         &[(words::PRACTISE, words::PRACTISE_MORE, Wish::Practise), (words::WATCH, words::WATCH_MORE, Wish::Watch)],

@@ -2,16 +2,14 @@
 
 use crate::text::format;
 use crate::ui::fit_choice::Stated;
-use crate::ui::fitting::FIT;
-use crate::ui::fitting::SIMULATE;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
+use crate::ui::refits::{FIT, SIMULATE};
 use crate::ui::session::Session;
-use crate::ui::stage;
-use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, remark};
+use crate::ui::{stage, teach};
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};

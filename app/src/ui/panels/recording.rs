@@ -3,10 +3,10 @@
 use crate::text::format;
 use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
-use crate::ui::fitting::FIT;
 use crate::ui::icons::Icon;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
+use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{call, fact, icon_button, plain_card, primary_button};

@@ -3,9 +3,10 @@
 
 use super::rules_table::{states, subtasks};
 use crate::text::format;
+use crate::ui::editing_rules;
 use crate::ui::icons::Icon;
 use crate::ui::panel::Panel;
-use crate::ui::rules::{self, Rules};
+use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, space};
 use crate::ui::widgets::{card_with_head, primary_button, remark};
@@ -53,7 +54,7 @@ enum Asked {
 
 impl Panel for RulesPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        rules::follow(ui.ctx(), session);
+        editing_rules::follow(ui.ctx(), session);
         let Some(mut open) = session.rules.take() else { return };
         let (seen, before) = (open.draft.clone(), open.before.clone());
         let mut asked = Asked::Nothing;
@@ -83,7 +84,7 @@ impl Panel for RulesPanel {
         match asked {
             Asked::Close => session.rules = None,
             Asked::Reset => reset(session),
-            Asked::Nothing if save => rules::save(ui.ctx(), session),
+            Asked::Nothing if save => editing_rules::save(ui.ctx(), session),
             Asked::Nothing | Asked::Add => {}
         }
     }

@@ -3,8 +3,8 @@
 use crate::tasks::Chosen;
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::editing_rules;
 use crate::ui::icons::Icon;
-use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::widgets::call;
@@ -98,7 +98,7 @@ fn told(recording: &Recording, task: Option<Task>) -> String {
 fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) {
     (session.choice.task, session.choice.own) = (task, own);
     if session.rules.take().is_some() {
-        session.rules = Rules::open(session);
+        session.rules = editing_rules::open(session);
     }
 }
 
@@ -107,6 +107,6 @@ fn edit(ui: &mut Ui, session: &mut Session) {
     let open = session.rules.is_some();
     let hint = words::RULES_MORE;
     if ui.button((Icon::Rules, if open { words::CLOSE_RULES } else { words::RULES })).on_hover_text(hint).clicked() {
-        session.rules = if open { None } else { Rules::open(session) };
+        session.rules = if open { None } else { editing_rules::open(session) };
     }
 }

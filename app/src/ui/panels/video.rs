@@ -8,7 +8,7 @@ use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::video::{ALIGN_VIDEO, State};
+use crate::ui::videos::{ALIGN_VIDEO, State};
 use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};

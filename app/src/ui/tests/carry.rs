@@ -3,7 +3,7 @@
 use super::experiment::{asked_about, pair, quiet, settled};
 use super::until;
 use crate::ui::app::App;
-use crate::ui::experimenting::REHEARSE;
+use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{leaking, leaking_world};
 use crate::ui::guided::Phase;
 use crate::ui::trainer::choice::WorldChoice;

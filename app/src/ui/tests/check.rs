@@ -3,13 +3,11 @@
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
 use crate::ui::app::App;
-use crate::ui::checking::CHECK;
-use crate::ui::checking::{Checked, Holds, On, check_now, holds};
+use crate::ui::checked::{CHECK, Checked, Holds, On, check_now, holds};
 use crate::ui::prepare::Prepared;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
-use crate::ui::theme;
+use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect};
 use egui::Role;
 use egui_kittest::Harness;

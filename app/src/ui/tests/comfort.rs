@@ -2,7 +2,7 @@
 
 use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
-use crate::ui::lessons::actions::Phase;
+use crate::ui::lessons::state::Phase;
 use crate::ui::screenshot;
 use crate::ui::tests::picture;
 use crate::ui::trainer::choice::WorldChoice;

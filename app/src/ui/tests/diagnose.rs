@@ -2,13 +2,15 @@
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
-use crate::ui::diagnosing::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
+use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Operator;
 use crate::ui::workspace::Workspace;
-use crate::ui::{diagnosing, screenshot, theme};
+use crate::ui::diagnosis_state::StartFrom;
+use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -40,7 +42,7 @@ fn loaded(recording: Recording) -> Session {
 pub fn diagnosed(recording: Recording) -> Session {
     let mut session = loaded(recording);
     let from = session.diagnosing.from;
-    let answer = diagnosing::ask(&session.recordings, &session.choice, from, Progress::default());
+    let answer = diagnosis_state::ask(&session.recordings, &session.choice, from, Progress::default());
     match answer {
         Ok(answer) => session.diagnosing.answer = Some(Arc::new(answer)),
         Err(problem) => session.diagnosing.problem = Some(problem),
@@ -110,7 +112,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
 fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() {
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
     session.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
     session.trainer.operator = Operator::Scripted;
@@ -169,7 +171,8 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     second.name = "again".to_owned();
     let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
     session.show(recordings.to_vec());
-    let answer = diagnosing::ask(&session.recordings, &session.choice, session.diagnosing.from, Progress::default());
+    let answer =
+        diagnosis_state::ask(&session.recordings, &session.choice, session.diagnosing.from, Progress::default());
     let answer = answer.expect("an answer");
     assert_eq!(answer.residuals.len(), 2);
     assert!(answer.residuals.iter().all(|r| !r.is_empty()));
@@ -199,7 +202,7 @@ fn what_cannot_be_told_apart_is_shown_with_the_recording_that_would() {
 #[test]
 fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     let mut session = loaded(cart());
-    session.diagnosing.from = diagnosing::StartFrom::Mass;
+    session.diagnosing.from = StartFrom::Mass;
     let mut harness = window(session);
     assert!(harness.query_by_role_and_label(egui::Role::RadioButton, "Inertia").is_some());
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
@@ -209,7 +212,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
     assert!(ids.contains(&"viscous-friction") && ids.contains(&"coulomb-friction"), "{ids:?}");
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
     let why = session.comparison().expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
@@ -234,7 +237,7 @@ fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     // And the engine itself ends when nobody wants its answer.
     let session = loaded(RIPPLED.clone());
     let unwanted = Progress::new(|share| share < 0.3);
-    let ended = diagnosing::ask(&session.recordings, &session.choice, session.diagnosing.from, unwanted);
+    let ended = diagnosis_state::ask(&session.recordings, &session.choice, session.diagnosing.from, unwanted);
     assert!(ended.is_err_and(|problem| problem.contains("cancelled")));
 }
 

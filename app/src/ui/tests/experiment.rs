@@ -3,7 +3,7 @@
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
-use crate::ui::experimenting::REHEARSE;
+use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
 use crate::ui::session::Session;

@@ -2,7 +2,7 @@
 
 use super::{in_train, train_window, until};
 use crate::ui::app::App;
-use crate::ui::lessons::actions::{Debrief, Phase};
+use crate::ui::lessons::state::{Debrief, Phase};
 use crate::ui::session::Session;
 use crate::ui::trainer::live::Operator;
 use crate::ui::workspace::Workspace;
@@ -47,7 +47,7 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
         }
         let (again, _) =
-            crate::ui::lessons::actions::graded_from(&debrief.path, None).expect("graded from its file alone");
+            crate::ui::lessons::state::graded_from(&debrief.path, None).expect("graded from its file alone");
         assert_eq!(again, debrief.grade, "{}", lesson.id);
         assert!(debrief.trace.duration_s() > 2.0, "{}", lesson.id);
     }

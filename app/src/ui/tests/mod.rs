@@ -92,10 +92,10 @@ pub fn session(recording: Recording) -> Session {
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match crate::ui::fitting::analyse(&session.recordings, &session.choice) {
+    match crate::ui::refits::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
-            session.replays = crate::ui::fitting::replay_all(&analysis.world, &session.recordings);
-            session.enough = crate::ui::fitting::judge(&analysis, &session.recordings);
+            session.replays = crate::ui::refits::replay_all(&analysis.world, &session.recordings);
+            session.enough = crate::ui::refits::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
             session.refits.answered(&session.choice.clone());
         }

@@ -2,12 +2,12 @@
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
-use crate::ui::fitting::FIT;
 use crate::ui::panel::Panel;
 use crate::ui::panels::list::PANELS;
 use crate::ui::panels::parameters::ParametersPanel;
 use crate::ui::panels::recording::RecordingPanel;
 use crate::ui::panels::results::ResultsPanel;
+use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::{screenshot, theme};

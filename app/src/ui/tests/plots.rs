@@ -2,16 +2,17 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
-use crate::ui::fitting::{analyse, replay_all, replay_forces};
+use crate::ui::diagnosis_state;
 use crate::ui::overlays::ALIGN;
 use crate::ui::panel::Panel as _;
 use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
+use crate::ui::refits::{analyse, replay_all, replay_forces};
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::workspace::Workspace;
-use crate::ui::{diagnosing, screenshot, theme};
+use crate::ui::{screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -40,7 +41,7 @@ fn extended() -> Session {
     session.workspace = Workspace::Calibrate;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let from = session.diagnosing.from;
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, from, &answer).expect("extended");
+    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, from, &answer).expect("extended");
     session.diagnosing.replays = replay_forces(&worlds.after, &session.recordings);
     session.diagnosing.worlds = Some(Arc::new(worlds));
     session

@@ -1,17 +1,17 @@
 //! The editor of a task's rules: chips, faults, live states, saving.
 
 use super::{CRANK, STACK, harness, session, until};
-use crate::ui::fitting::SEGMENT;
+use crate::ui::editing_rules;
 use crate::ui::panel::Panel as _;
 use crate::ui::panels::rules::RulesPanel;
-use crate::ui::rules::Rules;
+use crate::ui::refits::SEGMENT;
 use crate::ui::session::Session;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
 
 fn open(mut session: Session) -> Harness<'static, Session> {
-    session.rules = Rules::open(&mut session);
+    session.rules = editing_rules::open(&mut session);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
@@ -81,6 +81,6 @@ fn a_built_in_name_is_not_taken_and_every_kind_of_task_is_drawn() {
 #[test]
 fn a_recording_of_unknown_task_has_no_rules_and_says_so() {
     let mut session = super::empty();
-    assert!(Rules::open(&mut session).is_none());
+    assert!(editing_rules::open(&mut session).is_none());
     assert!(session.banners[0].text.contains("choose one"), "{:?}", session.banners);
 }

@@ -2,9 +2,9 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
-use crate::ui::fitting::replay_all;
 use crate::ui::panel::Panel;
 use crate::ui::panels::scene::ScenePanel;
+use crate::ui::refits::replay_all;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::likeness::Likeness;
 use crate::ui::scene::overlay::{options_for, scene_world};

@@ -3,9 +3,9 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
+use crate::ui::editing_rules;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
-use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use crate::ui::workspace::Workspace;
 
@@ -32,7 +32,7 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut crank = session(CRANK.clone());
     crank.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.rules = Rules::open(&mut rules);
+    rules.rules = editing_rules::open(&mut rules);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());

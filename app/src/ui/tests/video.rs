@@ -5,7 +5,7 @@ use crate::ui::app::App;
 use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
-use crate::ui::video::State;
+use crate::ui::videos::State;
 use crate::ui::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
 use egui::Role;
@@ -64,7 +64,7 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     until(&mut harness, "the picture that belongs to the cursor", |app| app.session.videos.shown() == Some(142));
 
     // It is kept with the project, and goes with another recording.
-    let project = crate::ui::project::Project::of(&harness.state().session);
+    let project = crate::ui::project_files::project_of(&harness.state().session);
     assert_eq!(project.videos, harness.state().session.videos.sources);
     press(&mut harness, Role::Button, "Take the video away");
     assert!(harness.state().session.video_source().is_none());

@@ -3,7 +3,7 @@
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
-use crate::ui::diagnosing::DIAGNOSE;
+use crate::ui::diagnosis_state::DIAGNOSE;
 use crate::ui::panel_id::PanelId;
 use crate::ui::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
