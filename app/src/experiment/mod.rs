@@ -5,6 +5,7 @@
 
 pub mod along_path;
 pub mod captured;
+pub mod like;
 pub mod motion_plan;
 pub mod perform;
 pub mod rehearse;

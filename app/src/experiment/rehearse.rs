@@ -1,6 +1,7 @@
 //! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
 
 use super::tool::{insert, is_tool};
+use crate::experiment::like::Like;
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::perform::perform;
 use crate::experiment::timetable::Timetable;
@@ -54,15 +55,6 @@ impl Rehearsal {
     pub fn settled(&self) -> (usize, usize) {
         (self.outcomes.iter().map(Outcome::settled).sum(), self.outcomes.iter().map(|o| o.rounds.len()).sum())
     }
-}
-
-/// What simulated recordings have to be like.
-#[derive(Clone, Copy, Debug)]
-pub struct Like<'a> {
-    /// The first recording of the real object: a mechanism's sensors are as noisy as its.
-    pub recording: &'a Recording,
-    /// Noise of a finger's force sample, N.
-    pub noise_n: f64,
 }
 
 impl Like<'_> {

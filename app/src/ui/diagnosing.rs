@@ -2,10 +2,7 @@
 
 use super::jobs::change;
 use super::session::Session;
-use crate::ui::diagnosis_state::{
-    Answer, DIAGNOSE, EXTEND, SIMULATE_EXTENDED, ask, extend,
-    reachable,
-};
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::refits::replay_forces;
 use crate::ui::trainer::choice::{Compare, WorldChoice};
 use crate::ui::workspace::Workspace;

@@ -9,9 +9,7 @@ use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
-use crate::ui::experiments::{
-    GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
-};
+use crate::ui::experiments::{GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write};
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;
 use haptics::world::MechanismPath;

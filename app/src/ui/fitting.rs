@@ -3,10 +3,7 @@
 use super::jobs::change;
 use super::session::Session;
 use crate::text::sentence::sentence;
-use crate::ui::refits::{
-    FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge,
-    replay_all,
-};
+use crate::ui::refits::{FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge, replay_all};
 use estimator::pipeline::Analysis;
 use estimator::segment::{Segmentation, segment_by};
 use std::sync::Arc;

@@ -5,38 +5,8 @@ use super::icons;
 use super::theme::{self, palette, space};
 use crate::ui::actions::list::Action;
 use crate::ui::actions::search;
+use crate::ui::command_palette::{GROUP, HEIGHT, LINE, WIDTH, moved_by_keys};
 use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
-
-/// Width of the list, points.
-const WIDTH: f32 = 520.0;
-/// Its height at most.
-const HEIGHT: f32 = 380.0;
-/// Width of the column with the names of the menus.
-const GROUP: f32 = 54.0;
-/// Height of a line.
-const LINE: f32 = 28.0;
-
-/// The palette and what is typed into it.
-#[derive(Debug, Default)]
-pub struct CommandPalette {
-    shown: bool,
-    query: String,
-    chosen: usize,
-    /// Set when the chosen line has to come into sight.
-    follow: bool,
-}
-
-impl CommandPalette {
-    /// Opens it, empty.
-    pub fn open(&mut self) {
-        *self = Self { shown: true, ..Self::default() };
-    }
-
-    /// True while it is open.
-    pub fn is_open(&self) -> bool {
-        self.shown
-    }
-}
 
 /// Draws it over the window while it is open, and does what is chosen.
 pub fn show(ui: &Ui, app: &mut App) {
@@ -92,18 +62,6 @@ fn found_for(app: &App) -> Vec<Action> {
         found.sort_by_key(|action| action.why_not(app).is_some());
     }
     found
-}
-
-fn moved_by_keys(ui: &Ui, palette: &mut CommandPalette, count: usize) {
-    let (down, up) = ui.input_mut(|i| {
-        let none = egui::Modifiers::NONE;
-        (i.count_and_consume_key(none, Key::ArrowDown), i.count_and_consume_key(none, Key::ArrowUp))
-    });
-    if down + up > 0 {
-        palette.chosen = (palette.chosen + down).saturating_sub(up);
-        palette.follow = true;
-    }
-    palette.chosen = palette.chosen.min(count.saturating_sub(1));
 }
 
 /// One action; true when it was clicked.

@@ -1,7 +1,7 @@
 //! The rules of a task while they are edited: a draft that is tried at once where it can be used.
 
-use estimator::segment::definition::{Definition, StateRule, signals};
 use estimator::segment::SystemState;
+use estimator::segment::definition::{Definition, StateRule, signals};
 use haptics::recording::Task;
 
 /// An open editor.

@@ -51,8 +51,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::what_if::residual_rms;
     use crate::ui::tests::{CRANK, STACK, session};
+    use crate::ui::what_if::residual_rms;
 
     fn tried(session: &Session, name: &str, factor: f64) -> f64 {
         let analysis = session.analysis.as_ref().expect("fitted");

@@ -5,9 +5,7 @@ use super::panel_id::PanelId;
 use super::session::Session;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
-use crate::ui::videos::{
-    ALIGN_VIDEO, PICTURE, Shown, State, VIDEO, begins_at, decoded,
-};
+use crate::ui::videos::{ALIGN_VIDEO, PICTURE, Shown, State, VIDEO, begins_at, decoded};
 use crate::video::reading;
 use crate::video::reading::{Video, VideoError, VideoSource, Watch};
 use egui::{ColorImage, TextureHandle, TextureOptions};

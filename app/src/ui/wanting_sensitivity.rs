@@ -3,9 +3,7 @@
 use super::jobs::{change, no_change};
 use super::session::Session;
 use crate::ui::refits::FIT;
-use crate::ui::sensitivity::{
-    SENSITIVITY, sensitivity,
-};
+use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -42,8 +40,8 @@ impl Session {
 mod tests {
     use super::*;
     use crate::ui::sensitivity::Sensitivity;
-    use haptics::recording::Recording;
     use crate::ui::tests::{CRANK, STACK, session};
+    use haptics::recording::Recording;
 
     fn found(recording: Recording) -> Sensitivity {
         let session = session(recording);

@@ -2,7 +2,7 @@
 
 use crate::report::chart::cloud;
 use crate::report::collect::Content;
-use crate::report::page::whole::failed;
+use crate::report::page::parts::failed;
 use crate::text::diagnosis_words::{
     compared_unit, gain_unit, headline, listed, residual_unit, said_in_words, shown_unit, small, state_in_words,
     symbol, title,

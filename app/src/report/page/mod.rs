@@ -2,6 +2,7 @@
 
 pub mod diagnosis;
 pub mod log;
+pub mod parts;
 pub mod recording;
 pub mod replay;
 pub mod results;

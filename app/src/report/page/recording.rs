@@ -1,10 +1,8 @@
 //! What was recorded, what looks wrong with it, and what happened when.
 
-use crate::report::chart::bad;
-use crate::report::chart::band;
-use crate::report::chart::signals;
+use crate::report::chart::{bad, band, signals};
 use crate::report::collect::{Content, Drawn};
-use crate::report::page::whole::fact;
+use crate::report::page::parts::fact;
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::text::states::state_of_task;

@@ -1,10 +1,8 @@
 //! Real against virtual: the measured motion through the calibrated world.
 
-use crate::report::chart::bad;
-use crate::report::chart::frame;
-use crate::report::chart::signals;
+use crate::report::chart::{bad, frame, signals};
 use crate::report::collect::{Content, Drawn};
-use crate::report::page::whole::failed;
+use crate::report::page::parts::failed;
 use crate::text::diagnosis_words::listed;
 use crate::text::format;
 use estimator::diagnose::{Diagnosis, Verdict};

@@ -2,7 +2,7 @@
 
 use crate::report::chart::path;
 use crate::report::collect::{Content, Drawn, MOST_DRAWN, is_lost};
-use crate::report::page::whole::{fact, failed};
+use crate::report::page::parts::{fact, failed};
 use crate::text::constraint_words::constraint_words;
 use crate::text::format;
 use crate::text::sentence::sentence;

@@ -144,16 +144,6 @@ fn file(file: &Hashed) -> Markup {
     }
 }
 
-/// A stage that did not succeed.
-pub(crate) fn failed(what: &str, why: &str) -> Markup {
-    html! { p class="failed" { (what) ": " (why.trim_end_matches('.')) "." } }
-}
-
-/// A fact with its name.
-pub(crate) fn fact(name: &str, value: &str) -> Markup {
-    html! { div { dt { (name) } dd { (value) } } }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,12 +2,11 @@
 
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
-use crate::ui::dock::naming::Naming;
-use crate::ui::editing_rules;
-use crate::ui::files;
+use crate::ui::dock::name_field::Naming;
 use crate::ui::fit_choice::Stated;
 use crate::ui::session::{Session, Tone};
 use crate::ui::workspace::Workspace;
+use crate::ui::{editing_rules, files};
 use egui::{Context, ViewportCommand};
 
 /// Steps of the size of everything.

@@ -2,8 +2,8 @@
 
 use crate::ui::dock::behavior::Tiling;
 use crate::ui::dock::layout;
+use crate::ui::dock::name_field::Naming;
 use crate::ui::dock::named::Named;
-use crate::ui::dock::naming::Naming;
 use crate::ui::dock::panes::Panels;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;

@@ -5,6 +5,7 @@
 pub mod arrangement;
 pub mod behavior;
 pub mod layout;
+pub mod name_field;
 pub mod named;
 pub mod naming;
 pub mod panes;

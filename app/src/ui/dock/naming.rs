@@ -1,36 +1,10 @@
 //! The dialog in which an arrangement is given its name.
 
 use crate::ui::app::App;
+use crate::ui::dock::name_field::WIDTH;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::primary_button;
-use crate::ui::workspace::Workspace;
 use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
-
-/// Width of the dialog, points.
-const WIDTH: f32 = 360.0;
-
-/// A name that is being written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Naming {
-    workspace: Workspace,
-    /// The arrangement that is renamed; a new one is saved when absent.
-    renamed: Option<String>,
-    name: String,
-    /// The field has been given the keys.
-    begun: bool,
-}
-
-impl Naming {
-    /// Of the arrangement as it is, to be kept; `name` is proposed.
-    pub fn to_save(workspace: Workspace, name: Option<&str>) -> Self {
-        Self { workspace, renamed: None, name: name.unwrap_or_default().to_owned(), begun: false }
-    }
-
-    /// Of one that has a name.
-    pub fn to_rename(workspace: Workspace, old: &str) -> Self {
-        Self { workspace, renamed: Some(old.to_owned()), name: old.to_owned(), begun: false }
-    }
-}
 
 /// Draws the dialog while a name is asked for.
 pub fn show(ui: &Ui, app: &mut App) {

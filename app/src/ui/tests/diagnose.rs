@@ -3,13 +3,13 @@
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
 use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::StartFrom;
 use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Operator;
 use crate::ui::workspace::Workspace;
-use crate::ui::diagnosis_state::StartFrom;
 use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;

@@ -206,7 +206,7 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     let mut app = App::new(empty());
     app.keep(&state, true);
     assert!(app.tour.is_on(), "the first start shows around");
-    app.tour = crate::ui::tour::Tour::default();
+    app.tour = crate::ui::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
     first.state_mut().session.open_any(&ctx, &log);

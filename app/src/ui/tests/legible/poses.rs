@@ -3,7 +3,7 @@
 use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::autosave::State;
-use crate::ui::dock::naming::Naming;
+use crate::ui::dock::name_field::Naming;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
