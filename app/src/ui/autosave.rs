@@ -149,13 +149,13 @@ fn read(path: &Path) -> Option<State> {
 fn state(session: &Session, dock: &Dock, toured: bool) -> State {
     State {
         project: project_of(session),
-        project_path: session.project_path.clone(),
+        project_path: session.document.project_path.clone(),
         dock: dock.clone(),
-        comfort: session.comfort,
-        recent: session.recent.clone(),
+        comfort: session.training.comfort,
+        recent: session.document.recent.clone(),
         ended: false,
         toured,
-        assistant: session.assistant,
+        assistant: session.training.assistant,
     }
 }
 
@@ -183,12 +183,12 @@ mod tests {
         let (mut autosave, before) = Autosave::begin(folder.path()).expect("begins");
         assert!(before.ended && before.project.recordings.is_empty(), "the first start");
         let mut session = Session::new();
-        session.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
+        session.document.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
         session.workspace = Workspace::Calibrate;
         let dock = Dock::default();
         autosave.follow(&egui::Context::default(), &session, &dock, true);
         let found = wait_for(&folder.path().join("session.json"));
-        assert!(!found.ended && found.toured && found.project.recordings == session.sources);
+        assert!(!found.ended && found.toured && found.project.recordings == session.document.sources);
         assert!(Autosave::begin(folder.path()).is_none(), "a second window keeps out");
         // As after a kill: the lock is gone, the file says that the program still runs.
         drop(autosave);

@@ -9,7 +9,7 @@ impl Session {
     pub fn check(&mut self, ctx: &egui::Context, on: On) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         self.diagnosing.check_field.clear();
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
         self.jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
             match check_now(&recordings, &choice, &answer, &on, &|share| ticket.goes_on(share)) {
                 Some(checked) => change(|session: &mut Self, _| session.checked(checked)),

@@ -12,12 +12,13 @@ use std::sync::Arc;
 impl Session {
     /// Diagnoses in the background.
     pub fn diagnose(&mut self, ctx: &egui::Context) {
-        if self.recordings.is_empty() {
+        if self.document.recordings.is_empty() {
             return;
         }
         self.diagnosing.forget();
         self.jobs.cancel_after(DIAGNOSE);
-        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
+        let (recordings, choice, from) =
+            (self.document.recordings.clone(), self.calibration.choice.clone(), self.diagnosing.from);
         let job = self.jobs.start(ctx, DIAGNOSE, "Diagnosing", move |ticket| {
             let ticket = ticket.clone();
             let answer = ask(&recordings, &choice, from, Progress::new(move |share| ticket.goes_on(share)));
@@ -31,7 +32,8 @@ impl Session {
     /// Makes the worlds without and with what was found, in the background.
     pub fn extend_model(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
-        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
+        let (recordings, choice, from) =
+            (self.document.recordings.clone(), self.calibration.choice.clone(), self.diagnosing.from);
         self.jobs.start(ctx, EXTEND, "Extending the model", move |_| {
             let worlds = extend(&recordings, &choice, from, &answer);
             change(|session: &mut Self, ctx| session.extended(ctx, worlds))
@@ -52,7 +54,7 @@ impl Session {
             Ok(worlds) => {
                 let worlds = Arc::new(worlds);
                 self.diagnosing.worlds = Some(Arc::clone(&worlds));
-                let recordings = self.recordings.clone();
+                let recordings = self.document.recordings.clone();
                 self.jobs.start(ctx, SIMULATE_EXTENDED, "Replaying in the extended world", move |_| {
                     let replays = replay_forces(&worlds.after, &recordings);
                     change(|session: &mut Self, _| session.diagnosing.replays = replays)
@@ -65,12 +67,12 @@ impl Session {
     /// Takes both worlds into the trainer; what is in the way is said.
     pub fn feel(&mut self) {
         let chosen = self.comparison().and_then(|compare| {
-            self.trainer.compare = Some(compare);
-            self.trainer.choose(WorldChoice::After)
+            self.training.trainer.compare = Some(compare);
+            self.training.trainer.choose(WorldChoice::After)
         });
         match chosen {
             Ok(()) => self.workspace = Workspace::Train,
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 

@@ -10,15 +10,16 @@ use std::sync::Arc;
 
 /// Opens the rules of the task that is chosen; says why not where it has none.
 pub fn open(session: &mut Session) -> Option<Box<Rules>> {
-    let found = session.prepared().cloned().and_then(|prepared| session.choice.definition(&prepared));
+    let found =
+        session.document.prepared().cloned().and_then(|prepared| session.calibration.choice.definition(&prepared));
     match found {
         Some(Ok(task)) => Some(Box::new(Rules::of(task))),
         Some(Err(problem)) => {
-            session.fail(problem);
+            session.messages.fail(problem);
             None
         }
         None => {
-            session.fail("The task of this recording is not known; choose one first.");
+            session.messages.fail("The task of this recording is not known; choose one first.");
             None
         }
     }
@@ -27,7 +28,7 @@ pub fn open(session: &mut Session) -> Option<Box<Rules>> {
 /// Looks at what was changed, and tells the states anew with it. Call once a frame.
 pub fn follow(ctx: &egui::Context, session: &mut Session) {
     let running = session.jobs.is_running(SEGMENT);
-    let Some(rules) = session.rules.as_mut().filter(|rules| rules.untried) else { return };
+    let Some(rules) = session.calibration.rules.as_mut().filter(|rules| rules.untried) else { return };
     rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
     if rules.fault.is_some() {
         rules.untried = false;
@@ -40,33 +41,33 @@ pub fn follow(ctx: &egui::Context, session: &mut Session) {
     rules.untried = false;
     let same = rules.draft == rules.before;
     let draft = rules.draft.clone();
-    if !same || session.choice.own.is_some() {
-        session.choice.task = Some(draft.like);
-        session.choice.own = Some(Arc::new(draft));
+    if !same || session.calibration.choice.own.is_some() {
+        session.calibration.choice.task = Some(draft.like);
+        session.calibration.choice.own = Some(Arc::new(draft));
     }
     session.resegment(ctx);
 }
 
 /// Writes the draft under its new name, in the background.
 pub fn save(ctx: &egui::Context, session: &mut Session) {
-    let Some(rules) = session.rules.as_mut() else { return };
+    let Some(rules) = session.calibration.rules.as_mut() else { return };
     let mut task = rules.draft.clone();
     rules.name.trim().clone_into(&mut task.name);
     if task.title == rules.before.title && task.name != rules.before.name {
         task.title = task.name.replace(['-', '_'], " ");
     }
     let Some(folder) = library::folder() else {
-        session.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
+        session.messages.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
         return;
     };
     match library::save(folder, &task) {
         Ok(path) => {
             (rules.before, rules.draft) = (task.clone(), task.clone());
-            session.choice.task = Some(task.like);
-            session.choice.own = Some(Arc::new(task));
+            session.calibration.choice.task = Some(task.like);
+            session.calibration.choice.own = Some(Arc::new(task));
             session.resegment(ctx);
             session.jobs.start(ctx, SAVE, "", move |_| saved(path));
         }
-        Err(error) => session.fail(sentence(&error.to_string())),
+        Err(error) => session.messages.fail(sentence(&error.to_string())),
     }
 }

@@ -3,13 +3,14 @@
 use super::files::{SAVE, saved};
 use super::guided::Guided;
 use super::jobs::{change, no_change};
-use super::session::{Session, Tone};
+use super::session::Session;
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
 use crate::ui::experiments::{GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write};
+use crate::ui::message_list::Tone;
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;
 use haptics::world::MechanismPath;
@@ -21,7 +22,7 @@ impl Session {
     pub fn rehearse(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         (self.diagnosing.rehearsal, self.diagnosing.rehearsal_problem) = (None, None);
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
         self.jobs.start(ctx, REHEARSE, "Rehearsing the experiment", move |ticket| {
             let rehearsal = match rehearse_now(&recordings, &choice, &answer, ROUNDS, &|share| ticket.goes_on(share)) {
                 Err(None) => return no_change(),
@@ -43,8 +44,8 @@ impl Session {
     /// Takes the experiment to Train, for a person to do; what has to be computed for it, in the background.
     pub fn guide(&mut self, ctx: &egui::Context, stage: Stage) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        let standing = self.trainer.standing_world();
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
+        let standing = self.training.trainer.standing_world();
         self.jobs.start(ctx, GUIDE, "Preparing the experiment", move |_| {
             let guided = match stage {
                 Stage::AsIf(id) => guided_as_if(&recordings, &choice, &answer, &id),
@@ -56,19 +57,19 @@ impl Session {
 
     /// The experiment is ready for a person.
     pub(super) fn guided(&mut self, guided: Result<Guided, String>) {
-        match guided.and_then(|guided| guided.take_over(&mut self.trainer).map(|()| guided)) {
+        match guided.and_then(|guided| guided.take_over(&mut self.training.trainer).map(|()| guided)) {
             Ok(guided) => {
                 self.experiments.guided = Some(Box::new(guided));
                 self.workspace = Workspace::Train;
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// Adds a recording of the experiment to those that are diagnosed, and asks again.
     pub fn add_experiment(&mut self, ctx: &egui::Context, path: &Path) {
-        if self.sources.is_empty() {
-            self.fail("The recordings that were diagnosed are no files; save them first, then add this one.");
+        if self.document.sources.is_empty() {
+            self.messages.fail("The recordings that were diagnosed are no files; save them first, then add this one.");
             return;
         }
         self.experiments.asks_again = true;
@@ -105,18 +106,18 @@ impl Session {
 
     /// Where the tool went that was recorded, and whether in a plane; nothing where the coordinate itself was recorded.
     pub fn path_of_tool(&self) -> Option<(MechanismPath, bool)> {
-        let recording = &self.recordings.first()?.recording;
+        let recording = &self.document.recordings.first()?.recording;
         if recording.channel("q_m").or(recording.channel("q_rad")).is_some() {
             return None;
         }
-        let path = self.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
+        let path = self.calibration.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
         Some((path, recording.channel("z_m").is_none()))
     }
 
     fn folder_of_recordings(&mut self) -> Option<PathBuf> {
-        let folder = self.trainer.recordings_folder.clone().or_else(folder::of_user);
+        let folder = self.training.trainer.recordings_folder.clone().or_else(folder::of_user);
         if folder.is_none() {
-            self.fail(
+            self.messages.fail(
                 "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
             );
         }
@@ -125,7 +126,7 @@ impl Session {
 
     /// Which of the open recordings were simulated.
     pub fn simulated(&self) -> Vec<&str> {
-        let simulated = self.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
+        let simulated = self.document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
         simulated.map(|p| p.recording.name.as_str()).collect()
     }
 
@@ -138,7 +139,7 @@ impl Session {
 
     /// A recording of the experiment was written.
     pub(super) fn performed(&mut self, ctx: &egui::Context, path: &Path) {
-        self.say(Tone::Done, format!("Saved {}.", name_of(path)));
+        self.messages.say(Tone::Done, format!("Saved {}.", name_of(path)));
         self.add_experiment(ctx, path);
     }
 }

@@ -169,14 +169,14 @@ fn dialog_of(title: &str, filters: &[(&str, &[&str])]) -> rfd::FileDialog {
 
 /// The answer of a job that has written a file.
 pub fn saved(path: PathBuf) -> Answer<Session> {
-    change(move |session: &mut Session, _| session.say_saved(&path))
+    change(move |session: &mut Session, _| session.messages.say_saved(&path))
 }
 
 /// Writes the shown recording and its sidecar.
 pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     let path = PathBuf::from(field.trim());
-    let (choice, index) = (session.choice.clone(), session.current);
+    let (choice, index) = (session.calibration.choice.clone(), session.document.current);
     session.jobs.start(ctx, SAVE, "", move |_| {
         // A task of the user's goes along, and what was stated and set by hand.
         let recording = &choice.given_to(index, &prepared.recording);
@@ -189,7 +189,7 @@ pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
 
 /// Writes a report of the open files, as they are fitted.
 pub fn save_report(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let (sources, choice) = (session.sources.clone(), session.choice.clone());
+    let (sources, choice) = (session.document.sources.clone(), session.calibration.choice.clone());
     session.jobs.start(ctx, SAVE, "Writing the report", move |_| {
         let given = |index, recording| choice.given_to(index, &recording);
         of_files::of_files(&sources_of(&sources), &path, given)?;
@@ -212,7 +212,7 @@ pub fn save_extended(ctx: &egui::Context, session: &mut Session, path: PathBuf) 
 
 /// Writes the calibrated world.
 pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     let path = PathBuf::from(field.trim());
     session.jobs.start(ctx, SAVE, "", move |_| {
         write_whole(&path, &analysis.world.to_json())?;
@@ -222,7 +222,7 @@ pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
 
 /// Writes the calibrated world for another simulator; what has no counterpart there stands at the top of the file.
 pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     session.jobs.start(ctx, SAVE, "", move |_| {
         let Some(format) = Format::of_ending(&path) else {
             return Err(format!("The ending names no format; use .xml (MuJoCo), .urdf or .sdf: {}", path.display()));

@@ -24,18 +24,18 @@ impl Session {
     /// A job has failed.
     fn job_failed(&mut self, problem: String) {
         self.experiments.asks_again = false;
-        if !self.recordings.is_empty() && self.analysis.is_none() {
-            self.fit_problem = Some(problem.clone());
+        if !self.document.recordings.is_empty() && self.calibration.analysis.is_none() {
+            self.calibration.fit_problem = Some(problem.clone());
         }
-        self.fail(problem);
+        self.messages.fail(problem);
     }
 
     /// Reads the same log again.
     pub fn reload(&mut self, ctx: &egui::Context) {
-        match self.path.clone() {
-            Some(_) if self.sources.len() > 1 => self.restore(ctx, super::project_files::project_of(self)),
+        match self.document.path.clone() {
+            Some(_) if self.document.sources.len() > 1 => self.restore(ctx, super::project_files::project_of(self)),
             Some(path) => self.open(ctx, &path),
-            None => self.fail("There is no file to reload: open a log first."),
+            None => self.messages.fail("There is no file to reload: open a log first."),
         }
     }
 }

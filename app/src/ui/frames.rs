@@ -150,19 +150,19 @@ impl Loaded {
 
     fn session(&self, subject: Subject) -> Session {
         let mut session = Session::new();
-        session.trainer.clock = Clock::Manual;
+        session.training.trainer.clock = Clock::Manual;
         session.show(self.recordings.clone());
         session.workspace = subject.workspace;
         session.plots.view = subject.view;
-        session.analysis.clone_from(&self.analysis);
-        session.replays.clone_from(&self.replays);
+        session.calibration.analysis.clone_from(&self.analysis);
+        session.calibration.replays.clone_from(&self.replays);
         if subject.needs_answer() {
             session.diagnosing.answer.clone_from(&self.answer);
             session.diagnosing.worlds.clone_from(&self.worlds);
             session.diagnosing.shows_atlas = subject.with == With::Atlas;
         }
         if subject.with == With::Servo {
-            session.trainer.operator = Operator::Scripted;
+            session.training.trainer.operator = Operator::Scripted;
         }
         session
     }
@@ -170,7 +170,7 @@ impl Loaded {
     /// Draws a panel `pictures` times each way, in a window of `size` pixels.
     pub fn measure(&self, subject: Subject, size: [u32; 2], pictures: usize) -> Costs {
         let mut stage = Stage::new(App::new(self.session(subject)), subject, size);
-        let (first, last) = stage.app.session.view_s;
+        let (first, last) = stage.app.session.document.view_s;
         for _ in 0..WARM_UP {
             stage.picture();
         }
@@ -178,17 +178,17 @@ impl Loaded {
         // The servo goes on between two pictures; it has a thread of its own, so its time is not the picture's.
         let runs = |session: &mut Session| {
             if subject.with == With::Servo {
-                session.trainer.run_unseen(PICTURE_S);
+                session.training.trainer.run_unseen(PICTURE_S);
             }
         };
         let playing = stage.measure(pictures, |session, k| {
             runs(session);
-            session.seek(first + width * k as f64 / pictures as f64);
+            session.document.seek(first + width * k as f64 / pictures as f64);
         });
         let zooming = stage.measure(pictures, |session, k| {
             runs(session);
             let share = k as f64 / pictures as f64;
-            session.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
+            session.document.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
         });
         Costs { playing, zooming }
     }

@@ -10,9 +10,9 @@ impl Session {
     /// Begins the experiment that is ready, or begins it again.
     pub fn begin_experiment(&mut self) {
         let Some(guided) = &mut self.experiments.guided else { return };
-        if let Err(problem) = guided.begin(&mut self.trainer) {
+        if let Err(problem) = guided.begin(&mut self.training.trainer) {
             guided.phase = Phase::Ready;
-            self.fail(problem);
+            self.messages.fail(problem);
         }
     }
 
@@ -20,15 +20,15 @@ impl Session {
     pub fn leave_experiment(&mut self) {
         let guided = self.experiments.guided.take();
         if guided.is_some_and(|g| matches!(g.phase, Phase::Going(_))) {
-            self.trainer.discard_recording();
+            self.training.trainer.discard_recording();
         }
     }
 
     /// Once a frame: ends the experiment when its time is over.
     pub(super) fn follow_experiment(&mut self, ctx: &egui::Context) {
         let Some(guided) = &mut self.experiments.guided else { return };
-        let Some(time_s) = guided.time_s(&self.trainer) else { return };
-        if !self.trainer.is_recording() {
+        let Some(time_s) = guided.time_s(&self.training.trainer) else { return };
+        if !self.training.trainer.is_recording() {
             // Another world was chosen, or the disk is full: what there is of it was saved and said.
             guided.phase = Phase::Ready;
             return;
@@ -37,7 +37,7 @@ impl Session {
             return;
         }
         guided.phase = Phase::Ending;
-        let Some(stopping) = self.trainer.stop_recording() else { return };
+        let Some(stopping) = self.training.trainer.stop_recording() else { return };
         self.jobs.start(ctx, RECORD, "", move |_| {
             let path = stopping.wait().map(|finished| finished.path);
             change(|session: &mut Self, _| session.followed(path))
@@ -49,7 +49,7 @@ impl Session {
         let phase = match path {
             Ok(path) => Phase::Recorded(path),
             Err(problem) => {
-                self.fail(problem);
+                self.messages.fail(problem);
                 Phase::Ready
             }
         };
@@ -64,15 +64,15 @@ impl Session {
         let mut left_s = seconds;
         while left_s > 0.0 {
             let Some(guided) = &self.experiments.guided else { return };
-            let Some((step, _, goal)) = guided.now(&self.trainer) else { return };
-            let (holds, firmer_n) = (step.holds, goal.pinch_n - self.trainer.pinch.strength_n());
-            let pinch = &mut self.trainer.pinch;
+            let Some((step, _, goal)) = guided.now(&self.training.trainer) else { return };
+            let (holds, firmer_n) = (step.holds, goal.pinch_n - self.training.trainer.pinch.strength_n());
+            let pinch = &mut self.training.trainer.pinch;
             pinch.move_to(goal.center_m);
             pinch.button = holds;
             if holds && firmer_n > 0.0 {
                 pinch.strengthen(firmer_n);
             }
-            self.trainer.advance(FRAME_S);
+            self.training.trainer.advance(FRAME_S);
             left_s -= FRAME_S;
         }
     }

@@ -27,7 +27,7 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
         Err(error) if state::mends(&error) => {
             let why = sentence(&error.to_string());
             change(move |session: &mut Session, ctx| {
-                session.path_field = path.display().to_string();
+                session.document.path_field = path.display().to_string();
                 session.map_columns_of(ctx, &path, Some(why));
             })
         }
@@ -38,15 +38,15 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
 impl Session {
     /// Reads a log in the background, with the sidecar named by hand if there is one, then fits it.
     pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
-        let (path, meta) = (path.to_path_buf(), self.meta.clone());
-        self.path_field = path.display().to_string();
+        let (path, meta) = (path.to_path_buf(), self.document.meta.clone());
+        self.document.path_field = path.display().to_string();
         let title = format!("Reading {}", name_of(&path));
         self.jobs.start(ctx, LOAD, title, move |ticket| read(path, meta.as_deref(), ticket));
     }
 
     /// Reads a log with this sidecar; without one, with the sidecar beside it.
     pub fn open_with(&mut self, ctx: &egui::Context, path: &Path, sidecar: Option<PathBuf>) {
-        self.meta = sidecar;
+        self.document.meta = sidecar;
         self.open(ctx, path);
     }
 
@@ -55,26 +55,26 @@ impl Session {
         let path = path.to_path_buf();
         self.jobs.start(ctx, LOAD, "", move |_| {
             let world = crate::worlds::find(&path).map_err(|error| sentence(&format!("{error:#}")))?;
-            change(|session: &mut Self, _| session.opened_world = Some(Box::new(world)))
+            change(|session: &mut Self, _| session.training.opened_world = Some(Box::new(world)))
         });
     }
 
     /// A log was read.
     fn loaded(&mut self, ctx: &egui::Context, path: PathBuf, recordings: Vec<Arc<Prepared>>) {
         let mute = says_nothing(&recordings);
-        self.recent.note(&path);
-        self.path_field.clear();
-        self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
-        self.project_path = None;
-        let again = self.path.as_ref() == Some(&path) && recordings.len() == self.recordings.len();
-        let videos = std::mem::take(&mut self.videos);
+        self.document.recent.note(&path);
+        self.document.path_field.clear();
+        self.document.sources = vec![Source { log: path.clone(), meta: self.document.meta.clone() }];
+        self.document.project_path = None;
+        let again = self.document.path.as_ref() == Some(&path) && recordings.len() == self.document.recordings.len();
+        let videos = std::mem::take(&mut self.document.videos);
         self.workspace = Workspace::Calibrate;
         self.show(recordings);
-        self.videos = videos;
+        self.document.videos = videos;
         if !again {
-            self.videos.of_log(&path, &self.recordings);
+            self.document.videos.of_log(&path, &self.document.recordings);
         }
-        self.path = Some(path);
+        self.document.path = Some(path);
         match mute {
             Some(why) => self.map_columns(ctx, Some(why)),
             None => self.refit(ctx),
@@ -89,8 +89,8 @@ impl Session {
             FileKind::Project => self.open_project(ctx, path),
             FileKind::Video => self.open_video(path),
             FileKind::Log => {
-                let again = self.path.as_deref() == Some(path);
-                let sidecar = self.meta.clone().filter(|_| again);
+                let again = self.document.path.as_deref() == Some(path);
+                let sidecar = self.document.meta.clone().filter(|_| again);
                 self.open_with(ctx, path, sidecar);
             }
         }
@@ -99,7 +99,7 @@ impl Session {
     /// Opens what was dropped on the window: one file, or a log with its sidecar.
     pub fn open_dropped(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
         if self.mapping.is_some() && !paths.is_empty() {
-            self.fail("Finish or cancel the mapping first, then drop the file again.");
+            self.messages.fail("Finish or cancel the mapping first, then drop the file again.");
             return;
         }
         match paths {
@@ -116,7 +116,7 @@ impl Session {
 
     fn open_first(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
         if let Some(first) = paths.first() {
-            self.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
+            self.messages.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
             self.open_any(ctx, first);
         }
     }
@@ -129,9 +129,9 @@ impl Session {
             let at = |ending: &&str| sidecar.with_file_name(format!("{stem}.{ending}"));
             LOG_ENDINGS.iter().map(at).find(|log| log.is_file())
         });
-        match beside.or_else(|| self.path.clone()) {
+        match beside.or_else(|| self.document.path.clone()) {
             Some(log) => self.open_with(ctx, &log, Some(sidecar.to_path_buf())),
-            None => self.fail(format!(
+            None => self.messages.fail(format!(
                 "{name} is a sidecar and no log stands beside it; open its log first, or drop both together."
             )),
         }
@@ -139,14 +139,14 @@ impl Session {
 
     /// Opens the mapping dialog for the log that is open, or that the path field names.
     pub fn map_columns(&mut self, ctx: &egui::Context, why: Option<String>) {
-        let named = PathBuf::from(self.path_field.trim());
-        let path = self.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
+        let named = PathBuf::from(self.document.path_field.trim());
+        let path = self.document.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
         self.map_columns_of(ctx, &path, why);
     }
 
     /// Opens the mapping dialog for a log.
     pub fn map_columns_of(&mut self, ctx: &egui::Context, path: &Path, why: Option<String>) {
-        look(ctx, &mut self.jobs, path, self.meta.clone(), why);
+        look(ctx, &mut self.jobs, path, self.document.meta.clone(), why);
     }
 }
 
@@ -184,6 +184,6 @@ mod tests {
         std::fs::write(&sidecar, r#"{"rate_hz": 100}"#).expect("writable");
         let mut session = Session::new();
         session.open_any(&egui::Context::default(), &sidecar);
-        assert!(session.banners[0].text.contains("open its log first"), "{:?}", session.banners);
+        assert!(session.messages.banners[0].text.contains("open its log first"), "{:?}", session.messages.banners);
     }
 }

@@ -36,7 +36,9 @@ impl Session {
 
     /// Shifts a recording to where it is most like the shown one, in the background.
     pub fn align(&mut self, ctx: &egui::Context, recording: usize) {
-        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+        let (Some(fixed), Some(moved)) =
+            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
+        else {
             return;
         };
         self.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
@@ -47,8 +49,10 @@ impl Session {
 
     /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
     pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
-        let pair = (self.current, recording);
-        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+        let pair = (self.document.current, recording);
+        let (Some(fixed), Some(moved)) =
+            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
+        else {
             return;
         };
         if likeliest.contains_key(&pair) || self.jobs.is_running(ALIGN) {
@@ -66,20 +70,20 @@ impl Session {
     pub(super) fn aligned(&mut self, recording: usize, found: Result<f64, String>) {
         match found {
             Ok(offset_s) => self.shift_overlay(recording, offset_s),
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// When a recording is touched for the first time, s; `None` where its states are not known.
     pub fn first_contact_s(&self, recording: usize) -> Option<f64> {
-        let states = &self.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
+        let states = &self.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
         let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
         states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
     }
 
     /// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
     pub fn align_by_contact(&mut self, recording: usize) -> bool {
-        let both = self.first_contact_s(self.current).zip(self.first_contact_s(recording));
+        let both = self.first_contact_s(self.document.current).zip(self.first_contact_s(recording));
         if let Some((here, there)) = both {
             self.shift_overlay(recording, here - there);
         }

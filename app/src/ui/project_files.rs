@@ -15,12 +15,12 @@ use std::sync::Arc;
 pub fn project_of(session: &Session) -> Project {
     Project {
         touchstone_project: VERSION,
-        recordings: session.sources.clone(),
-        videos: session.videos.sources.clone(),
-        choice: session.choice.clone(),
-        current: session.current,
-        cursor_s: session.cursor_s,
-        view_s: session.view_s,
+        recordings: session.document.sources.clone(),
+        videos: session.document.videos.sources.clone(),
+        choice: session.calibration.choice.clone(),
+        current: session.document.current,
+        cursor_s: session.document.cursor_s,
+        view_s: session.document.view_s,
         workspace: session.workspace,
         plots: session.plots.kept(),
     }
@@ -50,17 +50,17 @@ impl Session {
     pub fn open_project(&mut self, ctx: &egui::Context, path: &Path) {
         match Project::read(path) {
             Ok(project) => {
-                self.opening_project = Some(path.to_path_buf());
+                self.document.opening_project = Some(path.to_path_buf());
                 self.restore(ctx, project);
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// Opens what a project names, in the background.
     pub fn restore(&mut self, ctx: &egui::Context, project: Project) {
         if project.recordings.is_empty() {
-            self.fail("This project names no recording.");
+            self.messages.fail("This project names no recording.");
             return;
         }
         self.jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
@@ -69,42 +69,42 @@ impl Session {
     /// A project's files were read.
     pub(super) fn opened_project(&mut self, ctx: &egui::Context, project: Project, recordings: Vec<Arc<Prepared>>) {
         let first = project.recordings.first().cloned().unwrap_or_default();
-        self.meta = first.meta;
-        self.path_field.clear();
-        self.path = Some(first.log);
-        self.sources = project.recordings;
+        self.document.meta = first.meta;
+        self.document.path_field.clear();
+        self.document.path = Some(first.log);
+        self.document.sources = project.recordings;
         self.show(recordings);
-        self.videos.sources = project.videos;
-        self.choice = project.choice;
-        self.select(project.current);
+        self.document.videos.sources = project.videos;
+        self.calibration.choice = project.choice;
+        self.document.select(project.current);
         if project.view_s.1 > project.view_s.0 {
-            self.view_s = project.view_s;
+            self.document.view_s = project.view_s;
         }
-        self.seek(project.cursor_s);
+        self.document.seek(project.cursor_s);
         self.workspace = project.workspace;
         self.plots.restore(project.plots);
-        self.project_path = self.opening_project.take();
-        if let Some(path) = self.project_path.clone() {
-            self.recent.note(&path);
+        self.document.project_path = self.document.opening_project.take();
+        if let Some(path) = self.document.project_path.clone() {
+            self.document.recent.note(&path);
         }
         self.refit(ctx);
     }
 
     /// Adds the recordings of another file to those that are open, and fits all of them together.
     pub fn add_log(&mut self, ctx: &egui::Context, path: &Path) {
-        if self.sources.is_empty() {
+        if self.document.sources.is_empty() {
             self.open_any(ctx, path);
             return;
         }
         let mut project = project_of(self);
         project.recordings.push(Source { log: path.to_path_buf(), meta: None });
-        self.opening_project.clone_from(&self.project_path);
+        self.document.opening_project.clone_from(&self.document.project_path);
         self.restore(ctx, project);
     }
 
     /// Writes the project where it was opened, or asks where.
     pub fn save_project(&mut self, ctx: &egui::Context) {
-        match self.project_path.clone() {
+        match self.document.project_path.clone() {
             Some(path) => self.save_project_as(ctx, path),
             None => ask(ctx, &mut self.jobs, SAVE_PROJECT),
         }
@@ -113,8 +113,8 @@ impl Session {
     /// Writes the project there.
     pub fn save_project_as(&mut self, ctx: &egui::Context, path: PathBuf) {
         let project = project_of(self);
-        self.project_path = Some(path.clone());
-        self.recent.note(&path);
+        self.document.project_path = Some(path.clone());
+        self.document.recent.note(&path);
         self.jobs.start(ctx, SAVE, "", move |_| {
             project.write(&path)?;
             saved(path)

@@ -89,8 +89,8 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
         callback::warm_up(&cc.egui_ctx, state);
     }
     let mut session = Session::new();
-    session.meta.clone_from(&options.meta);
-    session.task_hint.clone_from(&options.task);
+    session.document.meta.clone_from(&options.meta);
+    session.document.task_hint.clone_from(&options.task);
     recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
     if let Some(world) = &options.world {
         session.open_world(&cc.egui_ctx, world);

@@ -244,7 +244,7 @@ pub(super) fn app_for(session: Session, picture: &'static Picture) -> App {
 /// Where a window of this size (points) shows the plane of the trainer's world.
 pub fn trainer_place(size: [f32; 2]) -> Option<view::Place> {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Train;
     let mut harness = egui_kittest::Harness::builder()
         .with_size(egui::vec2(size[0], size[1]))
@@ -253,7 +253,7 @@ pub fn trainer_place(size: [f32; 2]) -> Option<view::Place> {
         .with_context_setup(theme::install)
         .build_ui_state(|ui, app: &mut App| in_whole_window(ui, |ui| app.show(ui)), App::new(session));
     harness.run_steps(4);
-    harness.state().session.trainer_place
+    harness.state().session.training.trainer_place
 }
 
 /// Draws over all of a window of the test kit, whose margin is not ours.

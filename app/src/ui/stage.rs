@@ -32,7 +32,7 @@ const PRACTICE_S: f64 = 7.5;
 
 fn new() -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session
 }
 
@@ -56,22 +56,22 @@ fn fitted_then(
         return Ok(session);
     }
     session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
-    session.choice = FitChoice { task: input.task, ..FitChoice::default() };
-    match refits::analyse(&session.recordings, &session.choice) {
+    session.calibration.choice = FitChoice { task: input.task, ..FitChoice::default() };
+    match refits::analyse(&session.document.recordings, &session.calibration.choice) {
         Ok(analysis) => {
-            session.replays = refits::replay_all(&analysis.world, &session.recordings);
-            session.enough = refits::judge(&analysis, &session.recordings);
-            session.analysis = Some(Arc::new(analysis));
-            session.refits.answered(&session.choice.clone());
+            session.calibration.replays = refits::replay_all(&analysis.world, &session.document.recordings);
+            session.calibration.enough = refits::judge(&analysis, &session.document.recordings);
+            session.calibration.analysis = Some(Arc::new(analysis));
+            session.calibration.refits.answered(&session.calibration.choice.clone());
         }
         Err(problem) => {
-            session.fit_problem = Some(problem.clone());
-            session.fail(problem);
+            session.calibration.fit_problem = Some(problem.clone());
+            session.messages.fail(problem);
         }
     }
     change(&mut session, input)?;
-    let (first, last) = session.prepared().map_or(session.view_s, |prepared| prepared.span());
-    session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
+    let (first, last) = session.document.prepared().map_or(session.document.view_s, |prepared| prepared.span());
+    session.document.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
 }
 
@@ -147,7 +147,7 @@ pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
 /// The open rules of the task.
 pub fn rules(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.rules = editing_rules::open(session);
+        session.calibration.rules = editing_rules::open(session);
         Ok(())
     })
 }
@@ -169,12 +169,12 @@ pub fn progress(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = new();
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     let history = History::start(folder.path().join("history.sqlite"), || {}).map_err(|problem| anyhow!(problem))?;
-    session.learning.keep_in(history);
+    session.training.learning.keep_in(history);
     session.experiments.scratch = Some(folder);
-    session.learning.trainees = vec!["Ada".to_owned(), "Grace".to_owned()];
-    session.learning.trainee = Some("Ada".to_owned());
-    session.learning.experts.insert("pinch".to_owned(), 92.0);
-    session.learning.take(attempts());
+    session.training.learning.trainees = vec!["Ada".to_owned(), "Grace".to_owned()];
+    session.training.learning.trainee = Some("Ada".to_owned());
+    session.training.learning.experts.insert("pinch".to_owned(), 92.0);
+    session.training.learning.take(attempts());
     Ok(session)
 }
 
@@ -203,19 +203,19 @@ pub fn debrief(_: &PictureInput) -> anyhow::Result<Session> {
 fn with_lessons() -> anyhow::Result<Session> {
     let mut session = new();
     let folder = tempfile::tempdir()?;
-    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
     session.experiments.scratch = Some(folder);
     session.workspace = Workspace::Train;
-    session.lessons.shown = true;
+    session.training.lessons.shown = true;
     // Those of whoever makes the picture do not belong into it.
-    session.lessons.folder = Some(PathBuf::new());
-    session.lessons.load();
+    session.training.lessons.folder = Some(PathBuf::new());
+    session.training.lessons.load();
     Ok(session)
 }
 
 fn in_lesson() -> anyhow::Result<Session> {
     let mut session = with_lessons()?;
-    let lesson = session.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
+    let lesson = session.training.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
     session.open_lesson_now(&lesson.context("the lesson of two blocks is missing")?);
     Ok(session)
 }
@@ -257,7 +257,7 @@ fn performing(input: &PictureInput, mut trainer: Trainer, usual_s: f64) -> anyho
     trainer.ensure_running().map_err(|problem| anyhow!(problem))?;
     trainer.advance(input.time_s.unwrap_or(usual_s));
     let mut session = new();
-    session.trainer = trainer;
+    session.training.trainer = trainer;
     Ok(session)
 }
 
@@ -273,8 +273,8 @@ fn unknown_barrel() -> Result<World, String> {
 fn with_video(session: &mut Session, input: &PictureInput) {
     session.wanted_pane = Some(PanelId::VIDEO);
     match (&input.video, &input.log) {
-        (Some(source), _) => session.videos.sources.push(source.clone()),
-        (None, Some(log)) => session.videos.of_log(log, &session.recordings),
+        (Some(source), _) => session.document.videos.sources.push(source.clone()),
+        (None, Some(log)) => session.document.videos.of_log(log, &session.document.recordings),
         (None, None) => {}
     }
     session.read_video_now();
@@ -283,7 +283,7 @@ fn with_video(session: &mut Session, input: &PictureInput) {
 /// The lifting force over the height, where both are known; else what the window begins with.
 fn against_each_other(session: &mut Session) {
     session.plots.view = LogView::Xy;
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     let axis = |name: &str| {
         let group = prepared.groups.iter().find(|g| g.traces.iter().any(|t| t.name == name))?;
         Some(XyAxis { group: group.key(), name: name.to_owned(), transform: Transform::None })
@@ -293,26 +293,26 @@ fn against_each_other(session: &mut Session) {
 
 /// A plot of what is left over of every quantity that the model predicts, and only those quantities.
 fn what_is_left(session: &mut Session) {
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     for group in &prepared.groups {
         let comparable = can_compare(session.shown_curves(), group);
         let choice = session.plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
     // A tenth of the way, in which single curves can be told apart.
-    let (first, last) = session.view_s;
-    session.view_s = (first + 0.36 * (last - first), first + 0.46 * (last - first));
+    let (first, last) = session.document.view_s;
+    session.document.view_s = (first + 0.36 * (last - first), first + 0.46 * (last - first));
 }
 
 /// The first parameter with a good value a fifth larger.
 fn try_another_value(session: &mut Session) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     let known = |p: &&estimator::estimate::Parameter| p.identified && p.value.is_some_and(|v| v != 0.0);
     let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
     let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
     let name = parameter.full_name();
     session.try_value(&name, parameter.value.map(|v| 1.2 * v));
-    session.selected_parameter = Some(name);
+    session.calibration.selected_parameter = Some(name);
     session.try_now();
 }
 
@@ -320,11 +320,11 @@ fn try_another_value(session: &mut Session) {
 fn diagnose(session: &mut Session) {
     session.workspace = Workspace::Diagnose;
     let from = session.diagnosing.from;
-    match diagnosis_state::ask(&session.recordings, &session.choice, from, Progress::default()) {
+    match diagnosis_state::ask(&session.document.recordings, &session.calibration.choice, from, Progress::default()) {
         Ok(answer) => {
-            match diagnosis_state::extend(&session.recordings, &session.choice, from, &answer) {
+            match diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer) {
                 Ok(worlds) => {
-                    session.diagnosing.replays = refits::replay_forces(&worlds.after, &session.recordings);
+                    session.diagnosing.replays = refits::replay_forces(&worlds.after, &session.document.recordings);
                     session.diagnosing.worlds = Some(Arc::new(worlds));
                 }
                 Err(problem) => session.diagnosing.worlds_problem = Some(problem),
@@ -339,7 +339,13 @@ fn diagnose(session: &mut Session) {
 fn rehearse(session: &mut Session) -> anyhow::Result<()> {
     diagnose(session);
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
-    let made = experiments::rehearse_now(&session.recordings, &session.choice, &answer, experiments::ROUNDS, &|_| true);
+    let made = experiments::rehearse_now(
+        &session.document.recordings,
+        &session.calibration.choice,
+        &answer,
+        experiments::ROUNDS,
+        &|_| true,
+    );
     session.experiments.shows_plan = true;
     session.diagnosing.rehearsal = Some(Arc::new(made.map_err(|problem| anyhow!(problem.unwrap_or_default()))?));
     Ok(())
@@ -351,10 +357,10 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
-    let guided = experiments::guided_as_if(&session.recordings, &session.choice, &answer, &first);
+    let guided = experiments::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
     session.guided(guided);
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
-    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
     session.begin_experiment();
     session.follow_rings(8.2);
     session.experiments.scratch = Some(folder);

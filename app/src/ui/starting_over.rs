@@ -1,8 +1,9 @@
 //! Starting over in Train, by one key.
 
 use super::guided;
-use super::session::{Session, Tone};
+use super::session::Session;
 use crate::ui::lessons::state;
+use crate::ui::message_list::Tone;
 
 impl Session {
     /// Puts everything in Train back where it started, by one key. What is being done begins anew: an experiment, a try at a lesson; an
@@ -10,13 +11,13 @@ impl Session {
     pub fn start_over(&mut self) {
         if self.experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided::Phase::Going(_))) {
             self.begin_experiment();
-            self.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
+            self.messages.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
             return;
         }
-        let Some(phase) = self.lessons.open.as_ref().map(|open| open.phase.clone()) else {
-            let choice = self.trainer.choice;
-            if let Err(problem) = self.trainer.choose(choice) {
-                self.fail(problem);
+        let Some(phase) = self.training.lessons.open.as_ref().map(|open| open.phase.clone()) else {
+            let choice = self.training.trainer.choice;
+            if let Err(problem) = self.training.trainer.choose(choice) {
+                self.messages.fail(problem);
             }
             return;
         };
@@ -25,7 +26,8 @@ impl Session {
             state::Phase::Practising => self.practise_lesson(),
             state::Phase::Testing | state::Phase::Asking => {
                 self.test_lesson();
-                self.say(Tone::Done, "The attempt begins anew; what was recorded of it is removed.".to_owned());
+                self.messages
+                    .say(Tone::Done, "The attempt begins anew; what was recorded of it is removed.".to_owned());
             }
             state::Phase::Brief | state::Phase::Debrief(_) => self.back_to_brief(),
             // The recording is being read.

@@ -1,10 +1,11 @@
 //! The history of the person who practises, in the window.
 
-use super::session::{Session, Tone};
+use super::session::Session;
 use crate::history::attempt::Attempt;
 use crate::history::keeper::{Answer, History};
 use crate::history::store::Query;
 use crate::ui::learning::{AHEAD, Learned, POINTS};
+use crate::ui::message_list::Tone;
 use estimator::training::progress::{self, LearningCurve, Try};
 use std::path::PathBuf;
 
@@ -34,15 +35,15 @@ impl Session {
         match History::start(database, move || ctx.request_repaint()) {
             Ok(history) => {
                 history.read_trainees();
-                self.learning.keep_in(history);
+                self.training.learning.keep_in(history);
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// Keeps an attempt; false where nothing is kept.
     pub fn keep_attempt(&mut self, attempt: Attempt) -> bool {
-        let history = self.learning.history.as_ref();
+        let history = self.training.learning.history.as_ref();
         history.is_some_and(|history| {
             history.add(attempt);
             true
@@ -51,37 +52,37 @@ impl Session {
 
     /// Writes the attempts of who practises as a table.
     pub fn export_history(&mut self, to: PathBuf) {
-        let query = Query { trainee: self.learning.trainee.clone(), lesson: None };
-        if let Some(history) = &self.learning.history {
+        let query = Query { trainee: self.training.learning.trainee.clone(), lesson: None };
+        if let Some(history) = &self.training.learning.history {
             history.export(to, query);
         }
     }
 
     /// Takes what the history has answered.
     pub(super) fn follow_history(&mut self) {
-        let Some(history) = &self.learning.history else { return };
+        let Some(history) = &self.training.learning.history else { return };
         for answer in history.poll() {
             match answer {
                 Answer::Kept(attempt) => self.attempt_kept(*attempt),
                 Answer::Trainees(names) => self.trainees_known(names),
-                Answer::Attempts(query, attempts) if query.trainee == self.learning.trainee => {
-                    self.learning.take(attempts);
+                Answer::Attempts(query, attempts) if query.trainee == self.training.learning.trainee => {
+                    self.training.learning.take(attempts);
                 }
                 Answer::Attempts(..) => {}
-                Answer::Exported(path) => self.say_saved(&path),
+                Answer::Exported(path) => self.messages.say_saved(&path),
                 Answer::TakenIn(1) => {
-                    self.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
+                    self.messages.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
                 }
                 Answer::TakenIn(count) => {
-                    self.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
+                    self.messages.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
                 }
-                Answer::Problem(problem) => self.fail(problem),
+                Answer::Problem(problem) => self.messages.fail(problem),
             }
         }
     }
 
     fn attempt_kept(&mut self, attempt: Attempt) {
-        let learning = &mut self.learning;
+        let learning = &mut self.training.learning;
         if !learning.trainees.contains(&attempt.trainee) {
             learning.trainees.push(attempt.trainee.clone());
         }
@@ -96,10 +97,10 @@ impl Session {
 
     /// Where there is one trainee, they practise.
     fn trainees_known(&mut self, names: Vec<String>) {
-        self.learning.trainees = names;
-        if let ([only], None) = (self.learning.trainees.as_slice(), &self.learning.trainee) {
+        self.training.learning.trainees = names;
+        if let ([only], None) = (self.training.learning.trainees.as_slice(), &self.training.learning.trainee) {
             let only = only.clone();
-            self.learning.choose(&only);
+            self.training.learning.choose(&only);
         }
     }
 }

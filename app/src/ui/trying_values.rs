@@ -10,40 +10,45 @@ impl Session {
     /// Tries a value, or with `None` no longer.
     pub fn try_value(&mut self, name: &str, value: Option<f64>) {
         match value {
-            Some(value) => drop(self.what_if.values.insert(name.to_owned(), value)),
-            None => drop(self.what_if.values.remove(name)),
+            Some(value) => drop(self.calibration.what_if.values.insert(name.to_owned(), value)),
+            None => drop(self.calibration.what_if.values.remove(name)),
         }
-        if !self.what_if.is_on() {
-            self.what_if.forget();
+        if !self.calibration.what_if.is_on() {
+            self.calibration.what_if.forget();
         }
     }
 
     /// Replays with the newest tried values when the last replay has come; call once a frame.
     pub fn follow_what_if(&mut self, ctx: &egui::Context) {
-        if !self.what_if.is_behind() || self.jobs.is_running(WHAT_IF) {
+        if !self.calibration.what_if.is_behind() || self.jobs.is_running(WHAT_IF) {
             return;
         }
-        let Some(analysis) = self.analysis.clone() else { return };
-        let (recordings, choice, values) = (self.recordings.clone(), self.choice.clone(), self.what_if.values.clone());
+        let Some(analysis) = self.calibration.analysis.clone() else { return };
+        let (recordings, choice, values) = (
+            self.document.recordings.clone(),
+            self.calibration.choice.clone(),
+            self.calibration.what_if.values.clone(),
+        );
         self.jobs.start(ctx, WHAT_IF, "", move |_| {
             let world = world(&analysis, &choice.given_to_all(&recordings), &values);
             let replays = replay_forces(&world, &recordings);
-            change(|session: &mut Self, _| session.what_if.take(values, replays))
+            change(|session: &mut Self, _| session.calibration.what_if.take(values, replays))
         });
     }
 
     /// Replays with the tried values now, for a picture.
     pub(super) fn try_now(&mut self) {
-        let Some(analysis) = &self.analysis else { return };
-        let values = self.what_if.values.clone();
-        let world = world(analysis, &self.choice.given_to_all(&self.recordings), &values);
-        let replays = replay_forces(&world, &self.recordings);
-        self.what_if.take(values, replays);
+        let Some(analysis) = &self.calibration.analysis else { return };
+        let values = self.calibration.what_if.values.clone();
+        let world = world(analysis, &self.calibration.choice.given_to_all(&self.document.recordings), &values);
+        let replays = replay_forces(&world, &self.document.recordings);
+        self.calibration.what_if.take(values, replays);
     }
 
     /// The replay that plots show: of the tried values while something is tried.
     pub fn shown_curves(&self) -> Option<&Replayed> {
-        let tried = self.what_if.replays.get(self.current).filter(|_| self.what_if.is_on());
+        let tried =
+            self.calibration.what_if.replays.get(self.document.current).filter(|_| self.calibration.what_if.is_on());
         tried.and_then(Option::as_ref).or_else(|| self.replay())
     }
 }
@@ -55,19 +60,19 @@ mod tests {
     use crate::ui::what_if::residual_rms;
 
     fn tried(session: &Session, name: &str, factor: f64) -> f64 {
-        let analysis = session.analysis.as_ref().expect("fitted");
+        let analysis = session.calibration.analysis.as_ref().expect("fitted");
         let (object, plain) = name.split_once('.').expect("object.name");
         let value = analysis.fit.value(object, plain).expect("identified");
-        let recordings = session.choice.given_to_all(&session.recordings);
+        let recordings = session.calibration.choice.given_to_all(&session.document.recordings);
         let world = world(analysis, &recordings, &[(name.to_owned(), factor * value)].into());
-        residual_rms(&replay_forces(&world, &session.recordings)).expect("predicts")
+        residual_rms(&replay_forces(&world, &session.document.recordings)).expect("predicts")
     }
 
     #[test]
     fn a_wrong_weight_leaves_more_of_the_force_and_the_fitted_one_as_much_as_before() {
         for (recording, name) in [(STACK.clone(), "block-1.weight_N"), (CRANK.clone(), "crank.weight_N")] {
             let session = session(recording);
-            let before = residual_rms(&session.replays).expect("predicts");
+            let before = residual_rms(&session.calibration.replays).expect("predicts");
             let same = tried(&session, name, 1.0);
             assert!((same - before).abs() < 1e-9 + 1e-6 * before, "{name}: {same} and {before}");
             let heavy = tried(&session, name, 1.6);

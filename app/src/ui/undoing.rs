@@ -1,58 +1,54 @@
 //! Taking changes back, and bringing them back.
 
-use super::session::{Session, Tone};
-use crate::ui::undo::{Undo, Undoable, difference};
+use super::session::Session;
+use crate::ui::message_list::Tone;
+use crate::ui::undo::{Undoable, difference};
 
 impl Session {
     /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
     pub fn note_changes(&mut self, now_s: f64, held: bool) {
-        if !self.recordings.is_empty() && !held {
-            let now = Undoable::of(&self.choice, &self.plots);
-            self.undo.undoer.feed_state(now_s, &now);
+        if !self.document.recordings.is_empty() && !held {
+            let now = Undoable::of(&self.calibration.choice, &self.plots);
+            self.document.undo.undoer.feed_state(now_s, &now);
         }
-    }
-
-    /// Begins anew, with other recordings.
-    pub fn forget_changes(&mut self) {
-        self.undo = Undo::default();
     }
 
     /// True when there is something to take back.
     pub fn can_undo(&self) -> bool {
-        self.undo.undoer.has_undo(&Undoable::of(&self.choice, &self.plots))
+        self.document.undo.undoer.has_undo(&Undoable::of(&self.calibration.choice, &self.plots))
     }
 
     /// True when something was taken back.
     pub fn can_redo(&self) -> bool {
-        self.undo.undoer.has_redo(&Undoable::of(&self.choice, &self.plots))
+        self.document.undo.undoer.has_redo(&Undoable::of(&self.calibration.choice, &self.plots))
     }
 
     /// Takes the last change back.
     pub fn undo(&mut self) {
-        let now = Undoable::of(&self.choice, &self.plots);
-        if let Some(before) = self.undo.undoer.undo(&now).cloned() {
-            self.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
+        let now = Undoable::of(&self.calibration.choice, &self.plots);
+        if let Some(before) = self.document.undo.undoer.undo(&now).cloned() {
+            self.messages.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
             self.put_back(before);
         }
     }
 
     /// Brings back what was taken back.
     pub fn redo(&mut self) {
-        let now = Undoable::of(&self.choice, &self.plots);
-        if let Some(after) = self.undo.undoer.redo(&now).cloned() {
-            self.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
+        let now = Undoable::of(&self.calibration.choice, &self.plots);
+        if let Some(after) = self.document.undo.undoer.redo(&now).cloned() {
+            self.messages.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
             self.put_back(after);
         }
     }
 
     fn put_back(&mut self, Undoable { choice, overlaid }: Undoable) {
         self.plots.overlaid = overlaid;
-        if let (Some(rules), true) = (self.rules.as_mut(), self.choice.own != choice.own) {
+        if let (Some(rules), true) = (self.calibration.rules.as_mut(), self.calibration.choice.own != choice.own) {
             rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
             rules.untried = true;
         }
-        let segments_differ = self.choice.segments != choice.segments;
-        self.choice = choice;
+        let segments_differ = self.calibration.choice.segments != choice.segments;
+        self.calibration.choice = choice;
         if segments_differ {
             self.show_segments();
         }
@@ -85,21 +81,21 @@ mod tests {
     fn changes_are_taken_back_one_by_one_and_brought_back() {
         let mut session = session();
         let mut now = wait(&mut session, 0.0);
-        session.choice.method = Method::Hmm;
+        session.calibration.choice.method = Method::Hmm;
         now = wait(&mut session, now);
-        session.choice.only_s = Some((1.0, 2.0));
+        session.calibration.choice.only_s = Some((1.0, 2.0));
         wait(&mut session, now);
         assert!(session.can_undo() && !session.can_redo());
         session.undo();
-        assert_eq!((session.choice.method, session.choice.only_s), (Method::Hmm, None));
-        assert!(session.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
+        assert_eq!((session.calibration.choice.method, session.calibration.choice.only_s), (Method::Hmm, None));
+        assert!(session.messages.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
         session.undo();
-        assert_eq!(session.choice.method, Method::Threshold);
+        assert_eq!(session.calibration.choice.method, Method::Threshold);
         assert!(!session.can_undo());
         session.undo();
         session.redo();
         session.redo();
-        assert_eq!(session.choice.only_s, Some((1.0, 2.0)));
+        assert_eq!(session.calibration.choice.only_s, Some((1.0, 2.0)));
         assert!(!session.can_redo());
     }
 
@@ -108,13 +104,13 @@ mod tests {
         let mut session = session();
         let mut now = wait(&mut session, 0.0);
         for step in 0..100 {
-            session.choice.only_s = Some((0.0, f64::from(step)));
+            session.calibration.choice.only_s = Some((0.0, f64::from(step)));
             now += 0.02;
             session.note_changes(now, true);
         }
         wait(&mut session, now);
         session.undo();
-        assert_eq!(session.choice.only_s, None);
+        assert_eq!(session.calibration.choice.only_s, None);
     }
 
     #[test]
@@ -122,7 +118,7 @@ mod tests {
         let mut session = session();
         let mut now = wait(&mut session, 0.0);
         for step in 0..4 {
-            session.choice.only_s = Some((0.0, f64::from(step)));
+            session.calibration.choice.only_s = Some((0.0, f64::from(step)));
             for _ in 0..5 {
                 now += 0.4;
                 session.note_changes(now, true);
@@ -130,7 +126,7 @@ mod tests {
         }
         wait(&mut session, now);
         session.undo();
-        assert_eq!(session.choice.only_s, None);
+        assert_eq!(session.calibration.choice.only_s, None);
         assert!(!session.can_undo());
     }
 
@@ -138,9 +134,9 @@ mod tests {
     fn other_recordings_begin_with_nothing_to_take_back() {
         let mut session = session();
         let now = wait(&mut session, 0.0);
-        session.choice.method = Method::Hmm;
+        session.calibration.choice.method = Method::Hmm;
         wait(&mut session, now);
-        let again = session.recordings.clone();
+        let again = session.document.recordings.clone();
         session.show(again);
         wait(&mut session, 10.0);
         assert!(!session.can_undo());

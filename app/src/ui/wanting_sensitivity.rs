@@ -10,26 +10,26 @@ use std::sync::atomic::AtomicBool;
 impl Session {
     /// Computes it now, for a picture.
     pub(super) fn look_at_sensitivity(&mut self) {
-        let Some(analysis) = &self.analysis else { return };
-        let given = self.choice.given_to_all(&self.recordings);
-        let found = sensitivity(analysis, &self.recordings, &given, |_| {}, &AtomicBool::new(false));
-        self.sensitivity = found.map(Arc::new);
+        let Some(analysis) = &self.calibration.analysis else { return };
+        let given = self.calibration.choice.given_to_all(&self.document.recordings);
+        let found = sensitivity(analysis, &self.document.recordings, &given, |_| {}, &AtomicBool::new(false));
+        self.calibration.sensitivity = found.map(Arc::new);
     }
 
     /// Computes it in the background, unless it is there.
     pub fn want_sensitivity(&mut self, ctx: &egui::Context) {
-        let Some(analysis) = self.analysis.clone() else { return };
-        let there = self.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
+        let Some(analysis) = self.calibration.analysis.clone() else { return };
+        let there = self.calibration.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
         // A fit that is about to change needs none.
-        if there || self.stale || self.jobs.is_running(SENSITIVITY) || self.jobs.is_running(FIT) {
+        if there || self.calibration.stale || self.jobs.is_running(SENSITIVITY) || self.jobs.is_running(FIT) {
             return;
         }
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
         let title = "Looking how the force depends on the parameters";
         self.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
             let given = choice.given_to_all(&recordings);
             match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-                Some(found) => change(|session: &mut Self, _| session.sensitivity = Some(Arc::new(found))),
+                Some(found) => change(|session: &mut Self, _| session.calibration.sensitivity = Some(Arc::new(found))),
                 None => no_change(),
             }
         });
@@ -45,9 +45,10 @@ mod tests {
 
     fn found(recording: Recording) -> Sensitivity {
         let session = session(recording);
-        let analysis = session.analysis.clone().expect("fitted");
-        let given = session.choice.given_to_all(&session.recordings);
-        sensitivity(&analysis, &session.recordings, &given, |_| {}, &AtomicBool::new(false)).expect("not cancelled")
+        let analysis = session.calibration.analysis.clone().expect("fitted");
+        let given = session.calibration.choice.given_to_all(&session.document.recordings);
+        sensitivity(&analysis, &session.document.recordings, &given, |_| {}, &AtomicBool::new(false))
+            .expect("not cancelled")
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::dock::panes::Panels;
 use super::icons::Icon;
-use super::session::{Session, Tone};
+use super::session::Session;
 use super::theme::{self, space};
 use super::widgets::{icon_button, segmented};
 use super::{menu, messages, palette, restore, tour};
@@ -11,6 +11,7 @@ use crate::ui::actions::search;
 use crate::ui::app::App;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
+use crate::ui::message_list::Tone;
 use crate::ui::tour_progress::Tour;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::workspace::Workspace;
@@ -45,7 +46,7 @@ impl App {
             super::keys::handle(ui, &mut self.session);
         }
         dropped_files(&ctx, &mut self.session);
-        self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
+        self.session.document.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
         super::recorder::unfinished(ui, &mut self.session);
         restore::offer(ui, self);
@@ -53,7 +54,7 @@ impl App {
         self.arranging(ui);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
-            self.session.trainer.trial.abort();
+            self.session.training.trainer.trial.abort();
         }
         if self.session.mapping.is_some() {
             rest(ui, &mut self.session);
@@ -70,7 +71,7 @@ impl App {
         super::dock::naming::show(ui, self);
         tour::show(ui, self);
         self.keep_state(&ctx);
-        if self.session.playing {
+        if self.session.document.playing {
             ctx.request_repaint();
         }
         drop_hint(&ctx);
@@ -92,29 +93,29 @@ impl App {
         if self.left_behind.is_none()
             && let Some(problem) = autosave.follow(ctx, &self.session, &self.dock, self.tour.seen)
         {
-            self.session.fail(problem);
+            self.session.messages.fail(problem);
         }
     }
 
     /// Worlds that were opened or asked for go to the trainer.
     fn take_worlds(&mut self) {
         let session = &mut self.session;
-        let choice = if let Some(world) = session.opened_world.take() {
+        let choice = if let Some(world) = session.training.opened_world.take() {
             session.workspace = Workspace::Train;
             // `--world crank`, or the file of a built-in world, stands in the list already.
             let built_in = WorldChoice::of(&world);
             if built_in.is_none() {
-                session.trainer.file = Some(*world);
+                session.training.trainer.file = Some(*world);
             }
             built_in.unwrap_or(WorldChoice::File)
-        } else if std::mem::take(&mut session.train_calibrated) {
-            session.trainer.calibrated = session.analysis.as_ref().map(|a| a.world.clone());
+        } else if std::mem::take(&mut session.training.train_calibrated) {
+            session.training.trainer.calibrated = session.calibration.analysis.as_ref().map(|a| a.world.clone());
             WorldChoice::Calibrated
         } else {
             return;
         };
-        if let Err(problem) = session.trainer.choose(choice) {
-            session.fail(problem);
+        if let Err(problem) = session.training.trainer.choose(choice) {
+            session.messages.fail(problem);
         }
     }
 
@@ -147,11 +148,15 @@ impl App {
     /// What is being looked at.
     fn subject(&self) -> String {
         match self.session.workspace {
-            Workspace::Train | Workspace::Devices => {
-                self.session.trainer.scene().map(|(_, w)| crate::text::format::capitalised(&w.name)).unwrap_or_default()
-            }
+            Workspace::Train | Workspace::Devices => self
+                .session
+                .training
+                .trainer
+                .scene()
+                .map(|(_, w)| crate::text::format::capitalised(&w.name))
+                .unwrap_or_default(),
             Workspace::Calibrate | Workspace::Diagnose => {
-                self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default()
+                self.session.document.prepared().map(|p| p.recording.name.clone()).unwrap_or_default()
             }
         }
     }
@@ -240,11 +245,11 @@ impl eframe::App for App {
 
 /// The trainer while the user looks elsewhere: a running recording goes on, everything else rests.
 fn rest(ui: &Ui, session: &mut Session) {
-    if session.trainer.is_recording() {
-        session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+    if session.training.trainer.is_recording() {
+        session.training.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     } else {
-        session.trainer.pause();
+        session.training.trainer.pause();
     }
 }
 

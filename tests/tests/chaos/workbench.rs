@@ -4,10 +4,11 @@
 use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
 use app::ui::dock::arrangement::Dock;
+use app::ui::message_list::Tone;
 use app::ui::project::Project;
 use app::ui::project_files::project_of;
 use app::ui::refits::FIT;
-use app::ui::session::{Session, Tone};
+use app::ui::session::Session;
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -37,7 +38,7 @@ fn settle(ctx: &egui::Context, session: &mut Session) {
 }
 
 fn take_messages(session: &mut Session, path: &Path) {
-    for banner in session.banners.drain(..) {
+    for banner in session.messages.banners.drain(..) {
         if banner.tone == Tone::Error {
             must_be_a_sentence(&banner.text, path);
         }
@@ -86,7 +87,11 @@ impl Bench {
         settle(ctx, session);
         session.open(ctx, &workspace().join("assets/recordings/crank.csv"));
         settle(ctx, session);
-        assert!(session.analysis.is_some(), "after all that a good log is fitted: {:?}", session.fit_problem);
+        assert!(
+            session.calibration.analysis.is_some(),
+            "after all that a good log is fitted: {:?}",
+            session.calibration.fit_problem
+        );
         chaos.count("fits that answered", 1);
     }
 }

@@ -29,7 +29,7 @@ pub(crate) struct Said {
 
 /// Why nothing is said now, in a sentence; `None` while it is.
 pub fn silent(session: &Session) -> Option<&'static str> {
-    match session.lessons.open.as_ref()?.phase {
+    match session.training.lessons.open.as_ref()?.phase {
         Phase::Testing | Phase::Asking => Some("In a test you are on your own."),
         // The world stands still behind what came of it.
         Phase::Grading | Phase::Debrief(_) => Some("The attempt is over. It goes on with the next one."),
@@ -38,10 +38,10 @@ pub fn silent(session: &Session) -> Option<&'static str> {
 }
 
 pub(crate) fn said(session: &Session) -> Option<Said> {
-    if !session.assistant.on || silent(session).is_some() {
+    if !session.training.assistant.on || silent(session).is_some() {
         return None;
     }
-    let trainer = &session.trainer;
+    let trainer = &session.training.trainer;
     let (_, world) = trainer.scene()?;
     let state = trainer.seen()?;
     let delay = trainer.delay();
@@ -60,8 +60,8 @@ pub(crate) fn said(session: &Session) -> Option<Said> {
 
 /// The most that a finger should press, N: by the lesson, or what the servo sends at most.
 fn limit_n(session: &Session) -> f64 {
-    let by_lesson = session.lessons.open.as_ref().map(|open| open.lesson.limit_n);
-    by_lesson.unwrap_or_else(|| max_force_n(&session.trainer))
+    let by_lesson = session.training.lessons.open.as_ref().map(|open| open.lesson.limit_n);
+    by_lesson.unwrap_or_else(|| max_force_n(&session.training.trainer))
 }
 
 fn max_force_n(trainer: &Trainer) -> f64 {

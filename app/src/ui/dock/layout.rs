@@ -51,12 +51,15 @@ pub fn suit(tree: &mut Tree<PanelId>, workspace: Workspace, room: Vec2, session:
             let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
             // The rules need more room than the picture.
-            let upper =
-                if session.rules.is_some() { 0.48 * room.y } else { (0.40 * room.y).min(room.y - PLOTS).max(150.0) };
+            let upper = if session.calibration.rules.is_some() {
+                0.48 * room.y
+            } else {
+                (0.40 * room.y).min(room.y - PLOTS).max(150.0)
+            };
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
         }
         Workspace::Train => {
-            let left = session.comfort.left_handed;
+            let left = session.training.comfort.left_handed;
             side_first(tree, left);
             let [side, picture] = [Some(TRAINER_SIDE), None];
             columns(tree, LinearDir::Horizontal, &if left { [side, picture] } else { [picture, side] }, wide);

@@ -26,7 +26,7 @@ impl Session {
 
     /// The same by its title, in Train.
     pub fn open_lesson_titled(&mut self, ctx: &egui::Context, title: &str) {
-        if let Some(lesson) = self.lessons.all.iter().find(|lesson| lesson.title == title).cloned() {
+        if let Some(lesson) = self.training.lessons.all.iter().find(|lesson| lesson.title == title).cloned() {
             self.workspace = Workspace::Train;
             self.close_lesson();
             self.open_lesson(ctx, &lesson);
@@ -42,7 +42,7 @@ impl Session {
 
     /// Makes a lesson of the calibrated world, with experts of its own; in the background.
     pub fn practise_on_this(&mut self, ctx: &egui::Context) {
-        let Some(world) = self.analysis.as_ref().map(|analysis| analysis.world.clone()) else { return };
+        let Some(world) = self.calibration.analysis.as_ref().map(|analysis| analysis.world.clone()) else { return };
         self.jobs.start(ctx, EXPERT, "Watching an expert in this world", move |_| {
             let measured = practise::on(world).and_then(|mut lesson| {
                 lesson.expert = Some(expert::measure(&lesson)?);
@@ -60,24 +60,24 @@ impl Session {
                 self.workspace = Workspace::Train;
                 self.open_lesson(ctx, &Arc::new(lesson));
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     fn open_lesson_only(&mut self, lesson: &Arc<Lesson>) -> bool {
         self.close_lesson();
         let opened = Open::new(lesson, 0).and_then(|mut open| {
-            open.begin(&mut self.trainer, Operator::You)?;
+            open.begin(&mut self.training.trainer, Operator::You)?;
             Ok(open)
         });
         match opened {
             Ok(open) => {
-                self.lessons.open = Some(Box::new(open));
-                self.lessons.shown = true;
+                self.training.lessons.open = Some(Box::new(open));
+                self.training.lessons.shown = true;
                 true
             }
             Err(problem) => {
-                self.fail(problem);
+                self.messages.fail(problem);
                 false
             }
         }
@@ -85,16 +85,16 @@ impl Session {
 
     /// Leaves the lesson; an attempt that is not over is removed.
     pub fn close_lesson(&mut self) {
-        let Some(open) = self.lessons.open.take() else { return };
+        let Some(open) = self.training.lessons.open.take() else { return };
         if matches!(open.phase, Phase::Testing | Phase::Asking) {
-            self.trainer.discard_recording();
+            self.training.trainer.discard_recording();
         }
-        self.trainer.script.acts = None;
+        self.training.trainer.script.acts = None;
         // An expert who shows something stops, and the trainee has the hand again.
-        if self.trainer.operator == Operator::Scripted
-            && let Err(problem) = self.trainer.hand_to(Operator::You)
+        if self.training.trainer.operator == Operator::Scripted
+            && let Err(problem) = self.training.trainer.hand_to(Operator::You)
         {
-            self.fail(problem);
+            self.messages.fail(problem);
         }
     }
 
@@ -111,25 +111,27 @@ impl Session {
     /// Begins the attempt that counts.
     pub fn test_lesson(&mut self) {
         self.begin_phase(Phase::Testing, Operator::You);
-        let Some(open) = self.lessons.open.as_ref().filter(|open| open.phase == Phase::Testing) else { return };
+        let Some(open) = self.training.lessons.open.as_ref().filter(|open| open.phase == Phase::Testing) else {
+            return;
+        };
         let mut stated = Meta::default();
-        stated.other.insert(attempt::SIDECAR_KEY.to_owned(), open.attempted(&self.trainer, None).to_json());
-        (self.trainer.stated, self.trainer.sensors) = (stated, Sensors::Ideal);
-        let begun = self.trainer.start_recording();
-        (self.trainer.stated, self.trainer.sensors) = (Meta::default(), Sensors::Usual);
+        stated.other.insert(attempt::SIDECAR_KEY.to_owned(), open.attempted(&self.training.trainer, None).to_json());
+        (self.training.trainer.stated, self.training.trainer.sensors) = (stated, Sensors::Ideal);
+        let begun = self.training.trainer.start_recording();
+        (self.training.trainer.stated, self.training.trainer.sensors) = (Meta::default(), Sensors::Usual);
         if let Err(problem) = begun {
             self.back_to_brief();
-            self.fail(problem);
+            self.messages.fail(problem);
         }
     }
 
     fn begin_phase(&mut self, phase: Phase, operator: Operator) {
-        let Some(open) = &mut self.lessons.open else { return };
-        match open.begin(&mut self.trainer, operator) {
+        let Some(open) = &mut self.training.lessons.open else { return };
+        match open.begin(&mut self.training.trainer, operator) {
             Ok(()) => open.phase = phase,
             Err(problem) => {
                 open.phase = Phase::Brief;
-                self.fail(problem);
+                self.messages.fail(problem);
             }
         }
     }
@@ -141,14 +143,15 @@ impl Session {
 
     /// Looks how far the attempt is. False when it is over because another world was chosen.
     pub(crate) fn see_lesson(&mut self) -> bool {
-        let (Some(open), Some((snapshot, world))) = (&mut self.lessons.open, self.trainer.scene()) else {
+        let (Some(open), Some((snapshot, world))) = (&mut self.training.lessons.open, self.training.trainer.scene())
+        else {
             return false;
         };
         let is_on = matches!(open.phase, Phase::Watching | Phase::Practising | Phase::Testing | Phase::Asking);
         if is_on && **world != open.world {
             // What was recorded of it until then is no attempt.
-            self.lessons.open = None;
-            self.trainer.script.acts = None;
+            self.training.lessons.open = None;
+            self.training.trainer.script.acts = None;
             return false;
         }
         if matches!(open.phase, Phase::Practising | Phase::Testing) {
@@ -167,8 +170,10 @@ impl Session {
         if !self.see_lesson() {
             return;
         }
-        let Some(open) = self.lessons.open.as_mut().filter(|open| open.phase == Phase::Testing) else { return };
-        if !self.trainer.is_recording() {
+        let Some(open) = self.training.lessons.open.as_mut().filter(|open| open.phase == Phase::Testing) else {
+            return;
+        };
+        if !self.training.trainer.is_recording() {
             // The disk is full, or the servo has stopped: it was said.
             open.phase = Phase::Brief;
             return;
@@ -183,12 +188,14 @@ impl Session {
 
     /// The trainee gives up, or has answered: the attempt is graded from its file.
     pub fn end_lesson(&mut self, ctx: &egui::Context, answer: Option<usize>) {
-        let Some(open) = &mut self.lessons.open else { return };
+        let Some(open) = &mut self.training.lessons.open else { return };
         if answer.is_some() {
-            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.trainer, answer).to_json());
+            self.training
+                .trainer
+                .state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.training.trainer, answer).to_json());
         }
         open.phase = Phase::Grading;
-        let Some(stopping) = self.trainer.stop_recording() else { return };
+        let Some(stopping) = self.training.trainer.stop_recording() else { return };
         let lesson = Arc::clone(&open.lesson);
         self.jobs.start(ctx, GRADE, "", move |_| {
             let debrief = grade_file(&lesson, stopping);
@@ -198,12 +205,14 @@ impl Session {
 
     /// Ends the attempt and grades it at once, for pictures.
     pub fn end_lesson_now(&mut self, answer: Option<usize>) {
-        let Some(open) = &mut self.lessons.open else { return };
+        let Some(open) = &mut self.training.lessons.open else { return };
         if answer.is_some() {
-            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.trainer, answer).to_json());
+            self.training
+                .trainer
+                .state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.training.trainer, answer).to_json());
         }
         let lesson = Arc::clone(&open.lesson);
-        let Some(stopping) = self.trainer.stop_recording() else { return };
+        let Some(stopping) = self.training.trainer.stop_recording() else { return };
         self.graded(grade_file(&lesson, stopping));
     }
 
@@ -212,22 +221,22 @@ impl Session {
         if let Ok(debrief) = &debrief {
             self.keep_graded(debrief);
         }
-        let Some(open) = &mut self.lessons.open else { return };
+        let Some(open) = &mut self.training.lessons.open else { return };
         match debrief {
             Ok(debrief) => open.phase = Phase::Debrief(Box::new(debrief)),
             Err(problem) => {
                 open.phase = Phase::Brief;
-                self.fail(problem);
+                self.messages.fail(problem);
             }
         }
     }
 
     /// The expert has done the lesson, unseen.
     pub(crate) fn expert_did_it(&mut self, trace: Result<Trace, String>) {
-        let Some(open) = &mut self.lessons.open else { return };
+        let Some(open) = &mut self.training.lessons.open else { return };
         match trace {
             Ok(trace) => open.expert = Some(Arc::new(trace)),
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 }

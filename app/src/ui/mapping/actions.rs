@@ -25,7 +25,7 @@ pub fn save(ctx: &egui::Context, jobs: &mut Jobs<Session>, mapping: &Mapping) {
         write_sidecar(&meta, &sidecar).map_err(|error| sentence(&error.to_string()))?;
         change(move |session: &mut Session, ctx| {
             session.mapping = None;
-            session.say_saved(&sidecar);
+            session.messages.say_saved(&sidecar);
             session.open_with(ctx, &path, Some(sidecar));
         })
     });

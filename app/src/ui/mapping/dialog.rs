@@ -59,8 +59,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         Some(Done::Cancel) => {
             session.jobs.cancel(PREVIEW);
             // The file is still not open, and the reason is still the same.
-            if let Some(why) = mapping.why.filter(|_| session.path.as_ref() != Some(&mapping.path)) {
-                session.fail(why);
+            if let Some(why) = mapping.why.filter(|_| session.document.path.as_ref() != Some(&mapping.path)) {
+                session.messages.fail(why);
             }
         }
         Some(Done::Save) => {

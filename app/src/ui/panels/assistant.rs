@@ -32,7 +32,7 @@ mod words {
 /// The card beside the trainer's picture.
 pub fn assistant(ui: &mut Ui, session: &mut Session) {
     let silent = readings::silent(session);
-    let parts = &mut session.assistant;
+    let parts = &mut session.training.assistant;
     let mut on = parts.on;
     let switch = |ui: &mut Ui| {
         let hint = words::SAYS_OVER_THE_PICTURE;
@@ -67,5 +67,5 @@ pub fn assistant(ui: &mut Ui, session: &mut Session) {
             });
         }
     });
-    session.assistant.on = on;
+    session.training.assistant.on = on;
 }

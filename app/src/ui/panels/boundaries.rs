@@ -75,11 +75,11 @@ pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Se
         ui.set_max_width(230.0);
         ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
         if ui.button(words::ONLY_THIS).on_hover_text(words::ONLY_THIS_MORE).clicked() {
-            session.choice.only_s = Some(stretch_s);
+            session.calibration.choice.only_s = Some(stretch_s);
             ui.close();
         }
-        if session.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
-            session.choice.only_s = None;
+        if session.calibration.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
+            session.calibration.choice.only_s = None;
             ui.close();
         }
     });
@@ -88,7 +88,7 @@ pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Se
 /// What can be done with a state, on a right click; `at_s` is the time under the pointer.
 pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, session: &Session) -> Option<Change> {
     let mut change = None;
-    let cursor_s = session.cursor_s;
+    let cursor_s = session.document.cursor_s;
     response.context_menu(|ui| {
         let interval = &segmentation.states[index];
         ui.label(theme::caption(ui, words::SET_BY_HAND));

@@ -72,10 +72,10 @@ fn ask(ui: &mut Ui, session: &mut Session) {
 
 /// Where several recordings are open, each can be checked on by what the others say.
 fn left_out(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.len() < 2 {
+    if session.document.recordings.len() < 2 {
         return;
     }
-    let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let names: Vec<String> = session.document.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = None;
     ui.menu_button(words::LEAVE_ONE_OUT, |ui| {
         for (k, name) in names.iter().enumerate() {

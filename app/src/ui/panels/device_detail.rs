@@ -80,18 +80,18 @@ pub struct DeviceDetail;
 
 impl Panel for DeviceDetail {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        if let Err(problem) = session.trainer.ensure_running() {
-            session.fail(problem);
+        if let Err(problem) = session.training.trainer.ensure_running() {
+            session.messages.fail(problem);
         }
-        session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+        session.training.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
         // Live values: the page is drawn like a film as long as it is open.
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
-        let Some(spec) = session.trainer.spec().cloned() else {
+        let Some(spec) = session.training.trainer.spec().cloned() else {
             empty_state(ui, (Icon::Device, words::NO_DEVICE_IS_RUNNING), words::NO_DEVICE_IS_RUNNING_MORE, |_| {});
             return;
         };
-        if let Some(fault) = session.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
-            session.fail(fault);
+        if let Some(fault) = session.training.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
+            session.messages.fail(fault);
         }
         ScrollArea::vertical().id_salt("device detail").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -113,16 +113,16 @@ impl Panel for DeviceDetail {
 /// What it is, what it can do, what it does when asked.
 fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
     about(ui, session, spec);
-    limits(ui, &session.trainer, spec);
-    force_test(ui, &mut session.trainer, spec);
+    limits(ui, &session.training.trainer, spec);
+    force_test(ui, &mut session.training.trainer, spec);
     super::passivity::passivity(ui, session);
 }
 
 /// What comes from it, and when.
 fn values(ui: &mut Ui, session: &Session) {
-    live(ui, &session.trainer);
-    super::answers::answers(ui, &session.trainer);
-    trainer_timing::timing(ui, &session.trainer);
+    live(ui, &session.training.trainer);
+    super::answers::answers(ui, &session.training.trainer);
+    trainer_timing::timing(ui, &session.training.trainer);
 }
 
 fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
@@ -135,7 +135,7 @@ fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
 
 fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
     plain_card(ui, &spec.name, |ui| {
-        let trainer = &session.trainer;
+        let trainer = &session.training.trainer;
         let what = match trainer.operator {
             Operator::You => trainer.hand.sentence(),
             Operator::Scripted => words::SCRIPT_MORE,

@@ -69,7 +69,7 @@ impl Panel for DeviceList {
                     chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Gamepad), Ok(())));
                 }
                 chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
-                let log = session.prepared().map(drop).ok_or(words::OPEN_A_LOG);
+                let log = session.document.prepared().map(drop).ok_or(words::OPEN_A_LOG);
                 chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
             });
             chosen = chosen.take().or(self.boards(ui, session));
@@ -122,7 +122,7 @@ impl DeviceList {
 /// One device as a line that can be clicked; the choice when it was.
 pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
-    let trainer = &session.trainer;
+    let trainer = &session.training.trainer;
     let (title, sentence) = match &choice {
         Choice::Hand(hand) => (hand.title(), hand.sentence()),
         Choice::Scripted => (words::SCRIPTED_OPERATOR.to_owned(), words::SCRIPTED_OPERATOR_MORE),
@@ -153,15 +153,15 @@ pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<
 
 /// The engine is started again with the device; what is wrong is said.
 fn take(session: &mut Session, choice: Choice) {
-    let log = session.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
+    let log = session.document.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
     let taken = match choice {
         Choice::Hand(hand) => {
-            session.trainer.settings.log = log;
-            session.trainer.take_up(hand)
+            session.training.trainer.settings.log = log;
+            session.training.trainer.take_up(hand)
         }
-        Choice::Scripted => session.trainer.hand_to(Operator::Scripted),
+        Choice::Scripted => session.training.trainer.hand_to(Operator::Scripted),
     };
     if let Err(problem) = taken {
-        session.fail(problem);
+        session.messages.fail(problem);
     }
 }

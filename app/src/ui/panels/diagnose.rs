@@ -100,7 +100,7 @@ impl Panel for DiagnosePanel {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let answer = session.diagnosing.answer.clone();
-            let of = session.current;
+            let of = session.document.current;
             let curves = answer.as_ref().and_then(|a| a.residuals.get(of).filter(|r| !r.is_empty()));
             let atlas = answer.as_ref().and_then(|a| Some((&**a, a.atlas.get(of).filter(|sheet| !sheet.is_empty())?)));
             match (curves, atlas) {
@@ -115,7 +115,7 @@ impl Panel for DiagnosePanel {
 }
 
 fn nothing(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.is_empty() {
+    if session.document.recordings.is_empty() {
         let text = words::NOTHING_YET_MORE;
         empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
@@ -166,8 +166,9 @@ fn begin(ui: &mut Ui, session: &mut Session) {
 
 /// The model of a mechanism to start from; true when it was changed.
 pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
-    let task = session.choice.task;
-    let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
+    let task = session.calibration.choice.task;
+    let mechanism =
+        session.document.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
     if !mechanism {
         return false;
     }
@@ -264,23 +265,23 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
 
 /// The recording whose curves are shown, where there are several.
 fn which(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.len() < 2 {
+    if session.document.recordings.len() < 2 {
         return;
     }
     // No higher than the words beside it.
     ui.spacing_mut().button_padding = vec2(space::S, 0.0);
-    let mut chosen = session.current;
-    let name = |k: usize| session.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
+    let mut chosen = session.document.current;
+    let name = |k: usize| session.document.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
     let list = ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0);
     let list = list.show_ui(ui, |ui| {
-        for k in 0..session.recordings.len() {
+        for k in 0..session.document.recordings.len() {
             ui.selectable_value(&mut chosen, k, name(k));
         }
     });
     let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::WHICH);
     list.response.widget_info(label);
-    if chosen != session.current {
-        session.select(chosen);
+    if chosen != session.document.current {
+        session.document.select(chosen);
     }
 }
 

@@ -57,7 +57,7 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
             ui.label(theme::caption(ui, words::EXPERIMENT));
             match &guided.phase {
                 Phase::Ready => ready(ui, guided, &mut begin),
-                Phase::Going(_) => going(ui, guided, &session.trainer),
+                Phase::Going(_) => going(ui, guided, &session.training.trainer),
                 Phase::Ending => drop(ui.label(words::THE_RECORDING_GETS)),
                 Phase::Recorded(_) => recorded(ui, guided, &mut add, &mut begin),
             }
@@ -121,8 +121,8 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
 /// Two rings where the fingertips are wanted, filled while they are to hold, and the way that they will go.
 pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
     let Some(guided) = &session.experiments.guided else { return };
-    let Some((step, _, goal)) = guided.now(&session.trainer) else { return };
-    let now_s = guided.time_s(&session.trainer).unwrap_or_default();
+    let Some((step, _, goal)) = guided.now(&session.training.trainer) else { return };
+    let now_s = guided.time_s(&session.training.trainer).unwrap_or_default();
     let ahead = (0..=AHEAD_STEPS).map(|k| {
         let later_s = now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS);
         guided.table.route.at(later_s).0.center_m
@@ -133,7 +133,7 @@ pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
 
 /// The same where an expert's fingers go in a lesson that is practised.
 pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
-    let lessons = &session.lessons;
+    let lessons = &session.training.lessons;
     let Some(open) = lessons.open.as_deref().filter(|open| open.phase == state::Phase::Practising) else { return };
     let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
     let now_s = open.ghost.time_s;

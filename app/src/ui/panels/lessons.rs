@@ -61,8 +61,8 @@ enum Wish {
 
 /// All of it.
 pub fn side(ui: &mut Ui, session: &mut Session) {
-    session.lessons.load();
-    let wish = if session.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
+    session.training.lessons.load();
+    let wish = if session.training.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
     let ctx = ui.ctx().clone();
     match wish {
         Some(Wish::Open(lesson)) => session.open_lesson(&ctx, &lesson),
@@ -83,12 +83,12 @@ fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
     plain_card(ui, words::LESSONS, |ui| {
         ui.label(theme::caption(ui, words::LESSONS_MORE));
         ui.add_space(space::XS);
-        for (place, lesson) in session.lessons.all.iter().enumerate() {
+        for (place, lesson) in session.training.lessons.all.iter().enumerate() {
             if row(ui, place + 1, lesson) {
                 wish = Some(Wish::Open(Arc::clone(lesson)));
             }
         }
-        for problem in &session.lessons.problems {
+        for problem in &session.training.lessons.problems {
             remark(ui, Icon::Wrong, problem);
         }
     });
@@ -107,8 +107,8 @@ fn row(ui: &mut Ui, number: usize, lesson: &Lesson) -> bool {
 
 fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
     let mut wish = None;
-    let open = session.lessons.open.as_deref()?;
-    let (trainer, mut ghost_off) = (&session.trainer, session.lessons.ghost_off);
+    let open = session.training.lessons.open.as_deref()?;
+    let (trainer, mut ghost_off) = (&session.training.trainer, session.training.lessons.ghost_off);
     let all = |ui: &mut Ui| {
         if ui.link(words::ALL_LESSONS).clicked() {
             wish = Some(Wish::Close);
@@ -132,11 +132,11 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
             Phase::Debrief(debrief) => {
                 debrief::show(ui, debrief, open.expert.as_deref());
                 ui.add_space(space::S);
-                debriefed(ui, debrief, session.learning.trainee.as_deref())
+                debriefed(ui, debrief, session.training.learning.trainee.as_deref())
             }
         };
     });
-    session.lessons.ghost_off = ghost_off;
+    session.training.lessons.ghost_off = ghost_off;
     wish.or(asked)
 }
 
@@ -289,10 +289,10 @@ fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str)
 
 /// What to do now, for the line over the picture; nothing outside of lessons.
 pub fn hint(session: &Session) -> Option<String> {
-    let open = session.lessons.open.as_deref()?;
+    let open = session.training.lessons.open.as_deref()?;
     match &open.phase {
         Phase::Watching => {
-            let step = open.step(&session.trainer)?;
+            let step = open.step(&session.training.trainer)?;
             Some(open.lesson.demonstration.get(step)?.says.clone())
         }
         Phase::Practising | Phase::Testing => {

@@ -115,7 +115,7 @@ impl Panel for LogPanel {
                 incoming(ui, preview, &progress);
                 return;
             }
-            let Some(prepared) = session.prepared().cloned() else {
+            let Some(prepared) = session.document.prepared().cloned() else {
                 nothing_loaded(ui, session);
                 return;
             };
@@ -200,13 +200,13 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
 
 /// Where the shown recording's curves come from.
 fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
-    let analysis = session.analysis.as_ref();
+    let analysis = session.calibration.analysis.as_ref();
     Sources {
-        recordings: &session.recordings,
+        recordings: &session.document.recordings,
         prepared,
         simulated: session.shown_curves(),
         extended: session.extended_replay(),
-        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.current)?.as_ref()?))),
+        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
     }
 }
 
@@ -243,9 +243,9 @@ fn shifting(
     area: Rangef,
 ) -> Option<f64> {
     plots.pointed = if let Some(Grasp::Over(place) | Grasp::Takes(place, _)) = grasp { Some(place) } else { None };
-    let clockless = session.prepared().is_some_and(|p| p.clockless());
-    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.current, clockless)) {
-        session.playing = false;
+    let clockless = session.document.prepared().is_some_and(|p| p.clockless());
+    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.document.current, clockless)) {
+        session.document.playing = false;
         session.find_likeliest(ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
@@ -257,18 +257,18 @@ fn shifting(
     let clicked = plots.let_go();
     let x = ui.input(|i| i.pointer.latest_pos()).filter(|_| clicked)?.x;
     let share = f64::from((x - area.min) / area.span().max(1.0));
-    Some(session.view_s.0 + share * (session.view_s.1 - session.view_s.0))
+    Some(session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0))
 }
 
 impl LogPanel {
     /// One signal against another; where the slider below lies horizontally.
     fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
         let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
-        let times = (session.view_s, session.cursor_s);
+        let times = (session.document.view_s, session.document.cursor_s);
         let (area, seek) = xy_view(ui, &mut self.xy, plots, &sources(session, prepared), times, height);
         if let Some(time) = seek {
-            session.playing = false;
-            session.seek(time);
+            session.document.playing = false;
+            session.document.seek(time);
         }
         area
     }
@@ -312,8 +312,8 @@ impl LogPanel {
                     has_simulated: can_compare(sources.simulated, group),
                     has_extended: can_compare(sources.extended, group),
                     segmentation: sources.analysis.map(|(_, segmentation)| segmentation),
-                    view_s: session.view_s,
-                    cursor_s: session.cursor_s,
+                    view_s: session.document.view_s,
+                    cursor_s: session.document.cursor_s,
                     time_axis: last,
                     height: each * place.share() + if last { axis_height() } else { 0.0 },
                 };
@@ -324,11 +324,11 @@ impl LogPanel {
             }
             seek = seek.or(shifting(ui, session, plots, grasp, area));
             if let Some(view) = view_s {
-                session.view_s = view;
+                session.document.view_s = view;
             }
             if let Some(time) = seek {
-                session.playing = false;
-                session.seek(time);
+                session.document.playing = false;
+                session.document.seek(time);
             }
         });
         area

@@ -68,8 +68,8 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
 
 /// The coordinate of what has no handle: nothing for what the hand of Train can hold.
 fn driven(session: &Session, diagnosis: &Diagnosis) -> Option<Coordinate> {
-    let task = session.choice.task;
-    let is_mechanism = session.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
+    let task = session.calibration.choice.task;
+    let is_mechanism = session.document.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
     is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
 }
 

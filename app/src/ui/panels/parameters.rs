@@ -54,7 +54,7 @@ pub struct ParametersPanel;
 impl Panel for ParametersPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let busy = session.jobs.is_running(FIT);
-        let analysis = session.analysis.clone();
+        let analysis = session.calibration.analysis.clone();
         let task = analysis.as_ref().map(|a| format::object(a.task.name()));
         card(
             ui,
@@ -79,7 +79,7 @@ impl Panel for ParametersPanel {
 
 /// Why there is no table yet.
 fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
-    let (title, text) = match (&session.fit_problem, busy) {
+    let (title, text) = match (&session.calibration.fit_problem, busy) {
         (_, true) => (words::FITTING, words::FITTING_MORE),
         (Some(problem), _) => (words::NO_FIT, problem.as_str()),
         _ => (words::NOTHING_MEASURED_YET, words::NOTHING_MEASURED_YET_MORE),
@@ -145,7 +145,7 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
     let quantity = format::parameter(&parameter.name, parameter.value);
     let stated = is_stated(session, parameter);
     body.row(LINE, |mut row| {
-        row.set_selected(session.selected_parameter.as_ref() == Some(&full));
+        row.set_selected(session.calibration.selected_parameter.as_ref() == Some(&full));
         let name = quantity.label.clone();
         let shown = parameter.value.filter(|_| parameter.identified);
         row.col(|ui| {
@@ -180,8 +180,8 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
         let response = row.response();
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Row, true, &full));
         if response.clicked() {
-            let again = session.selected_parameter.as_ref() == Some(&full);
-            session.selected_parameter = (!again).then(|| full.clone());
+            let again = session.calibration.selected_parameter.as_ref() == Some(&full);
+            session.calibration.selected_parameter = (!again).then(|| full.clone());
         }
         response.on_hover_ui(|ui| explain(ui, parameter));
     });
@@ -196,7 +196,7 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
 
 /// An icon and a word beside parameters of which something is stated.
 fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static str)> {
-    let (stated, name) = (&session.choice.stated, Stated::name_of(parameter));
+    let (stated, name) = (&session.calibration.choice.stated, Stated::name_of(parameter));
     if stated.known.contains_key(&name) {
         Some((Icon::Lock, "frozen"))
     } else if stated.prior.contains_key(&name) {
@@ -247,7 +247,7 @@ const DEPARTS: f64 = 0.5;
 
 /// What the replay through the fitted world leaves of the measured force.
 fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
-    let Some(prepared) = session.prepared() else { return };
+    let Some(prepared) = session.document.prepared() else { return };
     // Together: a channel that carries little force may well be wrong by all of it.
     let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {

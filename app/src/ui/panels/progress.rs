@@ -100,8 +100,8 @@ impl Panel for ProgressPanel {
         ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, words::WHO_PRACTISES, |ui| who(ui, session));
-            if session.learning.attempts.is_empty() {
-                let text = match &session.learning.trainee {
+            if session.training.learning.attempts.is_empty() {
+                let text = match &session.training.learning.trainee {
                     Some(name) => {
                         format!("{name} has not attempted a lesson yet. What they do is kept and shown here.")
                     }
@@ -117,7 +117,7 @@ impl Panel for ProgressPanel {
 }
 
 fn who(ui: &mut Ui, session: &mut Session) {
-    let learning = &mut session.learning;
+    let learning = &mut session.training.learning;
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         let shown = learning.trainee.clone().unwrap_or_else(|| words::NOBODY_YET.to_owned());
@@ -144,7 +144,7 @@ fn who(ui: &mut Ui, session: &mut Session) {
     if let Some(name) = chosen {
         learning.choose(&name);
     }
-    if !session.learning.is_kept() {
+    if !session.training.learning.is_kept() {
         let text = words::NOTHING_IS_KEPT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     }
@@ -152,8 +152,9 @@ fn who(ui: &mut Ui, session: &mut Session) {
 
 fn learning(ui: &mut Ui, session: &mut Session) {
     lessons(ui, session);
-    let learned = session.learning.learned.clone();
-    let expert = session.learning.shown().and_then(|p| session.learning.experts.get(&p.lesson).copied());
+    let learned = session.training.learning.learned.clone();
+    let expert =
+        session.training.learning.shown().and_then(|p| session.training.learning.experts.get(&p.lesson).copied());
     if learned.tries.is_empty() {
         ui.label(theme::caption(ui, words::NONE_OF_THESE));
         return;
@@ -165,7 +166,7 @@ fn learning(ui: &mut Ui, session: &mut Session) {
 
 /// Which lesson is looked at.
 fn lessons(ui: &mut Ui, session: &mut Session) {
-    let (practised, shown) = (session.learning.practised(), session.learning.shown());
+    let (practised, shown) = (session.training.learning.practised(), session.training.learning.shown());
     let mut chosen: Option<Practised> = None;
     ui.horizontal(|ui| {
         let words = shown.as_ref().map(Practised::words).unwrap_or_default();
@@ -181,7 +182,7 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
         call(&list.response, words::LESSON);
     });
     if chosen.is_some() {
-        session.learning.look_at(chosen);
+        session.training.learning.look_at(chosen);
     }
     let (p, model) = (palette(ui), inks(ui).model);
     ui.horizontal_wrapped(|ui| {
@@ -359,7 +360,7 @@ fn when(attempt: &Attempt) -> String {
 
 fn attempts(ui: &mut Ui, session: &mut Session) {
     compact(ui, |ui| {
-        let all = session.learning.learned.attempts.len();
+        let all = session.training.learning.learned.attempts.len();
         ui.label(theme::caption(
             ui,
             if all == 1 { words::ONE_ATTEMPT_ALONE.to_owned() } else { format!("{all} attempts.") },
@@ -374,7 +375,7 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
     ui.add_space(space::XS);
     let p = palette(ui);
     ui.spacing_mut().interact_size.y = ROW;
-    let rows = &session.learning.learned.attempts;
+    let rows = &session.training.learning.learned.attempts;
     // In a narrow panel the table is wider than its card.
     ScrollArea::horizontal().id_salt("table").show(ui, |ui| table(ui, rows, p));
 }

@@ -87,7 +87,9 @@ impl Panel for ResultsPanel {
 }
 
 fn constraints(ui: &mut Ui, session: &Session) {
-    let Some(analysis) = session.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else { return };
+    let Some(analysis) = session.calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
+        return;
+    };
     plain_card(ui, words::CONSTRAINTS, |ui| {
         for (index, constraint) in analysis.fit.constraints.iter().enumerate() {
             if index > 0 {
@@ -169,12 +171,12 @@ fn facts(constraint: &Constraint) -> Vec<String> {
 }
 
 fn warnings(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for warning in &prepared.recording.warnings {
         texts.push((sentence(&warning.text), places(&prepared, warning)));
     }
-    let analysis = session.analysis.clone();
+    let analysis = session.calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
     let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
@@ -199,12 +201,12 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             ui.scope(|ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 remark(ui, Icon::Doubt, text);
-                jump = jump.or(go_there(ui, &places, session.cursor_s, prepared.clockless()));
+                jump = jump.or(go_there(ui, &places, session.document.cursor_s, prepared.clockless()));
             });
         }
     });
     if let Some((from, to)) = jump {
-        session.look_at(from, to);
+        session.document.look_at(from, to);
     }
 }
 
@@ -226,7 +228,7 @@ fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) 
 }
 
 fn diagnose(ui: &mut Ui, session: &mut Session) {
-    if session.analysis.is_none() {
+    if session.calibration.analysis.is_none() {
         return;
     }
     plain_card(ui, words::WHAT_IT_GETS_WRONG, |ui| {
@@ -243,7 +245,7 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
 }
 
 fn train_with_it(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
         return;
     }
@@ -252,7 +254,7 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
             if primary_button(ui, true, (Icon::Touch, words::TRAIN_IN_THIS_WORLD)).clicked() {
-                session.train_calibrated = true;
+                session.training.train_calibrated = true;
                 session.workspace = Workspace::Train;
             }
             let hint = words::PRACTISE_ON_THIS_MORE;

@@ -55,7 +55,7 @@ enum Asked {
 impl Panel for RulesPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         editing_rules::follow(ui.ctx(), session);
-        let Some(mut open) = session.rules.take() else { return };
+        let Some(mut open) = session.calibration.rules.take() else { return };
         let (seen, before) = (open.draft.clone(), open.before.clone());
         let mut asked = Asked::Nothing;
         let heading = format!("Rules of the task “{}”", open.draft.title);
@@ -80,9 +80,9 @@ impl Panel for RulesPanel {
             open.add_state();
         }
         open.untried |= open.draft != seen;
-        session.rules = Some(open);
+        session.calibration.rules = Some(open);
         match asked {
-            Asked::Close => session.rules = None,
+            Asked::Close => session.calibration.rules = None,
             Asked::Reset => reset(session),
             Asked::Nothing if save => editing_rules::save(ui.ctx(), session),
             Asked::Nothing | Asked::Add => {}
@@ -113,7 +113,7 @@ fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
 }
 
 fn reset(session: &mut Session) {
-    let Some(open) = session.rules.as_mut() else { return };
+    let Some(open) = session.calibration.rules.as_mut() else { return };
     open.draft = open.before.clone();
     (open.fault, open.untried) = (None, true);
 }

@@ -82,14 +82,14 @@ impl Default for ScenePanel {
 
 impl Panel for ScenePanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        if session.rules.is_some() {
+        if session.calibration.rules.is_some() {
             // The rules take the place of the picture, so that the states below are seen to follow.
             RulesPanel.ui(ui, session);
             return;
         }
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            let Some(prepared) = session.prepared().cloned() else {
+            let Some(prepared) = session.document.prepared().cloned() else {
                 let text = words::THE_RECORDED_HAND;
                 empty_state(ui, (Icon::Scene, words::THE_RECORDING_IN_SPACE), text, |_| {});
                 return;
@@ -119,7 +119,7 @@ impl Panel for ScenePanel {
 impl ScenePanel {
     /// A recording without a place in space.
     fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
-        let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
+        let Some(mechanism) = Mechanism::of(prepared, session.document.cursor_s) else {
             let text = words::THIS_RECORDING_HAS;
             empty_state(ui, (Icon::Scene, words::NOTHING_TO_SHOW), text, |_| {});
             return;
@@ -142,7 +142,7 @@ impl ScenePanel {
 
     /// Compares the replay with the recording, once for each replay.
     fn compare(&mut self, session: &Session, prepared: &Prepared) {
-        let found = session.replay().zip(session.analysis.as_ref()).filter(|_| session.layers.replay);
+        let found = session.replay().zip(session.calibration.analysis.as_ref()).filter(|_| session.layers.replay);
         let Some((replay, analysis)) = found else {
             self.likeness = None;
             return;

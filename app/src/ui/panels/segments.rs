@@ -111,8 +111,8 @@ fn spaced(sequence: &str) -> String {
 /// The band between the given edges, with its names to the left, and the legend below.
 pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     let busy = session.jobs.is_running(FIT);
-    let analysis = session.analysis.clone();
-    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref());
+    let analysis = session.calibration.analysis.clone();
+    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());
     let p = palette(ui);
     let label = |y: f32, text: &str| {
@@ -128,7 +128,7 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     label(band.center().y, words::STATES);
     ui.painter().rect_filled(band, 4, p.sunken);
     let Some(segmentation) = segmentation else {
-        let clockless = session.prepared().is_some_and(|p| p.clockless());
+        let clockless = session.document.prepared().is_some_and(|p| p.clockless());
         let text = match (busy, clockless, analysis.is_some()) {
             (true, ..) => words::FITTING,
             (_, true, _) => words::NO_STATES_THEY,
@@ -145,7 +145,7 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
 }
 
 fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
-    let (from, to) = session.view_s;
+    let (from, to) = session.document.view_s;
     let share = ((time - from) / (to - from).max(1e-12)).clamp(-1.0, 2.0);
     (area.min + share as f32 * area.span()).clamp(area.min, area.max)
 }
@@ -182,7 +182,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         if response.clicked() {
             seek = ui.input(|i| i.pointer.interact_pos()).map(|at| {
                 let share = f64::from((at.x - band.left()) / band.width());
-                session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
+                session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0)
             });
         }
         if can_be_set {
@@ -200,15 +200,15 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         });
     }
     if can_be_set {
-        change = change.or(boundaries::handles(ui, session.view_s, segmentation, band));
+        change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
     }
     if let Some(change) = change {
         session.set_states(&change);
     }
     if let Some(time) = seek {
-        session.seek(time);
+        session.document.seek(time);
     }
-    let x = x_of(session, band.x_range(), session.cursor_s);
+    let x = x_of(session, band.x_range(), session.document.cursor_s);
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
 }
 
@@ -322,8 +322,9 @@ fn agreement(ui: &mut Ui, score: &Score) {
 
 /// All intervals as a list: for reading, and for the picture of this panel.
 fn intervals(ui: &mut Ui, session: &mut Session) {
-    let analysis = session.analysis.clone();
-    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref()) else {
+    let analysis = session.calibration.analysis.clone();
+    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref())
+    else {
         return;
     };
     let dark = ui.visuals().dark_mode;
@@ -362,6 +363,6 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
             });
         });
     if let Some(time) = seek {
-        session.seek(time);
+        session.document.seek(time);
     }
 }

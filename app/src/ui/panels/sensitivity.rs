@@ -67,7 +67,8 @@ impl Panel for SensitivityPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
         session.want_sensitivity(&ctx);
-        let Some(found) = session.sensitivity.clone().filter(|_| session.analysis.is_some()) else {
+        let Some(found) = session.calibration.sensitivity.clone().filter(|_| session.calibration.analysis.is_some())
+        else {
             let busy = session.jobs.is_running(SENSITIVITY);
             let text = if busy { words::LOOKING_MORE } else { words::NOTHING_FITTED_YET_MORE };
             empty_state(
@@ -110,7 +111,7 @@ fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
         });
         let hint = format!("{}{uncertain}\nClick to try another value.", words(&effect.name));
         if response.on_hover_text(hint).clicked() {
-            session.selected_parameter = Some(effect.name.clone());
+            session.calibration.selected_parameter = Some(effect.name.clone());
         }
     }
 }

@@ -84,12 +84,12 @@ pub struct TrainerSide;
 impl Panel for TrainerSide {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // Commands name them, wherever one is.
-        session.lessons.load();
+        session.training.lessons.load();
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             let choices = [(false, words::FREE, words::FREE_MORE), (true, words::LESSONS, words::LESSONS_MORE)];
-            ui.vertical_centered(|ui| segmented(ui, &mut session.lessons.shown, &choices));
-            if session.lessons.shown {
+            ui.vertical_centered(|ui| segmented(ui, &mut session.training.lessons.shown, &choices));
+            if session.training.lessons.shown {
                 super::lessons::side(ui, session);
             } else {
                 super::compare::compare(ui, session);
@@ -97,26 +97,28 @@ impl Panel for TrainerSide {
                 operator(ui, session);
                 plain_card(ui, words::RECORDING, |ui| recorder::controls(ui, session));
             }
-            forces(ui, &session.trainer);
+            forces(ui, &session.training.trainer);
             super::assistant::assistant(ui, session);
-            if !session.lessons.shown {
-                super::measured::beside(ui, &mut session.trainer);
+            if !session.training.lessons.shown {
+                super::measured::beside(ui, &mut session.training.trainer);
             }
             super::delay::delay(ui, session);
             super::comfort::card(ui, session);
-            if session.lessons.shown {
+            if session.training.lessons.shown {
                 return;
             }
             super::passivity::passivity(ui, session);
-            super::trainer_timing::timing(ui, &session.trainer);
+            super::trainer_timing::timing(ui, &session.training.trainer);
         });
     }
 }
 
 fn world(ui: &mut Ui, session: &mut Session) {
-    let calibrated = session.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
-    session.trainer.calibrated = calibrated.map(|a| a.world.clone());
-    let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
+    let calibrated =
+        session.calibration.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
+    session.training.trainer.calibrated = calibrated.map(|a| a.world.clone());
+    let (has_calibrated, has_file) =
+        (session.training.trainer.calibrated.is_some(), session.training.trainer.file.is_some());
     let (mut chosen, mut again) = (None, false);
     let start_over = |ui: &mut Ui| {
         again = ui.link(words::START_OVER).on_hover_text(words::START_OVER_MORE).clicked();
@@ -143,12 +145,12 @@ fn world(ui: &mut Ui, session: &mut Session) {
         }
     });
     if again {
-        chosen = Some(session.trainer.choice);
+        chosen = Some(session.training.trainer.choice);
     }
     if let Some(choice) = chosen
-        && let Err(problem) = session.trainer.choose(choice)
+        && let Err(problem) = session.training.trainer.choose(choice)
     {
-        session.fail(problem);
+        session.messages.fail(problem);
     }
 }
 
@@ -161,7 +163,7 @@ fn world_choice(
     missing: Option<&str>,
 ) -> Option<WorldChoice> {
     compact(ui, |ui| {
-        let on = session.trainer.choice == choice;
+        let on = session.training.trainer.choice == choice;
         let response = ui.add_enabled(missing.is_none(), egui::RadioButton::new(on, label));
         let response = response.on_hover_text(hint).on_disabled_hover_text(missing.unwrap_or(hint));
         if choice == WorldChoice::File {
@@ -176,7 +178,7 @@ fn world_choice(
 }
 
 fn operator(ui: &mut Ui, session: &mut Session) {
-    let mut operator = session.trainer.operator;
+    let mut operator = session.training.trainer.operator;
     let choices =
         [(Operator::You, words::YOU, words::YOU_MORE), (Operator::Scripted, words::SCRIPTED, words::SCRIPTED_MORE)];
     let mut changed = false;
@@ -187,19 +189,22 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         |ui| changed = segmented(ui, &mut operator, &choices),
         |ui| operator_state(ui, session),
     );
-    if changed && let Err(problem) = session.trainer.hand_to(operator) {
-        session.fail(problem);
+    if changed && let Err(problem) = session.training.trainer.hand_to(operator) {
+        session.messages.fail(problem);
     }
 }
 
 fn operator_state(ui: &mut Ui, session: &mut Session) {
-    match session.trainer.operator {
+    match session.training.trainer.operator {
         Operator::You => {
-            let text = match session.trainer.hand {
+            let text = match session.training.trainer.hand {
                 HandDevice::Mouse => {
-                    format!("Mouse · pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1))
+                    format!(
+                        "Mouse · pinch strength {} N",
+                        format::number(session.training.trainer.pinch.strength_n(), 1)
+                    )
                 }
-                _ => session.trainer.hand.title(),
+                _ => session.training.trainer.hand.title(),
             };
             compact(ui, |ui| {
                 ui.label(theme::caption(ui, text));

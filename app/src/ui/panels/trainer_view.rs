@@ -145,33 +145,33 @@ fn home() -> Camera {
 impl Panel for TrainerView {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // The window's first picture comes before the servo, which takes a processor for itself.
-        if session.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
+        if session.training.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
             ui.ctx().request_repaint();
             sheet(ui).show(ui, |ui| ui.set_min_size(ui.available_size()));
             return;
         }
-        if let Err(problem) = session.trainer.ensure_running() {
-            session.fail(problem);
+        if let Err(problem) = session.training.trainer.ensure_running() {
+            session.messages.fail(problem);
         }
         super::compare::key(ui, session);
         let has_focus = ui.input(|i| i.focused);
         // Where nothing ever has the focus (no window manager) there is none to be lost.
-        if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.comfort.pauses {
-            session.trainer.lose_focus();
+        if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.training.comfort.pauses {
+            session.training.trainer.lose_focus();
         }
-        self.rig.turned_by = session.comfort.turns();
+        self.rig.turned_by = session.training.comfort.turns();
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
-        session.trainer.update(frame_s);
+        session.training.trainer.update(frame_s);
         #[cfg(feature = "sound")]
         self.knock(session);
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            let Some((snapshot, world)) = session.trainer.scene() else {
+            let Some((snapshot, world)) = session.training.trainer.scene() else {
                 empty_state(ui, (Icon::Doubt, words::NO_SERVO), words::NO_SERVO_MORE, |_| {});
                 return;
             };
-            let limit = session.trainer.config().limits.max_force_n;
-            let trainer = &session.trainer;
+            let limit = session.training.trainer.config().limits.max_force_n;
+            let trainer = &session.training.trainer;
             let state = trainer.seen().unwrap_or(&snapshot.state).clone();
             let saturated = state.tip_force_n.map(|f| f.norm() > limit);
             // The far world stands behind the model as a ghost; without a model its late picture is all there is.
@@ -180,39 +180,41 @@ impl Panel for TrainerView {
             let scene = (std::sync::Arc::clone(world), state, options);
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
-            session.trainer_place = Some(view.place(ui));
+            session.training.trainer_place = Some(view.place(ui));
             over(ui, &view, session);
-            let held = session.trainer.held().is_some();
+            let held = session.training.trainer.held().is_some();
             if held {
-                super::comfort::paused(ui, view.rect, &mut session.trainer);
-            } else if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
-                if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
-                    session.fail(problem);
+                super::comfort::paused(ui, view.rect, &mut session.training.trainer);
+            } else if session.training.trainer.operator == Operator::You
+                && session.training.trainer.hand != HandDevice::Replay
+            {
+                if let Err(problem) = steering::touches(ui, &view, &mut session.training.trainer) {
+                    session.messages.fail(problem);
                 }
-                steering::keys(ui, &mut session.trainer);
-                if matches!(session.trainer.steering, Steering::Mouse(_)) {
+                steering::keys(ui, &mut session.training.trainer);
+                if matches!(session.training.trainer.steering, Steering::Mouse(_)) {
                     steer(ui, &view, session, frame_s);
                 }
-                hints(ui, view.rect, &session.trainer.hand, session.comfort.left_handed);
+                hints(ui, view.rect, &session.training.trainer.hand, session.training.comfort.left_handed);
                 if let Some(hint) = lessons::hint(session) {
                     pill(ui, view.rect, &hint);
                 } else if let Some((_, world)) =
-                    session.trainer.scene().filter(|_| session.experiments.guided.is_none())
+                    session.training.trainer.scene().filter(|_| session.experiments.guided.is_none())
                 {
                     pill(ui, view.rect, task_hint(world));
                 }
             } else {
                 let hint = lessons::hint(session);
-                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.trainer)));
+                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.training.trainer)));
             }
             if !held {
                 guide::card(ui, &view, session);
             }
             if let Some(fault) = fault {
-                session.fail(fault);
+                session.messages.fail(fault);
             }
         });
-        if session.trainer.is_moving() {
+        if session.training.trainer.is_moving() {
             ui.ctx().request_repaint();
         } else {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(66));
@@ -222,10 +224,10 @@ impl Panel for TrainerView {
 
 /// What is drawn over the picture.
 fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
-    if let Some((snapshot, _)) = session.trainer.scene() {
+    if let Some((snapshot, _)) = session.training.trainer.scene() {
         marks::device(ui, view, snapshot);
     }
-    marks::flashes(ui, view, &session.trainer.impacts);
+    marks::flashes(ui, view, &session.training.trainer.impacts);
     draw::draw(ui, view, session);
     guide::ghost(ui, view, session);
     guide::expert(ui, view, session);
@@ -257,7 +259,7 @@ impl TrainerView {
 }
 
 fn steer(ui: &Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
-    let (pinches, trainer) = (session.comfort.pinches(), &mut session.trainer);
+    let (pinches, trainer) = (session.training.comfort.pinches(), &mut session.training.trainer);
     let response = &view.response;
     let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
     if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {

@@ -99,7 +99,7 @@ impl Panel for VideoPanel {
 }
 
 fn none(ui: &mut Ui, session: &mut Session) {
-    let loaded = session.prepared().is_some();
+    let loaded = session.document.prepared().is_some();
     let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
     empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
         if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
@@ -181,17 +181,17 @@ fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
         return;
     }
     let step_s = f64::from(by / response.rect.width().max(1.0)) * video.duration_s().min(10.0);
-    session.playing = false;
-    match session.videos.loose_s {
-        Some(loose_s) => session.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
-        None => session.seek(session.cursor_s + step_s),
+    session.document.playing = false;
+    match session.document.videos.loose_s {
+        Some(loose_s) => session.document.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
+        None => session.document.seek(session.document.cursor_s + step_s),
     }
 }
 
 fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
     ui.spacing_mut().interact_size.y = 20.0;
     ui.spacing_mut().button_padding.y = 2.0;
-    let loose = session.videos.loose_s;
+    let loose = session.document.videos.loose_s;
     ui.horizontal(|ui| {
         let mut by_itself = loose.is_some();
         let hint = words::BY_ITSELF_MORE;
@@ -204,7 +204,7 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
             session.video_belongs_here();
         }
     });
-    ui.horizontal(|ui| match session.videos.loose_s {
+    ui.horizontal(|ui| match session.document.videos.loose_s {
         Some(at_s) => runner(ui, session, video, at_s),
         None => facts(ui, session, video),
     });
@@ -235,7 +235,7 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
     ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);
     let slider = Slider::new(&mut at_s, 0.0..=(video.duration_s() - step_s).max(0.0));
     if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text(words::WHERE).changed() {
-        session.videos.loose_s = Some(at_s);
+        session.document.videos.loose_s = Some(at_s);
     }
 }
 

@@ -134,7 +134,7 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
     }
     if layers.constraints {
         for marked in markers::of(session, prepared) {
-            rows.extend(of_constraint(&marked, session.cursor_s));
+            rows.extend(of_constraint(&marked, session.document.cursor_s));
         }
     }
     if layers.contacts && prepared.tips.is_some() && session.replay().is_some_and(|r| r.film.is_some()) {

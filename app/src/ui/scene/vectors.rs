@@ -21,7 +21,7 @@ pub fn net(session: &Session, prepared: &Prepared) -> Vec<ForceVector> {
 /// What a model of weight and friction does not explain of it. Where a constraint is known: its part across the motion, less
 /// the weight's (thesis, eq. 5.1). Else what the replay in the fitted world leaves.
 pub fn unexplained(session: &Session, prepared: &Prepared, marker: Option<&ConstraintMarker>) -> Vec<ForceVector> {
-    let weight_n = session.analysis.as_ref().and_then(|a| a.fit.value("crank", "weight_N")).unwrap_or(0.0);
+    let weight_n = session.calibration.analysis.as_ref().and_then(|a| a.fit.value("crank", "weight_N")).unwrap_or(0.0);
     let vector = |i: usize| {
         let (at_m, force) = (prepared.point_at(i)?, prepared.force_at(i)?);
         let force_n = match marker.and_then(|marker| normal_at(marker, at_m)) {

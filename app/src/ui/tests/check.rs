@@ -73,7 +73,7 @@ fn an_open_recording_is_left_out_and_the_others_answer_for_it() {
     second.name = "again".to_owned();
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    session.recordings.push(Arc::new(Prepared::new(second)));
+    session.document.recordings.push(Arc::new(Prepared::new(second)));
     let mut harness = window(session);
     harness.get_by_role_and_label(Role::Button, "Leave an open one out …").click();
     harness.run_steps(3);
@@ -85,9 +85,13 @@ fn an_open_recording_is_left_out_and_the_others_answer_for_it() {
     assert_eq!((checked.name.as_str(), checked.found.as_ref().map(holds)), ("again", Ok(Holds::Yes)));
     // The first one alone was asked: its answer is the one that is there.
     let again =
-        check_now(&session.recordings, &session.choice, &answer, &On::LeftOut(1), &|_| true).expect("not ended");
+        check_now(&session.document.recordings, &session.calibration.choice, &answer, &On::LeftOut(1), &|_| true)
+            .expect("not ended");
     assert_eq!(again[0].found, checked.found);
-    assert!(check_now(&session.recordings, &session.choice, &answer, &On::LeftOut(1), &|_| false).is_none());
+    assert!(
+        check_now(&session.document.recordings, &session.calibration.choice, &answer, &On::LeftOut(1), &|_| false)
+            .is_none()
+    );
 }
 
 #[test]

@@ -42,7 +42,8 @@ fn loaded(recording: Recording) -> Session {
 pub fn diagnosed(recording: Recording) -> Session {
     let mut session = loaded(recording);
     let from = session.diagnosing.from;
-    let answer = diagnosis_state::ask(&session.recordings, &session.choice, from, Progress::default());
+    let answer =
+        diagnosis_state::ask(&session.document.recordings, &session.calibration.choice, from, Progress::default());
     match answer {
         Ok(answer) => session.diagnosing.answer = Some(Arc::new(answer)),
         Err(problem) => session.diagnosing.problem = Some(problem),
@@ -104,29 +105,34 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     harness.get_by_role_and_label(egui::Role::Button, "Feel it in Train").click();
     harness.run_steps(4);
     let session = &harness.state().session;
-    assert_eq!((session.workspace, session.trainer.choice), (Workspace::Train, WorldChoice::After));
-    assert!(session.banners.is_empty(), "{:?}", session.banners);
+    assert_eq!((session.workspace, session.training.trainer.choice), (Workspace::Train, WorldChoice::After));
+    assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
 }
 
 #[test]
 fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() {
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        &answer,
+    );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
-    session.trainer.operator = Operator::Scripted;
-    session.trainer.choose(WorldChoice::After).expect("the extended world");
+    session.training.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
+    session.training.trainer.operator = Operator::Scripted;
+    session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
     let mut harness = window(session);
     assert!(harness.query_by_label("Feel it").is_some());
     let mut last_n = 0.0;
     for switch in 0..12 {
-        harness.state_mut().session.trainer.advance(0.45);
-        let before = harness.state().session.trainer.scene().expect("running").0.clone();
+        harness.state_mut().session.training.trainer.advance(0.45);
+        let before = harness.state().session.training.trainer.scene().expect("running").0.clone();
         harness.key_press(egui::Key::B);
         harness.step();
-        let trainer = &mut harness.state_mut().session.trainer;
+        let trainer = &mut harness.state_mut().session.training.trainer;
         let wanted = if switch % 2 == 0 { WorldChoice::Before } else { WorldChoice::After };
         assert_eq!(trainer.choice, wanted);
         trainer.advance(1e-3);
@@ -145,7 +151,7 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
         last_n = f64::max(last_n, after.tick.sent_force_n[0].norm());
     }
     assert!(last_n > 0.2, "the handle was held: {last_n} N");
-    assert!(harness.state().session.banners.is_empty());
+    assert!(harness.state().session.messages.banners.is_empty());
 }
 
 #[test]
@@ -171,8 +177,12 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     second.name = "again".to_owned();
     let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
     session.show(recordings.to_vec());
-    let answer =
-        diagnosis_state::ask(&session.recordings, &session.choice, session.diagnosing.from, Progress::default());
+    let answer = diagnosis_state::ask(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        Progress::default(),
+    );
     let answer = answer.expect("an answer");
     assert_eq!(answer.residuals.len(), 2);
     assert!(answer.residuals.iter().all(|r| !r.is_empty()));
@@ -182,7 +192,7 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     harness.run_steps(3);
     harness.get_by_role_and_label(egui::Role::Button, "again").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().session.current, 1);
+    assert_eq!(harness.state().session.document.current, 1);
 }
 
 #[test]
@@ -212,7 +222,12 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
     assert!(ids.contains(&"viscous-friction") && ids.contains(&"coulomb-friction"), "{ids:?}");
-    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        &answer,
+    );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
     let why = session.comparison().expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
@@ -237,17 +252,22 @@ fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     // And the engine itself ends when nobody wants its answer.
     let session = loaded(RIPPLED.clone());
     let unwanted = Progress::new(|share| share < 0.3);
-    let ended = diagnosis_state::ask(&session.recordings, &session.choice, session.diagnosing.from, unwanted);
+    let ended = diagnosis_state::ask(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        unwanted,
+    );
     assert!(ended.is_err_and(|problem| problem.contains("cancelled")));
 }
 
 #[test]
 fn another_log_forgets_the_answer() {
     let mut session = diagnosed(RIPPLED.clone());
-    let recordings = loaded(cart()).recordings;
+    let recordings = loaded(cart()).document.recordings;
     session.show(recordings);
     assert!(session.diagnosing.answer.is_none() && session.diagnosing.worlds.is_none());
-    assert_eq!(session.prepared().map(|p| p.task), Some(Some(Task::Mechanism)));
+    assert_eq!(session.document.prepared().map(|p| p.task), Some(Some(Task::Mechanism)));
 }
 
 #[test]

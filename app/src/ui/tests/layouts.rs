@@ -41,7 +41,7 @@ fn an_arrangement_is_saved_renamed_chosen_and_deleted_by_palette_and_menu() {
     assert!(harness.query_by_label("Save the arrangement").is_some());
     name_it(&mut harness, "with R and space");
     assert_eq!(harness.state().dock.names(AT).collect::<Vec<_>>(), ["with R and space"]);
-    assert!(!harness.state().session.playing, "letters of a name are no commands");
+    assert!(!harness.state().session.document.playing, "letters of a name are no commands");
     find(&mut harness, "rename arrangement");
     name_it(&mut harness, "states");
     find(&mut harness, "standard arrangement");

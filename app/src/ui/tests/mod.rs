@@ -89,17 +89,17 @@ pub fn clockless_path() -> Recording {
 /// A session with a recording, fitted and replayed as far as that goes.
 pub fn session(recording: Recording) -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match crate::ui::refits::analyse(&session.recordings, &session.choice) {
+    match crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice) {
         Ok(analysis) => {
-            session.replays = crate::ui::refits::replay_all(&analysis.world, &session.recordings);
-            session.enough = crate::ui::refits::judge(&analysis, &session.recordings);
-            session.analysis = Some(Arc::new(analysis));
-            session.refits.answered(&session.choice.clone());
+            session.calibration.replays = crate::ui::refits::replay_all(&analysis.world, &session.document.recordings);
+            session.calibration.enough = crate::ui::refits::judge(&analysis, &session.document.recordings);
+            session.calibration.analysis = Some(Arc::new(analysis));
+            session.calibration.refits.answered(&session.calibration.choice.clone());
         }
-        Err(problem) => session.fit_problem = Some(problem),
+        Err(problem) => session.calibration.fit_problem = Some(problem),
     }
     session
 }
@@ -109,7 +109,7 @@ pub static CRANK: LazyLock<Recording> = LazyLock::new(|| performed(WorldChoice::
 
 pub fn empty() -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session
 }
 
@@ -117,8 +117,8 @@ pub fn empty() -> Session {
 pub fn in_train(folder: &Path) -> Session {
     let mut session = empty();
     session.workspace = Workspace::Train;
-    session.trainer.recordings_folder = Some(folder.to_path_buf());
-    session.lessons.folder = Some(folder.join("lessons"));
+    session.training.trainer.recordings_folder = Some(folder.to_path_buf());
+    session.training.lessons.folder = Some(folder.join("lessons"));
     session
 }
 

@@ -26,7 +26,7 @@ fn every_panel_draws_every_kind_of_session() {
             // Tiny windows too.
             harness.set_size(egui::vec2(60.0, 40.0));
             harness.run_steps(2);
-            assert!(harness.state().banners.is_empty(), "{title}: {:?}", harness.state().banners);
+            assert!(harness.state().messages.banners.is_empty(), "{title}: {:?}", harness.state().messages.banners);
         }
     }
 }
@@ -34,7 +34,7 @@ fn every_panel_draws_every_kind_of_session() {
 #[test]
 fn the_table_shows_the_values_and_greys_what_is_unknown() {
     let session = session(STACK.clone());
-    let fit = session.analysis.as_ref().expect("fitted").fit.clone();
+    let fit = session.calibration.analysis.as_ref().expect("fitted").fit.clone();
     let harness = harness(session, [420.0, 800.0], |ui, session| ParametersPanel.ui(ui, session));
     let weight = fit.parameter("block-1", "weight_N").expect("carried");
     let (value, error) = format::with_error(weight.value.expect("a value"), weight.std_error);
@@ -47,7 +47,7 @@ fn the_table_shows_the_values_and_greys_what_is_unknown() {
 #[test]
 fn refit_starts_a_job_and_brings_a_fit() {
     let mut session = session(STACK.clone());
-    session.analysis = None;
+    session.calibration.analysis = None;
     let mut harness = harness(session, [300.0, 800.0], |ui, session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
@@ -55,8 +55,8 @@ fn refit_starts_a_job_and_brings_a_fit() {
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();
     harness.run_steps(1);
-    assert!(harness.state().jobs.is_running(FIT) || harness.state().analysis.is_some());
-    until(&mut harness, "the fit", |session| session.analysis.is_some());
+    assert!(harness.state().jobs.is_running(FIT) || harness.state().calibration.analysis.is_some());
+    until(&mut harness, "the fit", |session| session.calibration.analysis.is_some());
 }
 
 #[test]
@@ -84,11 +84,11 @@ fn doubtful_spans_are_shaded_and_listed() {
         harness(session(recording.clone()), [420.0, 900.0], |ui, session| ResultsPanel::default().ui(ui, session));
     harness.get_by_label("Go to 2.00 s (1 of 2)").click();
     harness.run_steps(3);
-    let (from, to) = harness.state().view_s;
-    assert!(harness.state().cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
+    let (from, to) = harness.state().document.view_s;
+    assert!(harness.state().document.cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
     harness.get_by_label("Go to 8.00 s (2 of 2)").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().cursor_s, 8.0);
+    assert_eq!(harness.state().document.cursor_s, 8.0);
     if no_driver() {
         return;
     }

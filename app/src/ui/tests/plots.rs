@@ -41,8 +41,9 @@ fn extended() -> Session {
     session.workspace = Workspace::Calibrate;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let from = session.diagnosing.from;
-    let worlds = diagnosis_state::extend(&session.recordings, &session.choice, from, &answer).expect("extended");
-    session.diagnosing.replays = replay_forces(&worlds.after, &session.recordings);
+    let worlds = diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer)
+        .expect("extended");
+    session.diagnosing.replays = replay_forces(&worlds.after, &session.document.recordings);
     session.diagnosing.worlds = Some(Arc::new(worlds));
     session
 }
@@ -70,9 +71,9 @@ pub fn two(first: &Recording, second: Recording) -> Session {
     let mut session = Session::new();
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(first.clone())), Arc::new(Prepared::new(second))]);
-    let analysis = analyse(&session.recordings, &session.choice).expect("fitted");
-    session.replays = replay_all(&analysis.world, &session.recordings);
-    session.analysis = Some(Arc::new(analysis));
+    let analysis = analyse(&session.document.recordings, &session.calibration.choice).expect("fitted");
+    session.calibration.replays = replay_all(&analysis.world, &session.document.recordings);
+    session.calibration.analysis = Some(Arc::new(analysis));
     session
 }
 
@@ -85,7 +86,7 @@ fn a_transform_is_chosen_at_the_title_and_the_unit_follows() {
     assert_eq!(harness.state().plots.groups["Position/mm"].drawn, Transform::Derivative, "short: at once");
     assert!(harness.query_by_label("mm/s").is_some());
     // The value at the cursor is the speed that the motion was made with.
-    harness.state_mut().seek(2.0);
+    harness.state_mut().document.seek(2.0);
     harness.run_steps(2);
     let speed = 1e3 * (0.13 * 2.6_f64.cos() + 0.124 * 6.2_f64.cos());
     let text = crate::text::format::number(speed, 1);
@@ -166,7 +167,7 @@ fn the_extended_curve_and_what_is_left_stand_in_the_picture() {
             if !shown {
                 choice.toggle("layer: extended");
             }
-            session.seek(6.0);
+            session.document.seek(6.0);
             let picture = screenshot::draw(session, picture("log"), [1100, 760], dark).expect("drawn");
             keep(&format!("left-over-{shown}-{dark}"), &picture);
             picture
@@ -191,12 +192,12 @@ fn one_signal_is_drawn_against_another_and_a_click_moves_the_cursor() {
     let name = |axis: &Option<XyAxis>| axis.as_ref().map(|a| a.name.clone()).unwrap_or_default();
     assert_eq!((name(&chosen.x), name(&chosen.y)), ("q_m".to_owned(), "f_N".to_owned()));
     // To the far right of the plot lies the largest position.
-    let before = harness.state().cursor_s;
+    let before = harness.state().document.cursor_s;
     harness.drag_at(egui::pos2(980.0, 300.0));
     harness.run_steps(1);
     harness.drop_at(egui::pos2(980.0, 300.0));
     harness.run_steps(2);
-    let at = harness.state().cursor_s;
+    let at = harness.state().document.cursor_s;
     let recording = cart();
     let (q, times) = (recording.channel("q_m").expect("q"), recording.time_s.as_ref().expect("a clock"));
     let largest = q.iter().copied().fold(f64::MIN, f64::max);
@@ -221,7 +222,7 @@ fn xy_pictures_have_the_states_colours_or_those_of_time() {
             let mut session = session(STACK.clone());
             session.plots.view = LogView::Xy;
             session.plots.xy.color = color;
-            session.seek(6.0);
+            session.document.seek(6.0);
             let picture = screenshot::draw(session, picture("log"), [1000, 640], dark).expect("drawn");
             keep(&format!("xy-{color:?}-{dark}"), &picture);
             // Without the band below.

@@ -48,7 +48,7 @@ fn time_at(harness: &mut Harness<'_, Session>, at: Pos2) -> f64 {
             harness.run_steps(1);
             harness.drop_at(at);
             harness.run_steps(2);
-            return harness.state().cursor_s;
+            return harness.state().document.cursor_s;
         }
     }
     panic!("curves are everywhere");
@@ -72,14 +72,14 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     let (x, to_x) = (600.0, 690.0);
     let from = grip(&mut harness, x);
     let wished_s = time_at(&mut harness, pos2(to_x, from.y)) - time_at(&mut harness, from);
-    let cursor_s = harness.state().cursor_s;
+    let cursor_s = harness.state().document.cursor_s;
     drag(&mut harness, from, to_x);
     assert_eq!(icon(&harness), CursorIcon::Grabbing);
     harness.drop_at(pos2(to_x, from.y + 3.0));
     harness.run_steps(2);
     let shifted_s = offset_s(&harness);
     assert!((shifted_s - wished_s).abs() < 1e-6 && shifted_s > 0.3, "{shifted_s} of {wished_s} s");
-    assert_eq!(harness.state().cursor_s, cursor_s, "the time cursor stays");
+    assert_eq!(harness.state().document.cursor_s, cursor_s, "the time cursor stays");
     assert_ne!(icon(&harness), CursorIcon::Grabbing);
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
@@ -144,12 +144,12 @@ fn escape_takes_it_back_and_a_click_moves_the_time_cursor() {
     harness.run_steps(2);
     assert!(harness.state().plots.held.is_none());
     let expected_s = time_at(&mut harness, from);
-    harness.state_mut().seek(0.0);
+    harness.state_mut().document.seek(0.0);
     harness.drag_at(from);
     harness.run_steps(1);
     harness.drop_at(from);
     harness.run_steps(2);
-    assert!((harness.state().cursor_s - expected_s).abs() < 1e-6, "{} s", harness.state().cursor_s);
+    assert!((harness.state().document.cursor_s - expected_s).abs() < 1e-6, "{} s", harness.state().document.cursor_s);
     assert_eq!(offset_s(&harness), 0.0);
 }
 

@@ -30,9 +30,9 @@ fn every_widget_has_a_name_for_a_screen_reader() {
         move |app: &mut App| list::of(workspace).into_iter().for_each(|pane| app.dock.bring(workspace, pane))
     };
     let mut crank = session(CRANK.clone());
-    crank.selected_parameter = Some("crank.radius_m".to_owned());
+    crank.calibration.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.rules = editing_rules::open(&mut rules);
+    rules.calibration.rules = editing_rules::open(&mut rules);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());

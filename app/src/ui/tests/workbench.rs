@@ -15,7 +15,7 @@ use std::time::Duration;
 fn window(recording: Recording) -> Harness<'static, App> {
     let mut session = session(recording);
     // However busy the machine is: what follows a change must not hang on how long a fit took.
-    session.refits.at_once = Duration::MAX;
+    session.calibration.refits.at_once = Duration::MAX;
     harness(App::new(session), [1480.0, 920.0], |ui, app: &mut App| app.show(ui))
 }
 
@@ -28,7 +28,7 @@ fn settle(harness: &mut Harness<'_, App>) {
 }
 
 fn weight(harness: &Harness<'_, App>, object: &str) -> (f64, usize) {
-    let analysis = harness.state().session.analysis.as_ref().expect("fitted");
+    let analysis = harness.state().session.calibration.analysis.as_ref().expect("fitted");
     let parameter = analysis.fit.parameter(object, "weight_N").expect("weighed");
     (parameter.value.expect("a value"), parameter.samples)
 }
@@ -58,11 +58,13 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     assert!(moved < states[carry].t1 - 0.3, "{moved} from {}", states[carry].t1);
     let after = weight(&harness, "block-1");
     assert!(after.1 < before.1, "fewer samples: {} of {}", after.1, before.1);
-    assert!(harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.stale);
+    assert!(
+        harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.calibration.stale
+    );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
-    assert_eq!(weight(&harness, "block-1"), before, "{:?}", harness.state().session.banners);
-    assert!(harness.state().session.choice.segments.is_empty());
+    assert_eq!(weight(&harness, "block-1"), before, "{:?}", harness.state().session.messages.banners);
+    assert!(harness.state().session.calibration.choice.segments.is_empty());
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     settle(&mut harness);
     assert_eq!(weight(&harness, "block-1"), after);
@@ -72,7 +74,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
 fn a_stretch_of_a_mechanism_is_fitted_alone() {
     let mut harness = window(cart());
     let samples = |harness: &Harness<'_, App>| {
-        let fit = &harness.state().session.analysis.as_ref().expect("fitted").fit;
+        let fit = &harness.state().session.calibration.analysis.as_ref().expect("fitted").fit;
         fit.parameter("mechanism", "mass_kg").expect("told").samples
     };
     let ctx = harness.ctx.clone();
@@ -88,7 +90,7 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
     harness.run_steps(2);
     harness.get_by_label("Fit only this stretch").click();
     settle(&mut harness);
-    assert_eq!(harness.state().session.choice.only_s, Some((longest.t0, longest.t1)));
+    assert_eq!(harness.state().session.calibration.choice.only_s, Some((longest.t0, longest.t1)));
     assert!(samples(&harness) < all, "{} of {all}", samples(&harness));
 }
 
@@ -104,13 +106,22 @@ fn another_value_is_tried_on_the_replay_and_frozen() {
     let fitted = weight(&harness, "crank").0;
     harness.state_mut().session.try_value("crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
-    assert!(!harness.state().session.what_if.is_behind());
+    assert!(!harness.state().session.calibration.what_if.is_behind());
     let shown = harness.state().session.shown_curves().expect("curves").curves.clone();
     let first = harness.state().session.replay().expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();
     settle(&mut harness);
-    let frozen = harness.state().session.analysis.as_ref().expect("fitted").fit.parameter("crank", "weight_N").cloned();
+    let frozen = harness
+        .state()
+        .session
+        .calibration
+        .analysis
+        .as_ref()
+        .expect("fitted")
+        .fit
+        .parameter("crank", "weight_N")
+        .cloned();
     let frozen = frozen.expect("there");
     assert!(
         (frozen.value.expect("a value") - 2.0 * fitted).abs() < 1e-9 && frozen.std_error == Some(0.0),
@@ -177,8 +188,8 @@ fn a_project_brings_back_what_was_done() {
     harness.state_mut().session.open_any(&ctx, &log);
     settle(&mut harness);
     let session = &mut harness.state_mut().session;
-    session.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
-    session.seek(7.0);
+    session.calibration.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
+    session.document.seek(7.0);
     let file = folder.path().join("mine.touchstone.json");
     session.save_project_as(&ctx, file.clone());
     settle(&mut harness);
@@ -187,13 +198,13 @@ fn a_project_brings_back_what_was_done() {
     other.state_mut().session.open_any(&ctx, &file);
     settle(&mut other);
     let session = &other.state().session;
-    assert!(session.banners.is_empty(), "{:?}", session.banners);
-    assert_eq!((session.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
-    assert_eq!(session.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
+    assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
+    assert_eq!((session.document.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
+    assert_eq!(session.calibration.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
     // A second recording joins the first one.
     other.state_mut().session.add_log(&ctx, &log);
     settle(&mut other);
-    assert_eq!((other.state().session.recordings.len(), other.state().session.sources.len()), (2, 2));
+    assert_eq!((other.state().session.document.recordings.len(), other.state().session.document.sources.len()), (2, 2));
 }
 
 #[test]
@@ -211,7 +222,7 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     let ctx = first.ctx.clone();
     first.state_mut().session.open_any(&ctx, &log);
     settle(&mut first);
-    first.state_mut().session.choice.only_s = Some((1.0, 9.0));
+    first.state_mut().session.calibration.choice.only_s = Some((1.0, 9.0));
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();
     until(&mut first, "the file with the change", |_| kept().contains("[1.0,9.0]"));
     // A killed program closes nothing.
@@ -223,9 +234,9 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     second.get_by_label("Go on there").click();
     settle(&mut second);
     let session = &second.state().session;
-    assert_eq!(session.choice.only_s, Some((1.0, 9.0)));
-    assert!(session.analysis.is_some(), "{:?}", session.banners);
-    assert!(session.recent.files().iter().any(|p| p.ends_with("stack.csv")));
+    assert_eq!(session.calibration.choice.only_s, Some((1.0, 9.0)));
+    assert!(session.calibration.analysis.is_some(), "{:?}", session.messages.banners);
+    assert!(session.document.recent.files().iter().any(|p| p.ends_with("stack.csv")));
 }
 
 #[test]

@@ -4,12 +4,13 @@ use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::autosave::State;
 use crate::ui::dock::name_field::Naming;
+use crate::ui::message_list::Tone;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
 use crate::ui::prepare::Prepared;
 use crate::ui::project::{Project, Source};
-use crate::ui::session::{Session, Tone};
+use crate::ui::session::Session;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
 use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};
 use crate::ui::workspace::Workspace;
@@ -26,12 +27,13 @@ fn page(app: App) -> Stage {
 /// Another window over the same results: they take seconds to compute.
 fn like(session: &Session) -> Session {
     let mut other = empty();
-    other.show(session.recordings.clone());
-    (other.workspace, other.choice) = (session.workspace, session.choice.clone());
-    (other.analysis, other.replays) = (session.analysis.clone(), session.replays.clone());
-    other.enough.clone_from(&session.enough);
-    other.sensitivity.clone_from(&session.sensitivity);
-    other.refits.answered(&session.choice);
+    other.show(session.document.recordings.clone());
+    (other.workspace, other.calibration.choice) = (session.workspace, session.calibration.choice.clone());
+    (other.calibration.analysis, other.calibration.replays) =
+        (session.calibration.analysis.clone(), session.calibration.replays.clone());
+    other.calibration.enough.clone_from(&session.calibration.enough);
+    other.calibration.sensitivity.clone_from(&session.calibration.sensitivity);
+    other.calibration.refits.answered(&session.calibration.choice);
     (other.diagnosing.answer, other.diagnosing.problem) =
         (session.diagnosing.answer.clone(), session.diagnosing.problem.clone());
     other
@@ -100,7 +102,7 @@ fn menus_can_be_read() {
     for group in ["File", "Edit", "Calibrate", "Time", "View", "Help"] {
         let mut session = like(&full);
         for file in ["a recording with a very long name, of the third day, second try.csv", "crank.mcap"] {
-            session.recent.note(std::path::Path::new(file));
+            session.document.recent.note(std::path::Path::new(file));
         }
         let mut app = App::new(session);
         for name in [
@@ -147,8 +149,9 @@ fn every_card_of_the_tour_can_be_read() {
 fn messages_can_be_read() {
     let mut session = session(STACK.clone());
     session
+        .messages
         .say(Tone::Done, "Undone: states set by hand, known value, prior, bounds, part of the recording.".to_owned());
-    session.fail("The file cannot be written (permission denied); check the folder and its permissions: /home/someone/with/a/long/name/and/many/folders/below/it/recording-of-the-third-day.csv");
+    session.messages.fail("The file cannot be written (permission denied); check the folder and its permissions: /home/someone/with/a/long/name/and/many/folders/below/it/recording-of-the-third-day.csv");
     let mut app = App::new(session);
     let source = Source { log: "/data/a-recording-with-a-very-long-name-of-the-third-day.csv".into(), meta: None };
     let project = Project { recordings: vec![source.clone(), source], ..Project::default() };
@@ -175,7 +178,7 @@ fn long_names(name: &str) -> Recording {
 fn over_each_other() -> Session {
     let mut session = session(long_names("a very long name of a recording, the third day, trial 17"));
     let other = Arc::new(Prepared::new(long_names("another very long name of a recording, the fourth day, trial 2")));
-    session.recordings.push(other);
+    session.document.recordings.push(other);
     session
 }
 
@@ -203,10 +206,10 @@ fn every_parameter_can_be_looked_at_closely() {
     let mut found = String::new();
     for recording in [STACK.clone(), CRANK.clone()] {
         let full = session(recording);
-        let fit = &full.analysis.as_ref().expect("fitted").fit;
+        let fit = &full.calibration.analysis.as_ref().expect("fitted").fit;
         for name in fit.parameters.iter().map(estimator::estimate::Parameter::full_name) {
             let mut session = like(&full);
-            session.selected_parameter = Some(name.clone());
+            session.calibration.selected_parameter = Some(name.clone());
             found += &page(App::new(session)).look(&name);
         }
     }
