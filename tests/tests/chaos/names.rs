@@ -140,7 +140,7 @@ fn in_a_report(log: &Path) {
     log::write(&[recording], log, &[]).expect("writes");
     let files: [(PathBuf, Option<PathBuf>); 1] = [(log.to_path_buf(), None)];
     let page = log.with_file_name("page.html");
-    app::report::of_files(&files, &page, |_, recording| recording).expect("a page");
+    app::report::of_files::of_files(&files, &page, |_, recording| recording).expect("a page");
     let text = std::fs::read_to_string(&page).expect("text");
     assert!(!text.contains("<script>alert"), "a name became part of the page");
 }

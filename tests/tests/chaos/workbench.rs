@@ -5,7 +5,6 @@ use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
 use app::ui::dock::arrangement::Dock;
 use app::ui::message_list::Tone;
-use app::ui::project::Project;
 use app::ui::project_files::project_of;
 use app::ui::refits::FIT;
 use app::ui::session::Session;
