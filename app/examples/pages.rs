@@ -1,7 +1,8 @@
 //! Draws the Train and Devices pages in both themes and two sizes into a folder: `cargo run -p app --example pages -- FOLDER`.
 
-use app::ui::screenshot::{Panel, PanelInput, panel};
-use app::worlds::BUILT_IN;
+use app::ui::picture_input::PictureInput;
+use app::ui::screenshot::{DEVICES, TRAIN, picture};
+use haptics::world::presets::BUILT_IN;
 use std::path::PathBuf;
 
 fn main() -> anyhow::Result<()> {
@@ -14,12 +15,12 @@ fn main() -> anyhow::Result<()> {
                 folder.join(format!("{what}-{}-{theme}.png", size[0]))
             };
             for by_hand in [true, false] {
-                let input = PanelInput { by_hand, ..PanelInput::default() };
+                let input = PictureInput { by_hand, ..PictureInput::default() };
                 let who = if by_hand { "you" } else { "scripted" };
-                panel(&input, Panel::Devices, size, dark)?.save(name(&format!("devices-{who}")))?;
+                picture(&input, &DEVICES, size, dark)?.save(name(&format!("devices-{who}")))?;
                 for (world, make) in BUILT_IN {
-                    let input = PanelInput { world: Some(make()), ..input.clone() };
-                    panel(&input, Panel::Train, size, dark)?.save(name(&format!("{world}-{who}")))?;
+                    let input = PictureInput { world: Some(make()), ..input.clone() };
+                    picture(&input, &TRAIN, size, dark)?.save(name(&format!("{world}-{who}")))?;
                 }
             }
         }

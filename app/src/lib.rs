@@ -3,23 +3,23 @@
 //! Everything that computes lives in `haptics` and `estimator`, everything that draws the hand in `render`.
 
 pub mod boards;
+mod built_in;
 pub mod cli;
-mod constraint_words;
-pub mod diagnosis_words;
 pub mod experiment;
 pub mod export;
 pub mod history;
 pub mod lessons;
 pub mod operator;
+pub mod path_bytes;
 pub mod recorder;
 pub mod report;
 pub mod schema;
 pub mod tasks;
+pub mod text;
 pub mod ui;
 pub mod video;
 pub mod worlds;
-
-pub use constraint_words::constraint_words;
+pub mod write_whole;
 
 use std::path::PathBuf;
 

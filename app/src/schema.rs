@@ -3,6 +3,7 @@
 //! They stand in `docs/schemas`; `tests/tests/schemas` keeps them and holds real outputs against them.
 
 use crate::cli;
+use crate::cli::device::report;
 use estimator::diagnose::Diagnosis;
 use estimator::segment::Segmentation;
 use schemars::generate::SchemaSettings;
@@ -21,7 +22,7 @@ pub fn all() -> Vec<(&'static str, Value)> {
         ("bench-servo", of::<cli::bench::Said<'_>>("bench servo")),
         ("demo", of::<cli::demo::Said>("demo")),
         ("device-list", of::<cli::device::Listed>("device list")),
-        ("device-test", of::<cli::device::Tested<'_>>("device test")),
+        ("device-test", of::<report::Said<'_>>("device test")),
         ("gallery", of::<cli::gallery::Said>("gallery")),
         ("history", of::<cli::history::Said>("history")),
         ("history-import", of::<cli::history::Imported>("history --import")),

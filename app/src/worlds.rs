@@ -2,11 +2,9 @@
 
 use anyhow::Context;
 use haptics::recording::Task;
+use haptics::world::presets::BUILT_IN;
 use haptics::world::{Shape, World};
 use std::path::Path;
-
-/// The built-in worlds by name. Each lies as `assets/worlds/NAME.json` in the sources, the same as a user would write it.
-pub use haptics::world::presets::BUILT_IN;
 
 /// The world of a file, or the built-in one of that name. A file that is there comes first.
 pub fn find(name: &Path) -> anyhow::Result<World> {

@@ -38,7 +38,7 @@ fn assets(name: &str) -> Vec<Vec<u8>> {
 fn history() -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("history.sqlite");
-    let mut store = app::history::Store::open(&path).expect("made");
+    let mut store = app::history::store::Store::open(&path).expect("made");
     for number in 0..6 {
         let attempt = serde_json::json!({
             "trainee": "Ada", "lesson": "pinch", "began": format!("2026-11-22T10:0{number}:00Z"), "duration_s": 20.0,

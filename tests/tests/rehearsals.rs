@@ -1,7 +1,9 @@
 //! What an answer about a needle or a switch leaves open: the scripted operator rehearses what was asked for on every object that is not
 //! excluded, and what a hand of our own then does on the hidden one leaves only what is hidden.
 
-use app::experiment::{Like, Rehearsal, Timetable, rehearse};
+use app::experiment::like::Like;
+use app::experiment::rehearse::{Rehearsal, rehearse};
+use app::experiment::timetable::Timetable;
 use estimator::diagnose::{Experiment, Findings, Verdict, diagnose, suspects};
 use haptics::recording::Recording;
 use tests::tasks::{Case, needle, switch};

@@ -225,7 +225,7 @@ fn report(m: &Measured) -> serde_json::Result<Output> {
     let mut text = format!("Servo: {}\n  {}\n", t.rate.sentence(), m.privileges.sentence());
     let _ = writeln!(text, "  {} ticks of {:.0} µs in {:.1} s", t.ticks, 1e6 * t.period_s, m.wall_s);
     for (what, p) in percentiles(t) {
-        let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(crate::ui::format::short_time);
+        let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(crate::text::format::short_time);
         let _ = writeln!(text, "  {what:<10} p50 {p50:>9}   p99 {p99:>9}   p99.9 {p999:>9}   max {max:>9}");
     }
     let share = 100.0 * t.missed as f64 / t.ticks.max(1) as f64;

@@ -37,7 +37,7 @@ pub(crate) struct Said {
     /// Samples of all of them.
     samples: usize,
     /// What looks wrong in the samples.
-    warnings: Vec<Warning>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 impl Convert {

@@ -1,7 +1,8 @@
 //! `touchstone demo`: the whole chain on built-in recordings, without a display.
 
 use super::{Output, diagnose, fit, report, screenshot};
-use crate::report::Sheet;
+use crate::built_in::{BuiltInRecording, RECORDINGS, write};
+use crate::report::collect::Sheet;
 use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;
@@ -13,7 +14,7 @@ use haptics::world::World;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Arguments of `demo`.
@@ -71,45 +72,8 @@ struct Hits {
     of: usize,
 }
 
-/// Recording bundled with the program: made by the scripted operator in a world unknown to the fit.
-struct BuiltIn {
-    name: &'static str,
-    title: &'static str,
-    csv: &'static str,
-    meta: &'static str,
-    /// World of the recording: opened only for the final comparison.
-    truth: &'static str,
-}
-
-const RECORDINGS: [BuiltIn; 2] = [
-    BuiltIn {
-        name: "stack",
-        title: "Two blocks, unstacked and restacked",
-        csv: include_str!("../../../assets/recordings/stack.csv"),
-        meta: include_str!("../../../assets/recordings/stack.meta.json"),
-        truth: include_str!("../../../assets/worlds/demo-blocks.json"),
-    },
-    BuiltIn {
-        name: "crank",
-        title: "A crank, turned forwards and back",
-        csv: include_str!("../../../assets/recordings/crank.csv"),
-        meta: include_str!("../../../assets/recordings/crank.meta.json"),
-        truth: include_str!("../../../assets/worlds/demo-crank.json"),
-    },
-];
-
 const PICTURE: [u32; 2] = [1280, 720];
 const WORKBENCH: [u32; 2] = [1600, 1000];
-
-/// Bundled recording of a name, loaded by way of `folder`.
-pub fn built_in(name: &str, folder: &Path) -> anyhow::Result<Vec<Recording>> {
-    let found = RECORDINGS.iter().find(|built_in| built_in.name == name);
-    let built_in = found.with_context(|| format!("there is no built-in recording `{name}`"))?;
-    let log = folder.join(format!("{name}.csv"));
-    write(&log, built_in.csv)?;
-    write(&folder.join(format!("{name}.meta.json")), built_in.meta)?;
-    Ok(estimator::log::load(&log, None)?)
-}
 
 impl Demo {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
@@ -131,7 +95,7 @@ impl Demo {
     }
 
     /// Log → segments → fit → world → simulation → diagnosis → extended world of one recording.
-    fn chain(&self, built_in: &BuiltIn, text: &mut String) -> anyhow::Result<Chain> {
+    fn chain(&self, built_in: &BuiltInRecording, text: &mut String) -> anyhow::Result<Chain> {
         progress(&format!("{}: segment, fit, calibrate, simulate, diagnose, extend", built_in.title));
         let log = self.file(&format!("{}.csv", built_in.name));
         write(&log, built_in.csv)?;
@@ -171,7 +135,7 @@ impl Demo {
     /// Diagnoses the thesis's model on the recording. Returns the diagnosis, and the file of the extended world.
     fn diagnose(
         &self,
-        built_in: &BuiltIn,
+        built_in: &BuiltInRecording,
         recordings: &[Recording],
         text: &mut String,
     ) -> anyhow::Result<(Findings, PathBuf)> {
@@ -234,7 +198,7 @@ impl Demo {
 }
 
 /// Number of estimates within two standard errors of the true values.
-fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Hits> {
+fn compare(built_in: &BuiltInRecording, analysis: &Analysis, text: &mut String) -> anyhow::Result<Hits> {
     let truth = World::from_json(built_in.truth)?;
     let (mut hits, mut all) = (0, 0);
     for (object, name, value) in true_values(&truth) {
@@ -250,10 +214,6 @@ fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow
 
 fn progress(what: &str) {
     eprintln!("… {what}");
-}
-
-fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    haptics::text_file::write(path, text).with_context(|| format!("the file could not be written: {}", path.display()))
 }
 
 /// Names and true values of the parameters that a fit should estimate in a world.

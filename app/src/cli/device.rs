@@ -1,9 +1,10 @@
 //! `touchstone device`: available devices, and a self-test with a text report.
 
 mod open;
-mod report;
+pub mod report;
 
 use super::{ControlArgs, Output};
+use crate::cli::device::report::limits;
 use clap::{Args, Subcommand};
 use haptics::Vec2;
 use haptics::device::channel::ChannelConfig;
@@ -11,7 +12,7 @@ use haptics::device::haply;
 use haptics::servo::force_test::MOST_N;
 use haptics::servo::{Servo, ServoConfig, Swap, TickRecord};
 use haptics::world::{State, World, presets};
-pub(crate) use report::Said as Tested;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write;
@@ -91,7 +92,7 @@ struct OfDevice {
     /// Its figures; null where these are known only once it is opened.
     spec: Option<report::Spec>,
     /// What it can render; null where no force is felt.
-    limits: Option<report::Limits>,
+    limits: Option<limits::Limits>,
 }
 
 impl Device {
@@ -119,7 +120,7 @@ impl List {
         for kind in &kinds {
             let _ = writeln!(text, "  {}\n      {}", kind.id, kind.what);
             if let Some(spec) = &kind.spec {
-                let _ = writeln!(text, "      {}", report::limit_sentence(spec, period_s, 0.0));
+                let _ = writeln!(text, "      {}", limits::limit_sentence(spec, period_s, 0.0));
             }
         }
         text.push_str("Serial ports that a Haply board could be behind\n");
@@ -136,7 +137,7 @@ impl List {
             id: kind.id.to_string(),
             what: kind.what.to_string(),
             spec: kind.spec.as_ref().map(report::Spec::from),
-            limits: kind.spec.as_ref().and_then(|spec| report::limits(spec, period_s, 0.0)),
+            limits: kind.spec.as_ref().and_then(|spec| limits::limits(spec, period_s, 0.0)),
         });
         let listed = Listed { devices: devices.collect(), serial_ports: ports };
         Ok(Output { text, json: serde_json::to_value(&listed)? })

@@ -3,8 +3,8 @@
 pub(crate) mod fleet;
 
 use super::{LogArgs, Output};
-use crate::diagnosis_words::{said_in_words, state_in_words};
 use crate::tasks::Chosen;
+use crate::text::diagnosis_words::{said_in_words, state_in_words};
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{

@@ -1,6 +1,6 @@
 //! Sufficiency of the data, as a short table.
 
-use crate::ui::format;
+use crate::text::format;
 use estimator::online::information::Enough;
 use std::fmt::Write;
 

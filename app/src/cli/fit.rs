@@ -115,6 +115,7 @@ fn constraint_line(constraint: &Constraint) -> String {
     let named: Vec<&str> =
         [&constraint.recording, &constraint.object].into_iter().filter_map(|n| n.as_deref()).collect();
     let name = if named.is_empty() { String::new() } else { format!("{}: ", named.join(", ")) };
-    let words: Vec<String> = crate::constraint_words(constraint).into_iter().map(|w| format!("; {w}")).collect();
+    let words: Vec<String> =
+        crate::text::constraint_words::constraint_words(constraint).into_iter().map(|w| format!("; {w}")).collect();
     format!("{name}{kind}{radius}{interval}: {}{}", constraint.evidence, words.concat())
 }

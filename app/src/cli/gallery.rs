@@ -1,7 +1,7 @@
 //! `touchstone gallery`: every panel and scene as pictures, with a page that shows them.
 
 use super::{Output, progress};
-use crate::ui::gallery;
+use crate::ui::gallery::plates;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -32,7 +32,7 @@ pub(crate) struct Said {
 impl Gallery {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let only = self.only.as_deref();
-        let drawn = progress::during("drawing", |share| gallery::write_to(&self.out, only, |done| share.tell(done)));
+        let drawn = progress::during("drawing", |share| plates::write_to(&self.out, only, |done| share.tell(done)));
         let (pictures, bytes) = drawn?;
         anyhow::ensure!(pictures > 0, "there is no picture whose name begins with `{}`", only.unwrap_or_default());
         let megabytes = bytes as f64 / 1e6;

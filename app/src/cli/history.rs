@@ -1,7 +1,10 @@
 //! `touchstone history`: the trainees' attempts with their lessons, times and scores.
 
 use super::Output;
-use crate::history::{self, Attempt, Conditions, Query, Store, table};
+use crate::history::attempt;
+use crate::history::attempt::{Attempt, Conditions};
+use crate::history::store::{Query, Store};
+use crate::history::table;
 use anyhow::{Context as _, anyhow};
 use clap::Args;
 use estimator::training::progress::{LearningCurve, Session, Try, proficient_at, sessions};
@@ -128,7 +131,7 @@ impl Practice {
 
 impl History {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        let path = self.database.clone().or_else(history::of_user);
+        let path = self.database.clone().or_else(attempt::of_user);
         let path =
             path.context("the system names no folder for data; set HOME or XDG_DATA_HOME, or name a --database")?;
         let mut store = Store::open(&path).map_err(|problem| anyhow!(problem))?;
@@ -143,7 +146,7 @@ impl History {
         let trainees = store.trainees().map_err(|problem| anyhow!(problem))?;
         if let Some(to) = &self.csv {
             let text = table::csv(&attempts).map_err(|problem| anyhow!(problem))?;
-            crate::ui::project::write_whole(to, &text).map_err(|problem| anyhow!(problem))?;
+            crate::write_whole::write_whole(to, &text).map_err(|problem| anyhow!(problem))?;
         }
         let groups = groups(&attempts);
         let text = in_words(&trainees, &groups, self.csv.as_deref());

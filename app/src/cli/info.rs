@@ -97,7 +97,7 @@ pub(crate) struct Said {
     /// Whether there is a column of states.
     labelled: bool,
     /// What looks wrong in the samples.
-    warnings: Vec<Warning>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// One channel.

@@ -24,9 +24,8 @@ pub(crate) mod simulate;
 mod stated;
 pub mod table;
 
-pub(crate) use demo::built_in;
-
 use crate::tasks::Chosen;
+use crate::ui::run;
 use clap::{Args, Parser, Subcommand};
 use estimator::log::{LogError, Watch};
 use haptics::device::haply::farewell;
@@ -137,9 +136,9 @@ struct ControlArgs {
 const USUAL_CONTROL: &str = "2";
 
 fn parse_control(text: &str) -> Result<f64, String> {
-    let most = text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::trainer::MOST_CONTROL_N_S_M);
+    let most = text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::trainer::control::MOST_CONTROL_N_S_M);
     most.ok_or_else(|| {
-        format!("`{text}` is no damping; write up to {} N s/m, like 2", crate::ui::trainer::MOST_CONTROL_N_S_M)
+        format!("`{text}` is no damping; write up to {} N s/m, like 2", crate::ui::trainer::control::MOST_CONTROL_N_S_M)
     })
 }
 
@@ -277,7 +276,7 @@ fn sentence(error: &anyhow::Error) -> String {
 }
 
 fn open_app(args: AppArgs) -> ExitCode {
-    let options = crate::ui::RunOptions {
+    let options = run::RunOptions {
         log: args.log,
         meta: args.meta,
         world: args.world,
@@ -285,7 +284,7 @@ fn open_app(args: AppArgs) -> ExitCode {
         dark: None,
         until_first_picture: args.until_first_picture,
     };
-    match crate::ui::run(options) {
+    match run::run(options) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),
     }

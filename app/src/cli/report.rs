@@ -2,8 +2,10 @@
 
 use super::stated::Stated;
 use super::{LogArgs, Output, progress, sentence};
+use crate::report::collect::Sheet;
+use crate::report::page::whole::page;
+use crate::report::provenance::Provenance;
 use crate::report::source::Source;
-use crate::report::{Provenance, Sheet, page};
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::Verdict;

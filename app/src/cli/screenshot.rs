@@ -1,6 +1,8 @@
 //! `touchstone screenshot`: a picture without a window.
 
 use super::{LogArgs, Output, parse_size, record};
+use crate::ui::picture_input::PictureInput;
+use crate::ui::screenshot::{self, MAPPING, PictureName, WORKBENCH};
 use anyhow::Context;
 use clap::Args;
 use haptics::device::{Device, ScriptedOperator, Skill};
@@ -25,7 +27,7 @@ pub struct Screenshot {
     source: LogArgs,
     /// Which panel of the app
     #[arg(long, requires = "log", default_value = "workbench")]
-    panel: crate::ui::screenshot::Panel,
+    panel: PictureName,
     /// Time in the performance or in the log, s; a telling moment when not given
     #[arg(long)]
     at: Option<f64>,
@@ -65,20 +67,20 @@ impl Screenshot {
     }
 
     fn panel_picture(&self, log: &Path) -> anyhow::Result<image::RgbaImage> {
-        if self.panel == crate::ui::screenshot::Panel::Mapping {
+        if self.panel.0.name == MAPPING.name {
             // The dialog exists for logs that cannot be loaded as they are.
             let (log, meta) = (Some(log.to_path_buf()), self.source.meta.clone());
-            let input = crate::ui::screenshot::PanelInput { log, meta, ..Default::default() };
-            return crate::ui::screenshot::panel(&input, self.panel, self.size, self.dark);
+            let input = PictureInput { log, meta, ..Default::default() };
+            return screenshot::picture(&input, self.panel.0, self.size, self.dark);
         }
         let recordings = self.source.load(log)?;
-        crate::ui::screenshot::recordings(recordings, self.panel, self.at, self.size, self.dark)
+        screenshot::recordings(recordings, self.panel.0, self.at, self.size, self.dark)
     }
 }
 
 /// Screenshot of the whole calibration workspace with these recordings loaded and fitted.
 pub(super) fn workbench(recordings: Vec<Recording>, size: [u32; 2], dark: bool) -> anyhow::Result<image::RgbaImage> {
-    crate::ui::screenshot::recordings(recordings, crate::ui::screenshot::Panel::Workbench, None, size, dark)
+    screenshot::recordings(recordings, &WORKBENCH, None, size, dark)
 }
 
 /// Writes a picture as PNG.

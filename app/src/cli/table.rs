@@ -1,6 +1,6 @@
 //! Lines of a parameter table in a terminal: the same names, units and digits as in the window.
 
-use crate::ui::format;
+use crate::text::format;
 use estimator::estimate::Parameter;
 
 /// `value ± error`, the error to two significant digits.

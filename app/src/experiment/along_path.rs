@@ -1,6 +1,6 @@
 //! A mechanism's motion as seen by a tool that holds it: positions and forces in the frame of its recording.
 
-use super::rehearse::Like;
+use crate::experiment::like::Like;
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Channel, Recording};
 use haptics::world::MechanismPath;

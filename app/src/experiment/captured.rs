@@ -143,10 +143,10 @@ fn words(k: usize, count: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Timetable;
-    use super::super::perform;
     use super::super::timetable::tests::asked;
     use super::*;
+    use crate::experiment::perform::perform;
+    use crate::experiment::timetable::Timetable;
     use estimator::diagnose::SensorFault;
     use estimator::pipeline;
     use haptics::world::presets;

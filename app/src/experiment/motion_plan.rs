@@ -4,7 +4,8 @@
 use super::along_path::{PLACES, seen_by_tool};
 use super::perform::what_is_known;
 use super::sensing::see_along;
-use super::{SIMULATED, rehearse::Like};
+use crate::experiment::like::Like;
+use crate::experiment::simulated::SIMULATED;
 use estimator::diagnose::{Experiment, Strokes, Suspect};
 use estimator::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::device::{Pull, PullSensor};

@@ -2,7 +2,10 @@
 //! recording is diagnosed.
 
 use super::tool::{insert, is_tool};
-use super::{MotionPlan, Timetable, perform};
+use crate::experiment::like::Like;
+use crate::experiment::motion_plan::MotionPlan;
+use crate::experiment::perform::perform;
+use crate::experiment::timetable::Timetable;
 use estimator::diagnose::{Experiment, Findings, NextExperiment, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::recording::{Recording, Task};
@@ -53,15 +56,6 @@ impl Rehearsal {
     pub fn settled(&self) -> (usize, usize) {
         (self.outcomes.iter().map(Outcome::settled).sum(), self.outcomes.iter().map(|o| o.rounds.len()).sum())
     }
-}
-
-/// Properties of the simulated recordings.
-#[derive(Clone, Copy, Debug)]
-pub struct Like<'a> {
-    /// First recording of the real object: the sensors of a simulated mechanism have its noise.
-    pub recording: &'a Recording,
-    /// Noise of a finger's force sample (1 σ), N.
-    pub noise_n: f64,
 }
 
 impl Like<'_> {

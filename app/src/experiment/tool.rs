@@ -4,9 +4,10 @@
 use super::captured::place_m;
 use super::motion_plan::rate_hz;
 use super::perform::what_is_known;
-use super::rehearse::Like;
 use super::sensing::see_through;
-use super::{SIMULATED, timetable};
+use super::timetable;
+use crate::experiment::like::Like;
+use crate::experiment::simulated::SIMULATED;
 use estimator::diagnose::{Experiment, Insertions, Suspect};
 use estimator::signal::noise::white_noise_under_fast_motion;
 use haptics::law::object::MembraneHistory;

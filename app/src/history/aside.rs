@@ -3,7 +3,8 @@
 //! A file is named after the start of its attempt, but never before one that is already waiting. The import
 //! thus keeps the order in which they were made, even if the clock was set back between them.
 
-use super::{Attempt, Store};
+use crate::history::attempt::Attempt;
+use crate::history::store::Store;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

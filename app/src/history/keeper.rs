@@ -1,6 +1,8 @@
 //! History for the window: a thread that owns the database and answers requests without blocking.
 
-use super::{Attempt, Query, Store, aside};
+use super::aside;
+use crate::history::attempt::Attempt;
+use crate::history::store::{Query, Store};
 use jiff::Timestamp;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -187,5 +189,5 @@ impl Keeper {
 
 fn export(to: &Path, attempts: &[Attempt]) -> Result<(), String> {
     let text = super::table::csv(attempts)?;
-    crate::ui::project::write_whole(to, &text)
+    crate::write_whole::write_whole(to, &text)
 }

@@ -15,7 +15,8 @@
 //! duplicate if the database has one of the same trainee, lesson, conditions, start, duration, completion and score.
 //! One stored as it is made is never a duplicate.
 
-use super::{Attempt, Conditions, schema};
+use super::schema;
+use crate::history::attempt::{Attempt, Conditions};
 use jiff::Timestamp;
 use rusqlite::{Connection, OptionalExtension as _, Row, Transaction, TransactionBehavior, params};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Attempts as a table for other programs: one line each, one column per measure.
 
-use super::Attempt;
+use crate::history::attempt::Attempt;
 use serde_json::Value;
 use std::collections::BTreeSet;
 

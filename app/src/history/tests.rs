@@ -1,7 +1,9 @@
 //! The history on a disk of its own: versions, other programs, damage, several trainees.
 
 use super::store::{Query, Store};
-use super::{Answer, Attempt, Conditions, History, aside, table};
+use super::{aside, table};
+use crate::history::attempt::{Attempt, Conditions};
+use crate::history::keeper::{Answer, History};
 use jiff::Timestamp;
 use rusqlite::Connection;
 use serde_json::json;

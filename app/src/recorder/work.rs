@@ -2,7 +2,7 @@
 
 use super::folder::{self, Marker};
 use super::{Order, Shared, Wish};
-use crate::ui::session::sentence;
+use crate::text::sentence::sentence;
 use estimator::log::{Attachment, LogError, McapStream};
 use haptics::recording::Meta;
 use haptics::servo::TickRecord;
@@ -199,7 +199,7 @@ impl Source<'_> {
             LogError::Write { reason, .. } => reason.clone(),
             other => other.to_string(),
         };
-        let (length, path) = (crate::ui::format::clock(self.last_s.unwrap_or(0.0)), path.display());
+        let (length, path) = (crate::text::format::clock(self.last_s.unwrap_or(0.0)), path.display());
         format!(
             "The recording ended after {length} because the disk refused it ({why}); what was written until then is kept, \
              training goes on: {path}."

@@ -1,7 +1,7 @@
 //! Runs the stages on one log: segment, fit, calibrate, simulate, diagnose. A failed stage is replaced by a sentence.
 
 use super::source::Source;
-use crate::ui::plots::Residuals;
+use crate::ui::plots::residuals::Residuals;
 use crate::ui::prepare::Prepared;
 use estimator::diagnose::{self, Findings};
 use estimator::estimate::Parameter;

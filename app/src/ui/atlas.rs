@@ -1,8 +1,8 @@
 //! The residual atlas, ready to be drawn: what the model leaves of the force, or of each channel, as means over ranges of each suspect's variable, and
 //! what that suspect alone would take of it.
 
-use super::format;
-use crate::diagnosis_words::{force_unit, title};
+use crate::text::diagnosis_words::{force_unit, title};
+use crate::text::format;
 use estimator::diagnose::Findings;
 use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
 use estimator::diagnose::{Course, Instant};

@@ -2,12 +2,14 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
-use super::assistant::Assistant;
 use super::comfort::Comfort;
-use super::dock::Dock;
-use super::project::{Project, write_whole};
+use super::project::Project;
+use super::project_files::project_of;
 use super::recent::Recent;
 use super::session::Session;
+use crate::ui::assistant::state::Assistant;
+use crate::ui::dock::arrangement::Dock;
+use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -25,7 +27,7 @@ pub struct State {
     /// What is open.
     pub project: Project,
     /// The project file that it belongs to.
-    #[serde(with = "super::any_path")]
+    #[serde(with = "crate::path_bytes")]
     pub project_path: Option<PathBuf>,
     /// Where panels stand.
     pub dock: Dock,
@@ -146,14 +148,14 @@ fn read(path: &Path) -> Option<State> {
 
 fn state(session: &Session, dock: &Dock, toured: bool) -> State {
     State {
-        project: Project::of(session),
-        project_path: session.project_path.clone(),
+        project: project_of(session),
+        project_path: session.document.project_path.clone(),
         dock: dock.clone(),
-        comfort: session.comfort,
-        recent: session.recent.clone(),
+        comfort: session.training.comfort,
+        recent: session.document.recent.clone(),
         ended: false,
         toured,
-        assistant: session.assistant,
+        assistant: session.training.assistant,
     }
 }
 
@@ -161,7 +163,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
 mod tests {
     use super::*;
     use crate::ui::project::Source;
-    use crate::ui::session::Workspace;
+    use crate::ui::workspace::Workspace;
 
     fn wait_for(path: &Path) -> State {
         let begun = Instant::now();
@@ -181,12 +183,12 @@ mod tests {
         let (mut autosave, before) = Autosave::begin(folder.path()).expect("begins");
         assert!(before.ended && before.project.recordings.is_empty(), "the first start");
         let mut session = Session::new();
-        session.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
+        session.document.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
         session.workspace = Workspace::Calibrate;
         let dock = Dock::default();
         autosave.follow(&egui::Context::default(), &session, &dock, true);
         let found = wait_for(&folder.path().join("session.json"));
-        assert!(!found.ended && found.toured && found.project.recordings == session.sources);
+        assert!(!found.ended && found.toured && found.project.recordings == session.document.sources);
         assert!(Autosave::begin(folder.path()).is_none(), "a second window keeps out");
         // As after a kill: the lock is gone, the file says that the program still runs.
         drop(autosave);

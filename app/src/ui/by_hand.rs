@@ -100,39 +100,43 @@ fn boundary(before: &Interval, after: &Interval, times: &[f64], to_s: f64) -> Op
 impl Session {
     /// True when the states of the shown recording can be set by hand, and the fit then follows.
     pub fn states_can_be_set(&self) -> bool {
-        self.analysis.as_ref().is_some_and(|a| decides(a.task)) && self.rules.is_none()
+        self.calibration.analysis.as_ref().is_some_and(|a| decides(a.task)) && self.calibration.rules.is_none()
     }
 
     /// True when the fit of the shown recording does not ask for its states; it can still be of a part.
     pub fn fits_without_states(&self) -> bool {
-        let clocked = self.prepared().is_some_and(|p| !p.clockless());
-        clocked && self.analysis.as_ref().is_some_and(|a| !decides(a.task)) && self.rules.is_none()
+        let clocked = self.document.prepared().is_some_and(|p| !p.clockless());
+        clocked
+            && self.calibration.analysis.as_ref().is_some_and(|a| !decides(a.task))
+            && self.calibration.rules.is_none()
     }
 
     /// Sets states of the shown recording by hand.
     pub fn set_states(&mut self, change: &Change) {
-        let (Some(found), Some(prepared)) = (self.segmentation(), self.prepared()) else { return };
+        let (Some(found), Some(prepared)) = (self.segmentation(), self.document.prepared()) else { return };
         if let Some(segments) = changed(found, &prepared.times, change) {
-            self.choice.segments.insert(self.current, Arc::new(segments));
+            self.calibration.choice.segments.insert(self.document.current, Arc::new(segments));
             self.show_segments();
         }
     }
 
     /// Goes back to the states that were found.
     pub fn forget_states(&mut self, ctx: &egui::Context) {
-        self.choice.segments.remove(&self.current);
+        self.calibration.choice.segments.remove(&self.document.current);
         self.resegment(ctx);
     }
 
     /// Shows what was set by hand, before the fit has followed.
     pub(super) fn show_segments(&mut self) {
-        let (Some(prepared), Some(found)) = (self.prepared().cloned(), self.segmentation().cloned()) else { return };
-        let Some(segments) = self.choice.segments.get(&self.current) else { return };
+        let (Some(prepared), Some(found)) = (self.document.prepared().cloned(), self.segmentation().cloned()) else {
+            return;
+        };
+        let Some(segments) = self.calibration.choice.segments.get(&self.document.current) else { return };
         let mut stand_in = Recording::default();
         stand_in.meta.segments.clone_from(segments);
         let mut shown = by_hand::put(found, &stand_in, &prepared.times);
         shown.score = None;
-        self.segmented(self.current, shown);
+        self.segmented(self.document.current, shown);
     }
 }
 
@@ -153,12 +157,14 @@ mod tests {
         let states = &session.segmentation().expect("segmented").states;
         let carry = states.iter().position(|i| i.state == lifted).expect("carried");
         let (t0, t1, _) = place(&session, carry);
-        let before = session.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
+        let before =
+            session.calibration.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
         session.set_states(&Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
         let (_, now, _) = place(&session, carry);
         assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
         assert_eq!(place(&session, carry + 1).0, now, "no hole");
-        let after = crate::ui::fitting::analyse(&session.recordings, &session.choice).expect("fits");
+        let after =
+            crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice).expect("fits");
         let (before, after) = (before.expect("weighed"), after.fit.parameter("block-1", "weight_N").cloned());
         let after = after.expect("weighed");
         assert!(after.samples < before.samples * 3 / 4, "{} of {} samples", after.samples, before.samples);

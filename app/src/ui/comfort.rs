@@ -1,9 +1,6 @@
 //! What makes training comfortable: the side of the hand, a pause when the window loses the focus, how loud it is. Remembered from one
 //! start to the next.
 
-use super::guided;
-use super::lessons;
-use super::session::{Session, Tone};
 use egui::PointerButton;
 use serde::{Deserialize, Serialize};
 
@@ -41,36 +38,6 @@ impl Comfort {
     /// How loud it sounds, 0 to 1.
     pub fn loudness(&self) -> f32 {
         if self.muted { 0.0 } else { self.volume.clamp(0.0, 1.0) }
-    }
-}
-
-impl Session {
-    /// Puts everything in Train back where it started, by one key. What is being done begins anew: an experiment, a try at a lesson; an
-    /// attempt that counts is removed, which is said.
-    pub fn start_over(&mut self) {
-        if self.experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided::Phase::Going(_))) {
-            self.begin_experiment();
-            self.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
-            return;
-        }
-        let Some(phase) = self.lessons.open.as_ref().map(|open| open.phase.clone()) else {
-            let choice = self.trainer.choice;
-            if let Err(problem) = self.trainer.choose(choice) {
-                self.fail(problem);
-            }
-            return;
-        };
-        match phase {
-            lessons::Phase::Watching => self.watch_lesson(),
-            lessons::Phase::Practising => self.practise_lesson(),
-            lessons::Phase::Testing | lessons::Phase::Asking => {
-                self.test_lesson();
-                self.say(Tone::Done, "The attempt begins anew; what was recorded of it is removed.".to_owned());
-            }
-            lessons::Phase::Brief | lessons::Phase::Debrief(_) => self.back_to_brief(),
-            // The recording is being read.
-            lessons::Phase::Grading => {}
-        }
     }
 }
 

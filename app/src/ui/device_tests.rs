@@ -1,10 +1,12 @@
 //! The devices page and the devices behind the trainer, without a window.
 
 use super::app::App;
-use super::screenshot;
-use super::session::{Session, Workspace};
-use super::theme;
-use super::trainer::{Clock, HandDevice, Operator, Steering, Trainer};
+use super::session::Session;
+use super::{screenshot, theme};
+use crate::ui::tests::picture;
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::Vec2;
@@ -12,7 +14,7 @@ use std::io::Write;
 
 fn session() -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Devices;
     session
 }
@@ -36,9 +38,9 @@ fn remote() -> (tempfile::NamedTempFile, Session) {
     let mut file = tempfile::NamedTempFile::new().expect("a file");
     writeln!(file, "{}", "5a".repeat(32)).expect("written");
     let mut session = session();
-    session.trainer.settings.remote.key = file.path().display().to_string();
+    session.training.trainer.settings.remote.key = file.path().display().to_string();
     // Any port that is free.
-    session.trainer.settings.remote.address = "127.0.0.1:0".to_owned();
+    session.training.trainer.settings.remote.address = "127.0.0.1:0".to_owned();
     (file, session)
 }
 
@@ -50,18 +52,18 @@ fn the_page_lists_every_kind_of_device_and_takes_the_one_that_is_clicked() {
     }
     harness.get_by_role_and_label(egui::Role::RadioButton, "Keyboard").click();
     harness.run_steps(3);
-    let trainer = &harness.state().session.trainer;
+    let trainer = &harness.state().session.training.trainer;
     assert_eq!(trainer.hand, HandDevice::Keyboard);
     assert!(matches!(trainer.steering, Steering::Keyboard(_)));
     assert_eq!(trainer.spec().map(|s| s.name.as_str()), Some("Keyboard"));
     harness.get_by_role_and_label(egui::Role::RadioButton, "Scripted operator").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().session.trainer.operator, Operator::Scripted);
+    assert_eq!(harness.state().session.training.trainer.operator, Operator::Scripted);
     // Without a log there is nothing to replay: the line is grey and does nothing.
     harness.get_by_role_and_label(egui::Role::RadioButton, "Replay of the open log").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().session.trainer.operator, Operator::Scripted);
-    assert!(harness.state().session.banners.is_empty(), "{:?}", harness.state().session.banners);
+    assert_eq!(harness.state().session.training.trainer.operator, Operator::Scripted);
+    assert!(harness.state().session.messages.banners.is_empty(), "{:?}", harness.state().session.messages.banners);
 }
 
 #[test]
@@ -93,26 +95,26 @@ fn a_force_test_pushes_softly_and_stops_at_once_when_asked() {
     let mut harness = harness(session);
     harness.get_by_role_and_label(egui::Role::RadioButton, "Remote device over UDP").click();
     harness.run_steps(3);
-    assert!(harness.state().session.banners.is_empty(), "{:?}", harness.state().session.banners);
-    assert!(harness.state().session.trainer.spec().is_some_and(|s| s.force_feedback));
+    assert!(harness.state().session.messages.banners.is_empty(), "{:?}", harness.state().session.messages.banners);
+    assert!(harness.state().session.training.trainer.spec().is_some_and(|s| s.force_feedback));
     harness.get_by_label("Push").click();
     harness.run_steps(2);
-    assert!(harness.state().session.trainer.trial.is_running());
+    assert!(harness.state().session.training.trainer.trial.is_running());
     harness.get_by_label("Stop").click();
     harness.run_steps(2);
-    assert!(!harness.state().session.trainer.trial.is_running());
+    assert!(!harness.state().session.training.trainer.trial.is_running());
     // Esc and leaving the page do the same.
     for leave in [false, true] {
         harness.get_by_label("Push").click();
         harness.run_steps(2);
-        assert!(harness.state().session.trainer.trial.is_running());
+        assert!(harness.state().session.training.trainer.trial.is_running());
         if leave {
             harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num1);
         } else {
             harness.key_press(egui::Key::Escape);
         }
         harness.run_steps(2);
-        assert!(!harness.state().session.trainer.trial.is_running());
+        assert!(!harness.state().session.training.trainer.trial.is_running());
     }
 }
 
@@ -127,24 +129,24 @@ fn two_touches_in_the_picture_are_the_two_fingertips() {
     };
     touch(&mut harness, 1, egui::TouchPhase::Start, egui::pos2(380.0, 400.0));
     harness.run_steps(2);
-    assert_eq!(harness.state().session.trainer.hand, HandDevice::Touch, "who touches means the touch screen");
+    assert_eq!(harness.state().session.training.trainer.hand, HandDevice::Touch, "who touches means the touch screen");
     touch(&mut harness, 2, egui::TouchPhase::Start, egui::pos2(520.0, 400.0));
     harness.run_steps(1);
-    let Steering::Touch(handle) = &harness.state().session.trainer.steering else { panic!("a touch screen") };
+    let Steering::Touch(handle) = &harness.state().session.training.trainer.steering else { panic!("a touch screen") };
     assert_eq!(handle.count(), 2);
     for step in 0..120 {
-        harness.state_mut().session.trainer.advance(1.0 / 60.0);
+        harness.state_mut().session.training.trainer.advance(1.0 / 60.0);
         if step % 10 == 0 {
             harness.run_steps(1);
         }
     }
-    let tips = harness.state().session.trainer.scene().expect("running").0.state.input.tip_in_world;
+    let tips = harness.state().session.training.trainer.scene().expect("running").0.state.input.tip_in_world;
     let apart = tips[1] - tips[0];
     assert!(apart.x > 0.01 && apart.y.abs() < 0.2 * apart.x, "left and right of each other, as on the glass: {tips:?}");
     touch(&mut harness, 1, egui::TouchPhase::End, egui::pos2(380.0, 400.0));
     touch(&mut harness, 2, egui::TouchPhase::End, egui::pos2(520.0, 400.0));
     harness.run_steps(1);
-    let Steering::Touch(handle) = &harness.state().session.trainer.steering else { panic!("a touch screen") };
+    let Steering::Touch(handle) = &harness.state().session.training.trainer.steering else { panic!("a touch screen") };
     assert_eq!(handle.count(), 0);
 }
 
@@ -152,17 +154,17 @@ fn two_touches_in_the_picture_are_the_two_fingertips() {
 fn held_keys_move_the_keyboard_device() {
     let mut session = session();
     session.workspace = Workspace::Train;
-    session.trainer.take_up(HandDevice::Keyboard).expect("a keyboard needs nothing");
+    session.training.trainer.take_up(HandDevice::Keyboard).expect("a keyboard needs nothing");
     let mut harness = harness(session);
     let middle = |harness: &Harness<'static, App>| {
-        let tips = harness.state().session.trainer.scene().expect("running").0.state.input.tip_in_world;
+        let tips = harness.state().session.training.trainer.scene().expect("running").0.state.input.tip_in_world;
         0.5 * (tips[0] + tips[1])
     };
     let before: Vec2 = middle(&harness);
     harness.key_down(egui::Key::ArrowRight);
     harness.run_steps(2);
     for _ in 0..20 {
-        harness.state_mut().session.trainer.advance(1.0 / 60.0);
+        harness.state_mut().session.training.trainer.advance(1.0 / 60.0);
     }
     harness.key_up(egui::Key::ArrowRight);
     harness.run_steps(1);
@@ -179,7 +181,7 @@ fn a_dropped_block_flashes_where_it_lands() {
         world.blocks.iter_mut().max_by(|a, b| a.start.center_m.y.total_cmp(&b.start.center_m.y)).expect("two blocks");
     upper.start.center_m.y += 0.008;
     let lands_at = upper.start.center_m.x;
-    (trainer.file, trainer.choice) = (Some(world), super::trainer::WorldChoice::File);
+    (trainer.file, trainer.choice) = (Some(world), crate::ui::trainer::choice::WorldChoice::File);
     trainer.ensure_running().expect("a loop");
     let mut seen = None;
     for _ in 0..60 {
@@ -200,7 +202,7 @@ fn the_page_is_drawn_in_both_themes() {
         return;
     }
     for dark in [false, true] {
-        let picture = screenshot::draw(session(), screenshot::Panel::Devices, [1280, 720], dark).expect("drawn");
+        let picture = screenshot::draw(session(), picture("devices"), [1280, 720], dark).expect("drawn");
         let [r, g, b, _] = theme::Palette::of(dark).accent.to_array();
         let near = |p: &&image::Rgba<u8>| p.0[0].abs_diff(r) < 4 && p.0[1].abs_diff(g) < 4 && p.0[2].abs_diff(b) < 4;
         assert!(picture.pixels().filter(near).count() > 300, "the chosen device is marked, dark {dark}");
@@ -211,29 +213,29 @@ fn the_page_is_drawn_in_both_themes() {
 fn fields_of_a_remote_device_are_checked_where_they_stand() {
     let (file, mut session) = remote();
     std::fs::write(file.path(), "7".repeat(64)).expect("written");
-    session.trainer.settings.remote.damping = "much".to_owned();
+    session.training.trainer.settings.remote.damping = "much".to_owned();
     let mut harness = harness(session);
     let row = "Remote device over UDP";
     harness.get_by_role_and_label(egui::Role::RadioButton, row).click();
     harness.run_steps(3);
-    assert_eq!(harness.state().session.trainer.hand, HandDevice::Mouse, "a wrong field opens nothing");
+    assert_eq!(harness.state().session.training.trainer.hand, HandDevice::Mouse, "a wrong field opens nothing");
     assert!(harness.query_by_label_contains("`much` is no damping").is_some());
-    harness.state_mut().session.trainer.settings.remote.damping = "0.5".to_owned();
-    harness.state_mut().session.trainer.settings.remote.round_trip = "20".to_owned();
+    harness.state_mut().session.training.trainer.settings.remote.damping = "0.5".to_owned();
+    harness.state_mut().session.training.trainer.settings.remote.round_trip = "20".to_owned();
     harness.run_steps(3);
     harness.get_by_role_and_label(egui::Role::RadioButton, row).click();
     harness.run_steps(3);
-    harness.state_mut().session.trainer.advance(0.02);
-    let trainer = &harness.state().session.trainer;
+    harness.state_mut().session.training.trainer.advance(0.02);
+    let trainer = &harness.state().session.training.trainer;
     assert!(trainer.spec().is_some_and(|spec| spec.damping_n_s_m == 0.5));
     assert!(trainer.scene().expect("running").0.coupling.is_some(), "felt through a spring, for the round trip");
     // The key is one digit over and over: that is said.
     assert!(harness.query_by_label_contains("anybody can guess").is_some());
-    harness.state_mut().session.trainer.settings.remote.damping = "0.9".to_owned();
+    harness.state_mut().session.training.trainer.settings.remote.damping = "0.9".to_owned();
     harness.run_steps(2);
     harness.get_by_label("Open again with these").click();
     harness.run_steps(3);
-    assert!(harness.state().session.trainer.spec().is_some_and(|spec| spec.damping_n_s_m == 0.9));
+    assert!(harness.state().session.training.trainer.spec().is_some_and(|spec| spec.damping_n_s_m == 0.9));
     assert!(harness.query_by_label("Open again with these").is_none(), "they are in use now");
     drop(file);
 }

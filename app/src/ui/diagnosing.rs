@@ -1,187 +1,63 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
-use super::atlas::Sheet;
-use super::checking::Checked;
-use super::fit_choice::FitChoice;
-use super::fitting::replay_forces;
-use super::format;
-use super::jobs::{JobKind, Outcome, Replayed};
-use super::plots::Residuals;
-use super::prepare::Prepared;
-use super::session::{Session, Workspace, sentence};
-use super::trainer::{Compare, WorldChoice};
-use crate::experiment::Rehearsal;
-use estimator::diagnose::{self, Findings, Options, Progress, Worlds};
-use haptics::recording::{Recording, Task};
-use haptics::world::World;
+use super::jobs::change;
+use super::session::Session;
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
+use crate::ui::refits::replay_forces;
+use crate::ui::trainer::choice::{Compare, WorldChoice};
+use crate::ui::workspace::Workspace;
+use estimator::diagnose::{Progress, Worlds};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-
-/// The model of a mechanism to start from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StartFrom {
-    /// Inertia alone.
-    Mass,
-    /// … and friction in proportion to speed.
-    Viscous,
-    /// … and dry friction.
-    #[default]
-    Coulomb,
-}
-
-impl StartFrom {
-    /// As the command line has it.
-    fn baseline(self) -> &'static str {
-        match self {
-            Self::Mass => "mass",
-            Self::Viscous => "mass+viscous",
-            Self::Coulomb => "mass+viscous+coulomb",
-        }
-    }
-}
-
-/// A diagnosis, ready to be shown.
-#[derive(Debug)]
-pub struct Answer {
-    /// What was found.
-    pub diagnosis: Findings,
-    /// Its curves, one a recording.
-    pub residuals: Vec<Residuals>,
-    /// What every suspect would take of the force, one a recording.
-    pub atlas: Vec<Sheet>,
-    /// The model that it started from.
-    pub from: StartFrom,
-}
-
-/// The diagnosis of the loaded recordings, as far as it has come.
-#[derive(Debug, Default)]
-pub struct Diagnosing {
-    /// The model of a mechanism to start from.
-    pub from: StartFrom,
-    /// Whether the atlas is shown in place of the curves.
-    pub shows_atlas: bool,
-    /// The suspect that is shown large.
-    pub atlas_open: Option<String>,
-    /// The cause that was asked about: why not?
-    pub asked_about: Option<String>,
-    /// What came out.
-    pub answer: Option<Arc<Answer>>,
-    /// Why nothing did, in one sentence.
-    pub problem: Option<String>,
-    /// The worlds without and with what was found, once the model was extended.
-    pub worlds: Option<Arc<Worlds>>,
-    /// Why there are none, in one sentence.
-    pub worlds_problem: Option<String>,
-    /// The recordings' motion through the extended world, once that is there.
-    pub replays: Vec<Option<Replayed>>,
-    /// What the experiment that is asked for would settle, rehearsed on simulated objects.
-    pub rehearsal: Option<Arc<Rehearsal>>,
-    /// What the answer is worth on other recordings.
-    pub checked: Vec<Checked>,
-    /// The path field of a recording to check on.
-    pub check_field: String,
-    /// Why it could not be rehearsed, in one sentence.
-    pub rehearsal_problem: Option<String>,
-}
-
-impl Diagnosing {
-    /// Forgets everything but the question.
-    pub fn forget(&mut self) {
-        *self = Self { from: self.from, shows_atlas: self.shows_atlas, ..Self::default() };
-    }
-}
-
-/// Diagnoses; the sentence of an error.
-pub fn ask(
-    recordings: &[Arc<Prepared>],
-    choice: &FitChoice,
-    from: StartFrom,
-    progress: Progress,
-) -> Result<Answer, String> {
-    let plain = plain(recordings, choice);
-    let options = Options { atlas: true, ..options(&plain, choice, from, progress) };
-    let diagnosis = diagnose::diagnose(&plain, &options).map_err(|error| sentence(&error.to_string()))?;
-    let residuals = (0..recordings.len()).map(|k| Residuals::new(&diagnosis, k)).collect();
-    let atlas = (0..recordings.len()).map(|k| Sheet::new(&diagnosis, k)).collect();
-    Ok(Answer { diagnosis, residuals, atlas, from })
-}
-
-/// The worlds without and with what was found; the sentence of an error.
-pub fn extend(
-    recordings: &[Arc<Prepared>],
-    choice: &FitChoice,
-    from: StartFrom,
-    answer: &Answer,
-) -> Result<Worlds, String> {
-    let plain = plain(recordings, choice);
-    let options = options(&plain, choice, from, Progress::default());
-    diagnose::worlds(&plain, &options, &answer.diagnosis).map_err(|error| sentence(&error.to_string()))
-}
-
-pub(super) fn plain(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Vec<Recording> {
-    choice.given_to_all(recordings)
-}
-
-pub(super) fn options(recordings: &[Recording], choice: &FitChoice, from: StartFrom, progress: Progress) -> Options {
-    let task = choice.task;
-    let is_mechanism = recordings.first().is_some_and(|r| is_mechanism(r, task));
-    Options { task, baseline: is_mechanism.then(|| from.baseline().to_owned()), progress, ..Options::default() }
-}
-
-/// True when the diagnosis starts from a model that can be chosen.
-pub fn is_mechanism(recording: &Recording, task: Option<Task>) -> bool {
-    estimator::segment::task_of(recording, task).is_ok_and(|task| task == Task::Mechanism)
-}
 
 impl Session {
     /// Diagnoses in the background.
     pub fn diagnose(&mut self, ctx: &egui::Context) {
-        if self.recordings.is_empty() {
+        if self.document.recordings.is_empty() {
             return;
         }
         self.diagnosing.forget();
-        self.jobs.cancel(JobKind::Extend);
-        self.jobs.cancel(JobKind::SimulateExtended);
-        self.jobs.cancel(JobKind::Rehearse);
-        self.jobs.cancel(JobKind::Check);
-        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
-        self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
+        self.jobs.cancel_after(DIAGNOSE);
+        let (recordings, choice, from) =
+            (self.document.recordings.clone(), self.calibration.choice.clone(), self.diagnosing.from);
+        let job = self.jobs.start(ctx, DIAGNOSE, "Diagnosing", move |ticket| {
             let ticket = ticket.clone();
-            let progress = Progress::new(move |share| {
-                ticket.tell(share);
-                !ticket.cancelled().load(Ordering::Relaxed)
-            });
-            Outcome::Diagnosed(ask(&recordings, &choice, from, progress).map(Box::new))
+            let answer = ask(&recordings, &choice, from, Progress::new(move |share| ticket.goes_on(share)));
+            change(|session: &mut Self, _| session.diagnosed(answer))
+        });
+        job.if_given_up(|session: &mut Self, _| {
+            session.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
         });
     }
 
     /// Makes the worlds without and with what was found, in the background.
     pub fn extend_model(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
-        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
-        self.jobs.start_watched(ctx, JobKind::Extend, "Extending the model".to_owned(), move |_| {
-            Outcome::Extended(extend(&recordings, &choice, from, &answer).map(Box::new))
+        let (recordings, choice, from) =
+            (self.document.recordings.clone(), self.calibration.choice.clone(), self.diagnosing.from);
+        self.jobs.start(ctx, EXTEND, "Extending the model", move |_| {
+            let worlds = extend(&recordings, &choice, from, &answer);
+            change(|session: &mut Self, ctx| session.extended(ctx, worlds))
         });
     }
 
     /// A diagnosis has ended.
-    pub(super) fn diagnosed(&mut self, answer: Result<Box<Answer>, String>) {
+    pub(super) fn diagnosed(&mut self, answer: Result<Answer, String>) {
         match answer {
-            Ok(answer) => self.diagnosing.answer = Some(Arc::new(*answer)),
+            Ok(answer) => self.diagnosing.answer = Some(Arc::new(answer)),
             Err(problem) => self.diagnosing.problem = Some(problem),
         }
     }
 
     /// The model was extended.
-    pub(super) fn extended(&mut self, ctx: &egui::Context, worlds: Result<Box<Worlds>, String>) {
+    pub(super) fn extended(&mut self, ctx: &egui::Context, worlds: Result<Worlds, String>) {
         match worlds {
             Ok(worlds) => {
-                let worlds = Arc::new(*worlds);
+                let worlds = Arc::new(worlds);
                 self.diagnosing.worlds = Some(Arc::clone(&worlds));
-                let recordings = self.recordings.clone();
-                let what = "Replaying in the extended world".to_owned();
-                self.jobs.start_watched(ctx, JobKind::SimulateExtended, what, move |_| {
-                    Outcome::SimulatedExtended(replay_forces(&worlds.after, &recordings))
+                let recordings = self.document.recordings.clone();
+                self.jobs.start(ctx, SIMULATE_EXTENDED, "Replaying in the extended world", move |_| {
+                    let replays = replay_forces(&worlds.after, &recordings);
+                    change(|session: &mut Self, _| session.diagnosing.replays = replays)
                 });
             }
             Err(problem) => self.diagnosing.worlds_problem = Some(problem),
@@ -191,12 +67,12 @@ impl Session {
     /// Takes both worlds into the trainer; what is in the way is said.
     pub fn feel(&mut self) {
         let chosen = self.comparison().and_then(|compare| {
-            self.trainer.compare = Some(compare);
-            self.trainer.choose(WorldChoice::After)
+            self.training.trainer.compare = Some(compare);
+            self.training.trainer.choose(WorldChoice::After)
         });
         match chosen {
             Ok(()) => self.workspace = Workspace::Train,
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
@@ -211,47 +87,5 @@ impl Session {
             );
         }
         Ok(Compare { before: reachable(&worlds.before)?, after: reachable(&worlds.after)? })
-    }
-}
-
-/// The world with its crank where the hand reaches all of the circle: other people's recordings have their origin elsewhere. What is
-/// felt does not depend on the place.
-pub(super) fn reachable(world: &World) -> Result<World, String> {
-    world.check().map_err(|error| sentence(&error.to_string()))?;
-    let mut world = world.clone();
-    let reach = world.hand.workspace;
-    if let Some(crank) = &mut world.crank {
-        if crank.radius_m > reach.radius_m {
-            return Err(format!(
-                "The crank's radius of {} mm is larger than the hand's reach of {} mm; save the extended world instead.",
-                format::number(1e3 * crank.radius_m, 0),
-                format::number(1e3 * reach.radius_m, 0)
-            ));
-        }
-        if (crank.center_m - reach.center_m).norm() + crank.radius_m > reach.radius_m {
-            crank.center_m = reach.center_m;
-        }
-    }
-    Ok(world)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use haptics::Vec2;
-    use haptics::world::presets;
-
-    #[test]
-    fn a_crank_out_of_reach_comes_to_the_hand_and_one_that_is_too_large_is_refused() {
-        let near = presets::crank();
-        assert_eq!(reachable(&near).as_ref(), Ok(&near));
-        let mut far = near.clone();
-        far.crank.as_mut().expect("a crank").center_m += Vec2::new(0.4, 0.1);
-        assert_eq!(reachable(&far).as_ref(), Ok(&near));
-        far.crank.as_mut().expect("a crank").radius_m = 0.3;
-        assert!(reachable(&far).is_err_and(|why| why.contains("300 mm") && why.ends_with('.')));
-        let mut still = near;
-        still.crank.as_mut().expect("a crank").effects.clear();
-        assert!(reachable(&still).is_err_and(|why| why.contains("inertia")), "nothing moves without inertia");
     }
 }

@@ -1,113 +1,42 @@
 //! The experiment that a diagnosis asks for: rehearsed on simulated objects, done by a person in Train, or loaded from a file.
 
-use super::diagnosing::{Answer, options, plain, reachable};
-use super::fit_choice::FitChoice;
+use super::files::{SAVE, saved};
 use super::guided::Guided;
-use super::jobs::{JobKind, Outcome};
-use super::mapping::name_of;
-use super::prepare::Prepared;
-use super::session::{Session, Tone, Workspace, sentence};
-use crate::experiment::{Like, MotionPlan, Rehearsal, Timetable, rehearse, simulated_object};
+use super::jobs::{change, no_change};
+use super::session::Session;
+use crate::experiment::motion_plan::MotionPlan;
+use crate::experiment::rehearse::Rehearsal;
+use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
-use estimator::diagnose::{self, Progress, Suspect};
+use crate::text::file_name::name_of;
+use crate::ui::experiments::{GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write};
+use crate::ui::message_list::Tone;
+use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;
-use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-
-/// How often every object is simulated.
-pub const ROUNDS: u64 = 3;
-
-/// What the window keeps about experiments while recordings come and go.
-#[derive(Default)]
-pub struct Experiments {
-    /// The path field of a recording that was made elsewhere.
-    pub path_field: String,
-    /// The plan of a mechanism's motion is shown.
-    pub shows_plan: bool,
-    /// The experiment that a person does in Train.
-    pub guided: Option<Box<Guided>>,
-    /// Where a picture's recording goes: it lives as long as the session.
-    pub scratch: Option<tempfile::TempDir>,
-    /// A recording is being added: the question is asked again once it is there.
-    pub asks_again: bool,
-}
-
-/// Which object a person does the experiment on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// The world that stands in Train.
-    AsItStands,
-    /// The calibrated object as if this cause were in it.
-    AsIf(String),
-}
-
-/// Rehearses; the sentence of an error, or nothing when nobody wants it any more.
-pub fn rehearse_now(
-    recordings: &[Arc<Prepared>],
-    choice: &FitChoice,
-    answer: &Answer,
-    rounds: u64,
-    goes_on: &dyn Fn(f64) -> bool,
-) -> Result<Rehearsal, Option<String>> {
-    let next = answer.diagnosis.next_experiment.as_ref().ok_or_else(|| Some("Nothing is open.".to_owned()))?;
-    let plain = plain(recordings, choice);
-    let suspects = suspects(&plain, choice, answer)?;
-    let options = options(&plain, choice, answer.from, Progress::default());
-    let again = |more: &Recording| {
-        let all: Vec<Recording> = plain.iter().chain([more]).cloned().collect();
-        diagnose::diagnose(&all, &options).map_err(|error| sentence(&error.to_string()))
-    };
-    let first = plain.first().ok_or_else(|| Some("No recording is open.".to_owned()))?;
-    let like = Like { recording: first, noise_n: answer.diagnosis.noise_floor_n };
-    rehearse(&suspects, next, (rounds, like), &again, goes_on)
-}
-
-fn suspects(plain: &[Recording], choice: &FitChoice, answer: &Answer) -> Result<Vec<Suspect>, Option<String>> {
-    let options = options(plain, choice, answer.from, Progress::default());
-    diagnose::suspects(plain, &options, &answer.diagnosis).map_err(|error| Some(sentence(&error.to_string())))
-}
-
-/// The experiment in the world of one suspect, where the hand reaches it.
-pub fn guided_as_if(
-    recordings: &[Arc<Prepared>],
-    choice: &FitChoice,
-    answer: &Answer,
-    id: &str,
-) -> Result<Guided, String> {
-    let suspects = suspects(&plain(recordings, choice), choice, answer).map_err(Option::unwrap_or_default)?;
-    let suspect = suspects.iter().find(|s| s.id == id).ok_or("This cause cannot be simulated.")?;
-    let next = answer.diagnosis.next_experiment.as_ref().ok_or("Nothing is open.")?;
-    let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.")?;
-    let table = Timetable::new(&reachable(&suspect.world)?, asked, &next.motion)?.leaking_once_held();
-    Ok(Guided::new(table, asked.clone(), Some(format!("as if {}", id.replace('-', " ")))))
-}
 
 impl Session {
     /// Rehearses the experiment in the background.
     pub fn rehearse(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
         (self.diagnosing.rehearsal, self.diagnosing.rehearsal_problem) = (None, None);
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        self.jobs.start_watched(ctx, JobKind::Rehearse, "Rehearsing the experiment".to_owned(), move |ticket| {
-            let goes_on = |share: f64| {
-                ticket.tell(share);
-                !ticket.cancelled().load(Ordering::Relaxed)
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
+        self.jobs.start(ctx, REHEARSE, "Rehearsing the experiment", move |ticket| {
+            let rehearsal = match rehearse_now(&recordings, &choice, &answer, ROUNDS, &|share| ticket.goes_on(share)) {
+                Err(None) => return no_change(),
+                Err(Some(problem)) => Err(problem),
+                Ok(rehearsal) => Ok(rehearsal),
             };
-            match rehearse_now(&recordings, &choice, &answer, ROUNDS, &goes_on) {
-                Ok(rehearsal) => Outcome::Rehearsed(Ok(Box::new(rehearsal))),
-                Err(Some(problem)) => Outcome::Rehearsed(Err(problem)),
-                Err(None) => Outcome::Cancelled,
-            }
+            change(|session: &mut Self, _| session.rehearsed(rehearsal))
         });
     }
 
     /// A rehearsal has ended.
-    pub(super) fn rehearsed(&mut self, rehearsal: Result<Box<Rehearsal>, String>) {
+    pub(super) fn rehearsed(&mut self, rehearsal: Result<Rehearsal, String>) {
         match rehearsal {
-            Ok(rehearsal) => self.diagnosing.rehearsal = Some(Arc::new(*rehearsal)),
+            Ok(rehearsal) => self.diagnosing.rehearsal = Some(Arc::new(rehearsal)),
             Err(problem) => self.diagnosing.rehearsal_problem = Some(problem),
         }
     }
@@ -115,32 +44,32 @@ impl Session {
     /// Takes the experiment to Train, for a person to do; what has to be computed for it, in the background.
     pub fn guide(&mut self, ctx: &egui::Context, stage: Stage) {
         let Some(answer) = self.diagnosing.answer.clone() else { return };
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        let standing = self.trainer.standing_world();
-        self.jobs.start_watched(ctx, JobKind::Guide, "Preparing the experiment".to_owned(), move |_| {
+        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
+        let standing = self.training.trainer.standing_world();
+        self.jobs.start(ctx, GUIDE, "Preparing the experiment", move |_| {
             let guided = match stage {
                 Stage::AsIf(id) => guided_as_if(&recordings, &choice, &answer, &id),
                 Stage::AsItStands => Guided::in_world(&standing, &answer.diagnosis),
             };
-            Outcome::Guided(guided.map(Box::new))
+            change(|session: &mut Self, _| session.guided(guided))
         });
     }
 
     /// The experiment is ready for a person.
-    pub(super) fn guided(&mut self, guided: Result<Box<Guided>, String>) {
-        match guided.and_then(|guided| guided.take_over(&mut self.trainer).map(|()| guided)) {
+    pub(super) fn guided(&mut self, guided: Result<Guided, String>) {
+        match guided.and_then(|guided| guided.take_over(&mut self.training.trainer).map(|()| guided)) {
             Ok(guided) => {
-                self.experiments.guided = Some(guided);
+                self.experiments.guided = Some(Box::new(guided));
                 self.workspace = Workspace::Train;
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// Adds a recording of the experiment to those that are diagnosed, and asks again.
     pub fn add_experiment(&mut self, ctx: &egui::Context, path: &Path) {
-        if self.sources.is_empty() {
-            self.fail("The recordings that were diagnosed are no files; save them first, then add this one.");
+        if self.document.sources.is_empty() {
+            self.messages.fail("The recordings that were diagnosed are no files; save them first, then add this one.");
             return;
         }
         self.experiments.asks_again = true;
@@ -155,9 +84,9 @@ impl Session {
         let round = rehearsal.as_ref().and_then(|r| r.outcomes.get(outcome)?.rounds.first());
         let Some(recording) = round.map(|r| r.recording.clone()) else { return };
         let Some(folder) = self.folder_of_recordings() else { return };
-        self.jobs.start(ctx, JobKind::Save, move || match write(&folder, recording) {
-            Ok(path) => Outcome::Performed(path),
-            Err(problem) => Outcome::Failed(problem),
+        self.jobs.start(ctx, SAVE, "", move |_| {
+            let path = write(&folder, recording)?;
+            change(move |session: &mut Self, ctx| session.performed(ctx, &path))
         });
     }
 
@@ -168,29 +97,27 @@ impl Session {
             Some((path, is_planar)) => plan.places_to_csv(&path, is_planar),
             None => plan.to_csv(coordinate),
         };
-        self.jobs.start(ctx, JobKind::Save, move || {
-            let written = free_path(&folder, "plan").and_then(|path| {
-                let failed = |e| format!("The plan cannot be written ({e}): {}", path.display());
-                std::fs::write(&path, text).map_err(failed).map(|()| path.clone())
-            });
-            written.map_or_else(Outcome::Failed, Outcome::Saved)
+        self.jobs.start(ctx, SAVE, "", move |_| {
+            let path = free_path(&folder, "plan")?;
+            std::fs::write(&path, text).map_err(|e| format!("The plan cannot be written ({e}): {}", path.display()))?;
+            saved(path)
         });
     }
 
     /// Where the tool went that was recorded, and whether in a plane; nothing where the coordinate itself was recorded.
     pub fn path_of_tool(&self) -> Option<(MechanismPath, bool)> {
-        let recording = &self.recordings.first()?.recording;
+        let recording = &self.document.recordings.first()?.recording;
         if recording.channel("q_m").or(recording.channel("q_rad")).is_some() {
             return None;
         }
-        let path = self.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
+        let path = self.calibration.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
         Some((path, recording.channel("z_m").is_none()))
     }
 
     fn folder_of_recordings(&mut self) -> Option<PathBuf> {
-        let folder = self.trainer.recordings_folder.clone().or_else(folder::of_user);
+        let folder = self.training.trainer.recordings_folder.clone().or_else(folder::of_user);
         if folder.is_none() {
-            self.fail(
+            self.messages.fail(
                 "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
             );
         }
@@ -199,7 +126,7 @@ impl Session {
 
     /// Which of the open recordings were simulated.
     pub fn simulated(&self) -> Vec<&str> {
-        let simulated = self.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
+        let simulated = self.document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
         simulated.map(|p| p.recording.name.as_str()).collect()
     }
 
@@ -212,24 +139,7 @@ impl Session {
 
     /// A recording of the experiment was written.
     pub(super) fn performed(&mut self, ctx: &egui::Context, path: &Path) {
-        self.say(Tone::Done, format!("Saved {}.", name_of(path)));
+        self.messages.say(Tone::Done, format!("Saved {}.", name_of(path)));
         self.add_experiment(ctx, path);
     }
-}
-
-/// Writes a recording beside others, under a name of its own.
-fn write(folder: &Path, recording: Recording) -> Result<PathBuf, String> {
-    let path = free_path(folder, &recording.name.replace(", ", "-").replace(' ', "-"))?;
-    let recording = Recording { labels: None, ..recording };
-    estimator::log::write_csv(&recording, &path)
-        .and_then(|()| estimator::log::write_meta(&recording, &path))
-        .map_err(|error| sentence(&error.to_string()))?;
-    Ok(path)
-}
-
-/// A name in a folder, which is made, that no file has yet.
-fn free_path(folder: &Path, stem: &str) -> Result<PathBuf, String> {
-    std::fs::create_dir_all(folder).map_err(|e| format!("The folder cannot be made ({e}): {}", folder.display()))?;
-    let mut free = (1..u32::MAX).map(|k| folder.join(format!("{stem}-{k}.csv"))).filter(|path| !path.exists());
-    free.next().ok_or_else(|| format!("No name for another file is free in {}", folder.display()))
 }

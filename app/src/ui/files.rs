@@ -1,10 +1,13 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::checking::On;
-use super::jobs::{JobKind, Jobs, Outcome, Purpose};
-use super::session::{Session, sentence};
+use super::jobs::{Answer, JobKind, Jobs, change, no_change};
+use super::session::Session;
 use crate::export::{Format, export};
-use std::path::{Path, PathBuf};
+use crate::report::of_files;
+use crate::text::sentence::sentence;
+use crate::ui::checked::On;
+use crate::write_whole::write_whole;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Nobody cancels this fast: there is no dialog.
@@ -14,133 +17,183 @@ const NO_DIALOG: &str =
 /// Endings of logs.
 const LOGS: &[&str] = &["csv", "txt", "tsv", "dat", "mcap", "parquet"];
 
+/// Waiting for a file dialog.
+const DIALOG: JobKind = JobKind::new("dialog").waits();
+/// Writing a file.
+pub const SAVE: JobKind = JobKind::new("save").writes();
+
+/// A file dialog, and the use of the path that it brings.
+#[derive(Clone, Copy)]
+pub struct Dialog {
+    title: &'static str,
+    /// Name and endings of the files on offer.
+    filters: &'static [(&'static str, &'static [&'static str])],
+    /// The proposed name of a file to write; nothing where one is opened.
+    saves_as: Option<&'static str>,
+    then: fn(&mut Session, &egui::Context, PathBuf),
+}
+
+/// Logs first; the content tells what a file is.
+const LOGS_AND_ALL: &[(&str, &[&str])] = &[("Logs", LOGS), ("All files", &["*"])];
+
+/// A log to calibrate from.
+pub const OPEN_LOG: Dialog = Dialog {
+    title: "Open a log",
+    filters: LOGS_AND_ALL,
+    saves_as: None,
+    then: |session, ctx, path| session.open_any(ctx, &path),
+};
+/// A world to train in.
+pub const OPEN_WORLD: Dialog = Dialog {
+    title: "Open a world",
+    filters: &[("Worlds", &["json"])],
+    saves_as: None,
+    then: |session, ctx, path| session.open_world(ctx, &path),
+};
+/// A project.
+pub const OPEN_PROJECT: Dialog = Dialog {
+    title: "Open a project",
+    filters: &[("Projects", &["touchstone.json", "json"])],
+    saves_as: None,
+    then: |session, ctx, path| session.open_project(ctx, &path),
+};
+/// Another recording of the same object.
+pub const ADD_LOG: Dialog = Dialog {
+    title: "Add a recording of the same object",
+    filters: LOGS_AND_ALL,
+    saves_as: None,
+    then: |session, ctx, path| session.add_log(ctx, &path),
+};
+/// A recording of the experiment that a diagnosis asks for.
+pub const ADD_EXPERIMENT: Dialog = Dialog {
+    title: "Add a recording of the experiment",
+    filters: LOGS_AND_ALL,
+    saves_as: None,
+    then: |session, ctx, path| session.add_experiment(ctx, &path),
+};
+/// A video of the shown recording.
+pub const OPEN_VIDEO: Dialog = Dialog {
+    title: "Open a video of the hand",
+    filters: &[("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"]), ("All files", &["*"])],
+    saves_as: None,
+    then: |session, _, path| session.open_video(&path),
+};
+/// The place of the project.
+pub const SAVE_PROJECT: Dialog = Dialog {
+    title: "Save the project",
+    filters: &[],
+    saves_as: Some("project.touchstone.json"),
+    then: Session::save_project_as,
+};
+/// The place of the report.
+pub const SAVE_REPORT: Dialog = Dialog {
+    title: "Write a report",
+    filters: &[],
+    saves_as: Some("report.html"),
+    then: |session, ctx, path| save_report(ctx, session, path),
+};
+/// The place of the recording.
+pub const SAVE_LOG: Dialog = Dialog {
+    title: "Save the recording",
+    filters: &[],
+    saves_as: Some("recording.csv"),
+    then: |session, ctx, path| save_log(ctx, session, &path.display().to_string()),
+};
+/// The place of the calibrated world.
+pub const SAVE_WORLD: Dialog = Dialog {
+    title: "Save the world",
+    filters: &[],
+    saves_as: Some("world.json"),
+    then: |session, ctx, path| save_world(ctx, session, &path.display().to_string()),
+};
+/// The place of the calibrated world in the format of another simulator.
+pub const EXPORT_WORLD: Dialog = Dialog {
+    title: "Export the world: .xml for MuJoCo, .urdf or .sdf",
+    filters: &[("MuJoCo", &["xml", "mjcf"]), ("URDF", &["urdf"]), ("SDF", &["sdf", "world"])],
+    saves_as: Some("world.xml"),
+    then: |session, ctx, path| export_world(ctx, session, path),
+};
+/// The place of the extended world.
+pub const SAVE_EXTENDED: Dialog = Dialog {
+    title: "Save the extended world",
+    filters: &[],
+    saves_as: Some("extended-world.json"),
+    then: |session, ctx, path| save_extended(ctx, session, path),
+};
+/// The place of a table of attempts.
+pub const SAVE_HISTORY: Dialog = Dialog {
+    title: "Save the attempts",
+    filters: &[],
+    saves_as: Some("attempts.csv"),
+    then: |session, _, path| session.export_history(path),
+};
+
 /// Opens a file dialog on a thread of its own.
-pub fn ask(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
-    jobs.start(ctx, JobKind::Dialog, move || {
+pub fn ask(ctx: &egui::Context, jobs: &mut Jobs<Session>, dialog: Dialog) {
+    jobs.start(ctx, DIALOG, "", move |_| {
         let asked = Instant::now();
-        let chosen = dialog(purpose);
-        if chosen.is_none() && asked.elapsed() < THERE {
-            return Outcome::Failed(NO_DIALOG.to_owned());
-        }
-        Outcome::Chosen(purpose, chosen)
-    });
-}
-
-/// Opens a file dialog for several files, on a thread of its own.
-pub fn ask_many(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
-    jobs.start(ctx, JobKind::Dialog, move || {
-        let asked = Instant::now();
-        let dialog = rfd::FileDialog::new().set_title("Recordings of the same object").add_filter("Logs", LOGS);
-        match dialog.add_filter("All files", &["*"]).pick_files() {
-            Some(paths) => Outcome::ChosenMany(purpose, paths),
-            None if asked.elapsed() < THERE => Outcome::Failed(NO_DIALOG.to_owned()),
-            None => Outcome::Cancelled,
+        let shown = dialog_of(dialog.title, dialog.filters);
+        let chosen = match dialog.saves_as {
+            Some(name) => shown.set_file_name(name).save_file(),
+            None => shown.pick_file(),
+        };
+        match chosen {
+            Some(path) => answered(dialog, path),
+            None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
+            None => no_change(),
         }
     });
 }
 
-fn dialog(purpose: Purpose) -> Option<PathBuf> {
-    let dialog = rfd::FileDialog::new();
-    match purpose {
-        Purpose::OpenLog => dialog
-            .set_title("Open a log")
-            .add_filter("Logs", LOGS)
-            // What a file is, its content tells.
-            .add_filter("All files", &["*"])
-            .pick_file(),
-        Purpose::OpenWorld => dialog.set_title("Open a world").add_filter("Worlds", &["json"]).pick_file(),
-        Purpose::OpenProject => {
-            dialog.set_title("Open a project").add_filter("Projects", &["touchstone.json", "json"]).pick_file()
-        }
-        Purpose::AddLog => dialog
-            .set_title("Add a recording of the same object")
-            .add_filter("Logs", LOGS)
-            .add_filter("All files", &["*"])
-            .pick_file(),
-        Purpose::AddExperiment | Purpose::Check => dialog
-            .set_title("Add a recording of the experiment")
-            .add_filter("Logs", LOGS)
-            .add_filter("All files", &["*"])
-            .pick_file(),
-        Purpose::OpenVideo => dialog
-            .set_title("Open a video of the hand")
-            .add_filter("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"])
-            .add_filter("All files", &["*"])
-            .pick_file(),
-        Purpose::SaveProject => {
-            let name = format!("project.{}", super::project::ENDING);
-            dialog.set_title("Save the project").set_file_name(name).save_file()
-        }
-        Purpose::SaveReport => dialog.set_title("Write a report").set_file_name("report.html").save_file(),
-        Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
-        Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
-        Purpose::ExportWorld => dialog
-            .set_title("Export the world: .xml for MuJoCo, .urdf or .sdf")
-            .add_filter("MuJoCo", &["xml", "mjcf"])
-            .add_filter("URDF", &["urdf"])
-            .add_filter("SDF", &["sdf", "world"])
-            .set_file_name("world.xml")
-            .save_file(),
-        Purpose::SaveHistory => dialog.set_title("Save the attempts").set_file_name("attempts.csv").save_file(),
-        Purpose::SaveExtended => {
-            dialog.set_title("Save the extended world").set_file_name("extended-world.json").save_file()
-        }
-    }
+/// The answer of a dialog in which a file was chosen.
+pub fn answered(dialog: Dialog, path: PathBuf) -> Answer<Session> {
+    change(move |session, ctx| (dialog.then)(session, ctx, path))
 }
 
-impl Session {
-    /// A dialog was answered.
-    pub(super) fn chosen(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::OpenLog => self.open_any(ctx, &path),
-            Purpose::OpenWorld => self.open_world(ctx, &path),
-            Purpose::OpenProject => self.open_project(ctx, &path),
-            Purpose::OpenVideo => self.open_video(&path),
-            Purpose::AddLog => self.add_log(ctx, &path),
-            Purpose::AddExperiment => self.add_experiment(ctx, &path),
-            Purpose::Check => self.check(ctx, On::Files(vec![path])),
-            Purpose::SaveProject => self.save_project_as(ctx, path),
-            Purpose::SaveReport => save_report(ctx, self, path),
-            Purpose::SaveLog => {
-                save_log(ctx, self, &path.display().to_string());
-            }
-            Purpose::SaveWorld => {
-                save_world(ctx, self, &path.display().to_string());
-            }
-            Purpose::ExportWorld => export_world(ctx, self, path),
-            Purpose::SaveExtended => save_extended(ctx, self, path),
-            Purpose::SaveHistory => self.export_history(path),
+/// Asks for recordings to check a diagnosis on, on a thread of its own.
+pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>) {
+    jobs.start(ctx, DIALOG, "", move |_| {
+        let asked = Instant::now();
+        match dialog_of("Recordings of the same object", LOGS_AND_ALL).pick_files() {
+            Some(paths) => change(|session: &mut Session, ctx| session.check(ctx, On::Files(paths))),
+            None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
+            None => no_change(),
         }
-    }
+    });
+}
+
+fn dialog_of(title: &str, filters: &[(&str, &[&str])]) -> rfd::FileDialog {
+    let dialog = rfd::FileDialog::new().set_title(title);
+    filters.iter().fold(dialog, |dialog, (name, endings)| dialog.add_filter(*name, endings))
+}
+
+/// The answer of a job that has written a file.
+pub fn saved(path: PathBuf) -> Answer<Session> {
+    change(move |session: &mut Session, _| session.messages.say_saved(&path))
 }
 
 /// Writes the shown recording and its sidecar.
 pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     let path = PathBuf::from(field.trim());
-    let (choice, index) = (session.choice.clone(), session.current);
-    session.jobs.start(ctx, JobKind::Save, move || {
+    let (choice, index) = (session.calibration.choice.clone(), session.document.current);
+    session.jobs.start(ctx, SAVE, "", move |_| {
         // A task of the user's goes along, and what was stated and set by hand.
         let recording = &choice.given_to(index, &prepared.recording);
-        let written = estimator::log::write_csv(recording, &path)
-            .and_then(|()| estimator::log::write_meta(recording, &path).map(drop));
-        match written {
-            Ok(()) => Outcome::Saved(path),
-            Err(error) => Outcome::Failed(sentence(&error.to_string())),
-        }
+        estimator::log::write_csv(recording, &path)
+            .and_then(|()| estimator::log::write_meta(recording, &path))
+            .map_err(|error| sentence(&error.to_string()))?;
+        saved(path)
     });
 }
 
 /// Writes a report of the open files, as they are fitted.
 pub fn save_report(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let (sources, choice) = (session.sources.clone(), session.choice.clone());
-    session.jobs.start_watched(ctx, JobKind::Save, "Writing the report".to_owned(), move |_| {
-        match crate::report::of_files(&sources_of(&sources), &path, |index, recording| {
-            choice.given_to(index, &recording)
-        }) {
-            Ok(()) => Outcome::Saved(path),
-            Err(problem) => Outcome::Failed(problem),
-        }
+    let (sources, choice) = (session.document.sources.clone(), session.calibration.choice.clone());
+    session.jobs.start(ctx, SAVE, "Writing the report", move |_| {
+        let given = |index, recording| choice.given_to(index, &recording);
+        of_files::of_files(&sources_of(&sources), &path, given)?;
+        saved(path)
     });
 }
 
@@ -151,43 +204,34 @@ fn sources_of(sources: &[super::project::Source]) -> Vec<(PathBuf, Option<PathBu
 /// Writes the world with what a diagnosis found in it.
 pub fn save_extended(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
     let Some(worlds) = session.diagnosing.worlds.clone() else { return };
-    session.jobs.start(ctx, JobKind::Save, move || match write(&path, &(worlds.after.to_json() + "\n")) {
-        Ok(()) => Outcome::Saved(path),
-        Err(problem) => Outcome::Failed(problem),
+    session.jobs.start(ctx, SAVE, "", move |_| {
+        write_whole(&path, &(worlds.after.to_json() + "\n"))?;
+        saved(path)
     });
 }
 
 /// Writes the calibrated world.
 pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     let path = PathBuf::from(field.trim());
-    session.jobs.start(ctx, JobKind::Save, move || match write(&path, &analysis.world.to_json()) {
-        Ok(()) => Outcome::Saved(path),
-        Err(problem) => Outcome::Failed(problem),
+    session.jobs.start(ctx, SAVE, "", move |_| {
+        write_whole(&path, &analysis.world.to_json())?;
+        saved(path)
     });
 }
 
 /// Writes the calibrated world for another simulator; what has no counterpart there stands at the top of the file.
 pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let Some(analysis) = session.analysis.clone() else { return };
-    session.jobs.start(ctx, JobKind::Save, move || {
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
+    session.jobs.start(ctx, SAVE, "", move |_| {
         let Some(format) = Format::of_ending(&path) else {
-            return Outcome::Failed(format!(
-                "The ending names no format; use .xml (MuJoCo), .urdf or .sdf: {}",
-                path.display()
-            ));
+            return Err(format!("The ending names no format; use .xml (MuJoCo), .urdf or .sdf: {}", path.display()));
         };
         let exported = export(&analysis.world, format, false);
         if exported.bodies.is_empty() {
-            return Outcome::Failed(format!("Nothing of this world has a counterpart in {}.", format.name()));
+            return Err(format!("Nothing of this world has a counterpart in {}.", format.name()));
         }
-        match write(&path, &exported.text) {
-            Ok(()) => Outcome::Saved(path),
-            Err(problem) => Outcome::Failed(problem),
-        }
+        write_whole(&path, &exported.text)?;
+        saved(path)
     });
-}
-
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    super::project::write_whole(path, text)
 }

@@ -1,8 +1,8 @@
 //! How recordings are to be segmented and fitted: everything about the estimation that a user chooses, and can undo.
 
 use super::prepare::Prepared;
-use super::session::sentence;
 use crate::tasks::Chosen;
+use crate::text::sentence::sentence;
 use estimator::estimate::Parameter;
 use estimator::segment::definition::Definition;
 use estimator::segment::{Method, Thresholds};

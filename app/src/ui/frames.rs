@@ -1,14 +1,19 @@
 //! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
 
 use super::app::App;
-use super::diagnosing::{self, Answer, StartFrom};
-use super::fitting;
-use super::plots::LogView;
+use super::panel::Picture;
+use super::panels::{log, parameters, results, scene, segments};
 use super::prepare::Prepared;
-use super::screenshot::{Panel, contents};
-use super::session::{FitChoice, Session, Workspace};
+use super::screenshot::{self, contents};
+use super::session::Session;
 use super::theme;
-use super::trainer::{Clock, Operator};
+use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::{Answer, StartFrom};
+use crate::ui::fit_choice::FitChoice;
+use crate::ui::plots::choices::LogView;
+use crate::ui::refits;
+use crate::ui::trainer::live::{Clock, Operator};
+use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};
 use estimator::diagnose::{Progress, Worlds};
@@ -35,11 +40,11 @@ enum With {
 }
 
 /// What is measured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Subject {
     /// In words.
     pub name: &'static str,
-    panel: Panel,
+    picture: &'static Picture,
     view: LogView,
     workspace: Workspace,
     with: With,
@@ -53,23 +58,23 @@ impl Subject {
 }
 
 /// Every panel that shows a recording, and the pages with a running servo.
-pub const SUBJECTS: [Subject; 12] = [
-    subject("log", Panel::Log),
-    Subject { view: LogView::Xy, ..subject("log, XY", Panel::Log) },
-    subject("segments", Panel::Segments),
-    subject("parameters", Panel::Parameters),
-    subject("results", Panel::Results),
-    subject("scene", Panel::Scene),
-    subject("Calibrate", Panel::Workbench),
-    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose, before", Panel::Diagnose) },
-    Subject { workspace: Workspace::Diagnose, with: With::Answer, ..subject("Diagnose", Panel::Diagnose) },
-    Subject { workspace: Workspace::Diagnose, with: With::Atlas, ..subject("Diagnose, atlas", Panel::Diagnose) },
-    Subject { workspace: Workspace::Train, with: With::Servo, ..subject("Train", Panel::Train) },
-    Subject { workspace: Workspace::Devices, with: With::Servo, ..subject("Devices", Panel::Devices) },
+pub static SUBJECTS: [Subject; 12] = [
+    subject("log", &log::LOG),
+    Subject { view: LogView::Xy, ..subject("log, XY", &log::LOG) },
+    subject("segments", &segments::SEGMENTS),
+    subject("parameters", &parameters::PARAMETERS),
+    subject("results", &results::RESULTS),
+    subject("scene", &scene::SCENE_PICTURE),
+    subject("Calibrate", &screenshot::WORKBENCH),
+    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose, before", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Diagnose, with: With::Answer, ..subject("Diagnose", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Diagnose, with: With::Atlas, ..subject("Diagnose, atlas", &screenshot::DIAGNOSE) },
+    Subject { workspace: Workspace::Train, with: With::Servo, ..subject("Train", &screenshot::TRAIN) },
+    Subject { workspace: Workspace::Devices, with: With::Servo, ..subject("Devices", &screenshot::DEVICES) },
 ];
 
-const fn subject(name: &'static str, panel: Panel) -> Subject {
-    Subject { name, panel, view: LogView::Time, workspace: Workspace::Calibrate, with: With::Log }
+const fn subject(name: &'static str, picture: &'static Picture) -> Subject {
+    Subject { name, picture, view: LogView::Time, workspace: Workspace::Calibrate, with: With::Log }
 }
 
 /// Processor time of a picture, s.
@@ -98,7 +103,7 @@ pub struct Costs {
 pub struct Loaded {
     recordings: Vec<Arc<Prepared>>,
     analysis: Option<Arc<estimator::pipeline::Analysis>>,
-    replays: Vec<Option<super::jobs::Replayed>>,
+    replays: Vec<Option<super::replayed::Replayed>>,
     answer: Option<Arc<Answer>>,
     worlds: Option<Arc<Worlds>>,
 }
@@ -108,7 +113,7 @@ impl Loaded {
     pub fn over_and_over(once: Recording, samples: usize) -> Result<Self, String> {
         let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
         let long = repeated(&once, samples, period_s);
-        let mut analysis = fitting::analyse(&[Arc::new(Prepared::new(once))], &FitChoice::default())?;
+        let mut analysis = refits::analyse(&[Arc::new(Prepared::new(once))], &FitChoice::default())?;
         let last_s = long.time_s.as_ref().and_then(|t| t.last().copied()).unwrap_or_default();
         for segmentation in analysis.segmentations.iter_mut().flatten() {
             let states = std::mem::take(&mut segmentation.states);
@@ -120,7 +125,7 @@ impl Loaded {
             segmentation.states = (0..turns).flat_map(later).filter(|i| i.t0 < last_s).collect();
         }
         let recordings = vec![Arc::new(Prepared::new(long))];
-        let replays = fitting::replay_all(&analysis.world, &recordings);
+        let replays = refits::replay_all(&analysis.world, &recordings);
         Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays, answer: None, worlds: None })
     }
 
@@ -136,8 +141,8 @@ impl Loaded {
     pub fn diagnosed(once: Recording, samples: usize) -> Result<Self, String> {
         let mut loaded = Self::over_and_over(once, samples)?;
         let (choice, from) = (FitChoice::default(), StartFrom::default());
-        let answer = diagnosing::ask(&loaded.recordings, &choice, from, Progress::default())?;
-        let worlds = diagnosing::extend(&loaded.recordings, &choice, from, &answer)?;
+        let answer = diagnosis_state::ask(&loaded.recordings, &choice, from, Progress::default())?;
+        let worlds = diagnosis_state::extend(&loaded.recordings, &choice, from, &answer)?;
         loaded.answer = Some(Arc::new(answer));
         loaded.worlds = Some(Arc::new(worlds));
         Ok(loaded)
@@ -145,19 +150,19 @@ impl Loaded {
 
     fn session(&self, subject: Subject) -> Session {
         let mut session = Session::new();
-        session.trainer.clock = Clock::Manual;
+        session.training.trainer.clock = Clock::Manual;
         session.show(self.recordings.clone());
         session.workspace = subject.workspace;
         session.plots.view = subject.view;
-        session.analysis.clone_from(&self.analysis);
-        session.replays.clone_from(&self.replays);
+        session.calibration.analysis.clone_from(&self.analysis);
+        session.calibration.replays.clone_from(&self.replays);
         if subject.needs_answer() {
             session.diagnosing.answer.clone_from(&self.answer);
             session.diagnosing.worlds.clone_from(&self.worlds);
             session.diagnosing.shows_atlas = subject.with == With::Atlas;
         }
         if subject.with == With::Servo {
-            session.trainer.operator = Operator::Scripted;
+            session.training.trainer.operator = Operator::Scripted;
         }
         session
     }
@@ -165,7 +170,7 @@ impl Loaded {
     /// Draws a panel `pictures` times each way, in a window of `size` pixels.
     pub fn measure(&self, subject: Subject, size: [u32; 2], pictures: usize) -> Costs {
         let mut stage = Stage::new(App::new(self.session(subject)), subject, size);
-        let (first, last) = stage.app.session.view_s;
+        let (first, last) = stage.app.session.document.view_s;
         for _ in 0..WARM_UP {
             stage.picture();
         }
@@ -173,17 +178,17 @@ impl Loaded {
         // The servo goes on between two pictures; it has a thread of its own, so its time is not the picture's.
         let runs = |session: &mut Session| {
             if subject.with == With::Servo {
-                session.trainer.run_unseen(PICTURE_S);
+                session.training.trainer.run_unseen(PICTURE_S);
             }
         };
         let playing = stage.measure(pictures, |session, k| {
             runs(session);
-            session.seek(first + width * k as f64 / pictures as f64);
+            session.document.seek(first + width * k as f64 / pictures as f64);
         });
         let zooming = stage.measure(pictures, |session, k| {
             runs(session);
             let share = k as f64 / pictures as f64;
-            session.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
+            session.document.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
         });
         Costs { playing, zooming }
     }
@@ -208,7 +213,7 @@ fn repeated(once: &Recording, samples: usize, period_s: f64) -> Recording {
 struct Stage {
     ctx: Context,
     app: App,
-    contents: super::screenshot::Contents,
+    contents: screenshot::Contents,
     size: egui::Vec2,
     time_s: f64,
 }
@@ -218,7 +223,7 @@ impl Stage {
         let ctx = Context::default();
         theme::install(&ctx);
         let size = egui::vec2(width as f32, height as f32);
-        Self { ctx, app, contents: contents(subject.panel), size, time_s: 0.0 }
+        Self { ctx, app, contents: contents(subject.picture), size, time_s: 0.0 }
     }
 
     /// Lays one picture out and cuts it up: both times, s, and the triangles.

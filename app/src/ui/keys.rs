@@ -1,6 +1,7 @@
 //! Keys that are held or have two strengths: moving the time cursor. Everything else is an action.
 
-use super::session::{Session, Workspace};
+use super::session::Session;
+use crate::ui::workspace::Workspace;
 use egui::{Key, Ui};
 
 /// Share of the visible time that an arrow key moves the cursor by.
@@ -14,11 +15,11 @@ pub fn handle(ui: &Ui, session: &mut Session) {
     }
     let pressed = |key| ctx.input(|i| i.key_pressed(key));
     let coarse = if ctx.input(|i| i.modifiers.shift) { 10.0 } else { 1.0 };
-    let step = SCRUB_SHARE * coarse * (session.view_s.1 - session.view_s.0);
+    let step = SCRUB_SHARE * coarse * (session.document.view_s.1 - session.document.view_s.0);
     if pressed(Key::ArrowLeft) {
-        session.seek(session.cursor_s - step);
+        session.document.seek(session.document.cursor_s - step);
     }
     if pressed(Key::ArrowRight) {
-        session.seek(session.cursor_s + step);
+        session.document.seek(session.document.cursor_s + step);
     }
 }

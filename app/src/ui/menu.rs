@@ -1,9 +1,10 @@
 //! The menu: the same actions as in the palette, by group.
 
-use super::actions::{self, Action, Group};
 use super::app::App;
 use super::icons::{self, Icon};
 use super::theme::palette;
+use crate::ui::actions::list::{Action, Group};
+use crate::ui::actions::search;
 use egui::{Atom, Button, RichText, ScrollArea, Ui};
 
 /// Room for the bar above a menu, and for the edge of the window below, points.
@@ -32,7 +33,7 @@ fn all_of(ui: &mut Ui, app: &mut App, all: Vec<Action>) {
     for action in all {
         let why = action.why_not(app);
         let on = action.is_on(app) == Some(true);
-        let keys = RichText::new(actions::key_text(ui, &action)).size(11.0).color(palette(ui).secondary);
+        let keys = RichText::new(search::key_text(ui, &action)).size(11.0).color(palette(ui).secondary);
         let ink = palette(ui).secondary;
         // Names stand below each other, with or without an icon before them.
         let icon = action.icon().map_or_else(|| blank(icons::SIZE), |icon| icon.atom(icons::SIZE, Some(ink)));

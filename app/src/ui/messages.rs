@@ -1,8 +1,9 @@
 //! Messages above the workspace.
 
 use super::icons::{self, Icon};
-use super::session::{Session, Tone};
+use super::session::Session;
 use super::theme::{self, palette};
+use crate::ui::message_list::Tone;
 use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 
@@ -10,14 +11,14 @@ use std::time::Instant;
 /// that nothing moves under the pointer.
 pub fn banners(ui: &mut Ui, session: &mut Session) {
     let now = Instant::now();
-    session.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
-    if let Some(first) = session.banners.iter().filter_map(|banner| banner.until).min() {
+    session.messages.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
+    if let Some(first) = session.messages.banners.iter().filter_map(|banner| banner.until).min() {
         ui.ctx().request_repaint_after(first - now);
     }
     let mut closed = None;
-    let wrong = session.banners.iter().filter(|b| b.tone == Tone::Error).count();
+    let wrong = session.messages.banners.iter().filter(|b| b.tone == Tone::Error).count();
     strip(ui, "messages", wrong, |ui| {
-        for (index, banner) in session.banners.iter().enumerate().filter(|(_, b)| b.tone == Tone::Error) {
+        for (index, banner) in session.messages.banners.iter().enumerate().filter(|(_, b)| b.tone == Tone::Error) {
             message(ui, banner.tone, &banner.text, |ui| {
                 if ui.small_button("Dismiss").clicked() {
                     closed = Some(index);
@@ -27,13 +28,13 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
     });
     toasts(ui, session);
     if let Some(index) = closed {
-        session.banners.remove(index);
+        session.messages.banners.remove(index);
     }
 }
 
 /// The newest at the bottom.
 fn toasts(ui: &Ui, session: &Session) {
-    let done: Vec<_> = session.banners.iter().filter(|b| b.tone == Tone::Done).collect();
+    let done: Vec<_> = session.messages.banners.iter().filter(|b| b.tone == Tone::Done).collect();
     if done.is_empty() {
         return;
     }
@@ -101,25 +102,25 @@ mod tests {
     #[test]
     fn what_was_done_goes_by_itself_and_what_went_wrong_stays() {
         let mut session = Session::new();
-        session.fail("It did not work.");
-        session.say(Tone::Done, "Saved.".to_owned());
+        session.messages.fail("It did not work.");
+        session.messages.say(Tone::Done, "Saved.".to_owned());
         let builder = Harness::builder().with_context_setup(theme::install);
         let mut harness = builder.build_ui_state(|ui, session: &mut Session| banners(ui, session), session);
         harness.run_steps(2);
-        assert_eq!(harness.state().banners.len(), 2);
-        let done = harness.state_mut().banners.iter_mut().find(|b| b.tone == Tone::Done).expect("said");
+        assert_eq!(harness.state().messages.banners.len(), 2);
+        let done = harness.state_mut().messages.banners.iter_mut().find(|b| b.tone == Tone::Done).expect("said");
         let until = done.until.expect("it ends");
         assert!(until > Instant::now() + Duration::from_secs(2), "there is time to read it");
         // Its time is up.
         done.until = Some(Instant::now());
         harness.run_steps(2);
-        let left: Vec<Tone> = harness.state().banners.iter().map(|b| b.tone).collect();
+        let left: Vec<Tone> = harness.state().messages.banners.iter().map(|b| b.tone).collect();
         assert_eq!(left, [Tone::Error]);
         // Said again it has its time again, and stands there once.
         for _ in 0..2 {
-            harness.state_mut().say(Tone::Done, "Saved.".to_owned());
+            harness.state_mut().messages.say(Tone::Done, "Saved.".to_owned());
         }
         harness.run_steps(2);
-        assert_eq!(harness.state().banners.len(), 2);
+        assert_eq!(harness.state().messages.banners.len(), 2);
     }
 }

@@ -7,167 +7,89 @@
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
 pub mod actions;
-pub mod any_path;
 pub mod app;
 pub mod assistant;
 pub mod atlas;
 pub mod autosave;
 pub mod by_hand;
+pub mod calibration;
+pub mod checked;
 pub mod checking;
 pub mod comfort;
+pub mod command_palette;
+#[cfg(test)]
+mod device_tests;
 pub mod diagnosing;
+pub mod diagnosis_state;
 pub mod dock;
+pub mod document;
+pub mod editing_rules;
 pub mod experimenting;
-mod files;
+pub mod experiments;
+pub mod file_kind;
+pub mod files;
 pub mod film;
 pub mod first_picture;
 pub mod fit_choice;
 pub mod fitting;
-pub mod format;
+pub mod follow;
 pub mod frames;
 pub mod gallery;
 pub mod guided;
+pub mod guiding;
 pub mod icons;
 pub mod jobs;
-mod keys;
+pub mod keys;
 pub mod learning;
 pub mod lessons;
 pub mod mapping;
 pub mod markdown;
-mod menu;
-mod messages;
-mod opening;
-mod overlays;
+pub mod menu;
+pub mod message_list;
+pub mod messages;
+pub mod opening;
+pub mod overlays;
 pub mod palette;
+pub mod panel;
+pub mod panel_id;
 pub mod panels;
-mod playback;
+pub mod picture_input;
+pub mod playback;
 pub mod plots;
 pub mod prepare;
 pub mod project;
+pub mod project_files;
 pub mod recent;
-mod recorder;
-mod restore;
+pub mod recorder;
+pub mod refits;
+pub mod replayed;
+pub mod restore;
 pub mod rules;
+pub mod run;
 pub mod scene;
 pub mod screenshot;
 pub mod sensitivity;
 pub mod session;
 #[cfg(feature = "sound")]
 pub mod sound;
+pub mod stage;
+pub mod starting_over;
 pub mod teach;
-pub mod theme;
-pub mod tour;
-pub mod trainer;
-pub mod undo;
-pub mod video;
-pub mod what_if;
-pub mod widgets;
-
-use crate::tasks::Chosen;
-use anyhow::Context as _;
-use session::Session;
-use std::path::PathBuf;
-
-/// What the window opens with.
-#[derive(Clone, Debug, Default)]
-pub struct RunOptions {
-    /// A log to calibrate from.
-    pub log: Option<PathBuf>,
-    /// Its sidecar, where it is not beside the log.
-    pub meta: Option<PathBuf>,
-    /// A world to train in.
-    pub world: Option<PathBuf>,
-    /// The task of the log.
-    pub task: Option<Chosen>,
-    /// Light or dark; the system's choice when absent.
-    pub dark: Option<bool>,
-    /// Close when the first picture stands.
-    pub until_first_picture: bool,
-}
-
-/// Opens the window; returns when it is closed.
-pub fn run(options: RunOptions) -> anyhow::Result<()> {
-    let viewport = egui::ViewportBuilder::default()
-        .with_title("Touchstone")
-        .with_app_id("touchstone")
-        .with_inner_size([1480.0, 920.0])
-        .with_min_inner_size([1120.0, 680.0])
-        .with_drag_and_drop(true);
-    let native = eframe::NativeOptions {
-        viewport,
-        renderer: eframe::Renderer::Wgpu,
-        wgpu_options: graphics(),
-        ..Default::default()
-    };
-    let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
-        let app = create(cc, &options);
-        Ok(if options.until_first_picture { Box::new(first_picture::UntilFirstPicture::new(app)) } else { Box::new(app) })
-    };
-    match eframe::run_native("touchstone", native, Box::new(start)) {
-        Err(eframe::Error::Wgpu(_)) if std::env::var_os(BACKEND).is_none() => with_open_gl(),
-        opened => opened.map_err(|error| {
-            anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?")
-        }),
-    }
-}
-
-/// What chooses the graphics interface, for wgpu.
-const BACKEND: &str = "WGPU_BACKEND";
-
-/// The system's own interface alone: to look for OpenGL as well takes a tenth of a second on every start.
-fn graphics() -> egui_wgpu::WgpuConfiguration {
-    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
-    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
-}
-
-/// Starts again with OpenGL, where there is nothing else: a window system can be opened once a process.
-fn with_open_gl() -> anyhow::Result<()> {
-    let again = std::process::Command::new(std::env::current_exe()?)
-        .args(std::env::args_os().skip(1))
-        .env(BACKEND, "gl")
-        .status()
-        .context("the window could not be opened, and neither with OpenGL")?;
-    // What was in the way there it has said itself.
-    anyhow::ensure!(
-        again.success(),
-        "there is no graphics driver but OpenGL's, and the window did not stay open with that one"
-    );
-    Ok(())
-}
-
-fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
-    theme::install(&cc.egui_ctx);
-    if let Some(dark) = options.dark {
-        cc.egui_ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
-    }
-    if let Some(state) = &cc.wgpu_render_state {
-        scene::announce(&cc.egui_ctx, state);
-        scene::warm_up(&cc.egui_ctx, state);
-    }
-    let mut session = Session::new();
-    session.meta.clone_from(&options.meta);
-    session.task_hint.clone_from(&options.task);
-    recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
-    if let Some(world) = &options.world {
-        session.open_world(&cc.egui_ctx, world);
-    }
-    if let Some(log) = &options.log {
-        session.workspace = session::Workspace::Calibrate;
-        session.open(&cc.egui_ctx, log);
-    }
-    let mut app = app::App::new(session);
-    if let Some(folder) = eframe::storage_dir("touchstone") {
-        let fresh = options.log.is_none() && options.world.is_none();
-        app.keep(&folder, fresh);
-        if let Some(database) = crate::history::of_user() {
-            app.session.open_history(&cc.egui_ctx, database);
-        }
-    }
-    app
-}
-
-#[cfg(test)]
-mod device_tests;
 #[cfg(test)]
 mod tests;
+pub mod theme;
+pub mod tour;
+pub mod tour_progress;
+pub mod trainees;
+pub mod trainer;
+pub mod training;
+pub mod trying_values;
+pub mod undo;
+pub mod undoing;
+pub mod video;
+pub mod videos;
+pub mod wanting_sensitivity;
+pub mod what_if;
+pub mod widgets;
+pub mod window;
+pub mod workspace;

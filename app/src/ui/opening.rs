@@ -1,107 +1,84 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{JobKind, Outcome, Ticket};
-use super::mapping::{self, name_of};
+use super::jobs::{Answer, Ticket, change, no_change};
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::project::Source;
+use super::session::Session;
+use crate::text::file_name::name_of;
+use crate::text::sentence::sentence;
+use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
+use crate::ui::mapping::actions::look;
+use crate::ui::mapping::state;
+use crate::ui::workspace::Workspace;
 use estimator::log::{LogError, Watch};
-use haptics::recording::Meta;
-use haptics::world::World;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Bytes that tell JSON from anything else.
-const START_BYTES: u64 = 4096;
-/// Endings that the log of a sidecar may have.
-const LOG_ENDINGS: [&str; 6] = ["csv", "mcap", "parquet", "tsv", "txt", "dat"];
-
-/// What a file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileKind {
-    /// A table of samples in any format, or what the reader of logs will refuse in one sentence.
-    Log,
-    /// A world.
-    World,
-    /// The facts about a log.
-    Sidecar,
-    /// Recordings, and how they are fitted.
-    Project,
-    /// A video of the hand.
-    Video,
-}
-
-/// Tells what a file is.
-pub fn kind_of(path: &Path) -> FileKind {
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|f| f.take(START_BYTES).read_to_end(&mut start));
-    if crate::video::looks_like_video(&start) {
-        return FileKind::Video;
-    }
-    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
-    if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
-        return FileKind::Log;
-    }
-    if super::project::is_project(path) {
-        return FileKind::Project;
-    }
-    let named = path.file_name().is_some_and(|n| n.to_string_lossy().to_lowercase().ends_with(".meta.json"));
-    if named || is_sidecar(path) { FileKind::Sidecar } else { FileKind::World }
-}
-
-/// True for JSON that says something about a log and nothing else.
-fn is_sidecar(path: &Path) -> bool {
-    let Ok(text) = haptics::text_file::read(path) else { return false };
-    let meta: Option<Meta> = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok();
-    meta.is_some_and(|meta| {
-        meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err()
-    })
-}
-
-/// Why a mapping should be offered for recordings that could be read: nothing in them has a name that the program knows.
-pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
-    let warnings = &recordings.first()?.recording.warnings;
-    let mute = warnings.iter().any(|w| w.kind == "no-known-column");
-    mute.then(|| "No column has a name that the program knows: say what they mean.".to_owned())
-}
-
 /// Reads a log and prepares it; work for a job.
-pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Outcome {
+pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answer<Session> {
     let progress = |share| ticket.tell(share);
     let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
     match estimator::log::load_watched(&path, meta, &watch) {
         Ok(recordings) => {
             let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-            Outcome::Loaded(path, prepared)
+            change(|session: &mut Session, ctx| session.loaded(ctx, path, prepared))
         }
-        Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
-        Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
-        Err(error) => Outcome::Failed(sentence(&error.to_string())),
+        Err(LogError::Cancelled { .. }) => no_change(),
+        Err(error) if state::mends(&error) => {
+            let why = sentence(&error.to_string());
+            change(move |session: &mut Session, ctx| {
+                session.document.path_field = path.display().to_string();
+                session.map_columns_of(ctx, &path, Some(why));
+            })
+        }
+        Err(error) => Err(sentence(&error.to_string())),
     }
 }
 
 impl Session {
     /// Reads a log in the background, with the sidecar named by hand if there is one, then fits it.
     pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
-        let (path, meta) = (path.to_path_buf(), self.meta.clone());
-        self.path_field = path.display().to_string();
-        let what = format!("Reading {}", name_of(&path));
-        self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| read(path, meta.as_deref(), ticket));
+        let (path, meta) = (path.to_path_buf(), self.document.meta.clone());
+        self.document.path_field = path.display().to_string();
+        let title = format!("Reading {}", name_of(&path));
+        self.jobs.start(ctx, LOAD, title, move |ticket| read(path, meta.as_deref(), ticket));
     }
 
     /// Reads a log with this sidecar; without one, with the sidecar beside it.
     pub fn open_with(&mut self, ctx: &egui::Context, path: &Path, sidecar: Option<PathBuf>) {
-        self.meta = sidecar;
+        self.document.meta = sidecar;
         self.open(ctx, path);
     }
 
     /// Reads a world in the background: a file, or a built-in one by its name.
     pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
         let path = path.to_path_buf();
-        self.jobs.start(ctx, JobKind::Load, move || match crate::worlds::find(&path) {
-            Ok(world) => Outcome::World(Box::new(world)),
-            Err(error) => Outcome::Failed(sentence(&format!("{error:#}"))),
+        self.jobs.start(ctx, LOAD, "", move |_| {
+            let world = crate::worlds::find(&path).map_err(|error| sentence(&format!("{error:#}")))?;
+            change(|session: &mut Self, _| session.training.opened_world = Some(Box::new(world)))
         });
+    }
+
+    /// A log was read.
+    fn loaded(&mut self, ctx: &egui::Context, path: PathBuf, recordings: Vec<Arc<Prepared>>) {
+        let mute = says_nothing(&recordings);
+        self.document.recent.note(&path);
+        self.document.path_field.clear();
+        self.document.sources = vec![Source { log: path.clone(), meta: self.document.meta.clone() }];
+        self.document.project_path = None;
+        let again = self.document.path.as_ref() == Some(&path) && recordings.len() == self.document.recordings.len();
+        let videos = std::mem::take(&mut self.document.videos);
+        self.workspace = Workspace::Calibrate;
+        self.show(recordings);
+        self.document.videos = videos;
+        if !again {
+            self.document.videos.of_log(&path, &self.document.recordings);
+        }
+        self.document.path = Some(path);
+        match mute {
+            Some(why) => self.map_columns(ctx, Some(why)),
+            None => self.refit(ctx),
+        }
     }
 
     /// Opens whatever a file is.
@@ -112,8 +89,8 @@ impl Session {
             FileKind::Project => self.open_project(ctx, path),
             FileKind::Video => self.open_video(path),
             FileKind::Log => {
-                let again = self.path.as_deref() == Some(path);
-                let sidecar = self.meta.clone().filter(|_| again);
+                let again = self.document.path.as_deref() == Some(path);
+                let sidecar = self.document.meta.clone().filter(|_| again);
                 self.open_with(ctx, path, sidecar);
             }
         }
@@ -122,7 +99,7 @@ impl Session {
     /// Opens what was dropped on the window: one file, or a log with its sidecar.
     pub fn open_dropped(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
         if self.mapping.is_some() && !paths.is_empty() {
-            self.fail("Finish or cancel the mapping first, then drop the file again.");
+            self.messages.fail("Finish or cancel the mapping first, then drop the file again.");
             return;
         }
         match paths {
@@ -139,7 +116,7 @@ impl Session {
 
     fn open_first(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
         if let Some(first) = paths.first() {
-            self.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
+            self.messages.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
             self.open_any(ctx, first);
         }
     }
@@ -152,9 +129,9 @@ impl Session {
             let at = |ending: &&str| sidecar.with_file_name(format!("{stem}.{ending}"));
             LOG_ENDINGS.iter().map(at).find(|log| log.is_file())
         });
-        match beside.or_else(|| self.path.clone()) {
+        match beside.or_else(|| self.document.path.clone()) {
             Some(log) => self.open_with(ctx, &log, Some(sidecar.to_path_buf())),
-            None => self.fail(format!(
+            None => self.messages.fail(format!(
                 "{name} is a sidecar and no log stands beside it; open its log first, or drop both together."
             )),
         }
@@ -162,14 +139,14 @@ impl Session {
 
     /// Opens the mapping dialog for the log that is open, or that the path field names.
     pub fn map_columns(&mut self, ctx: &egui::Context, why: Option<String>) {
-        let named = PathBuf::from(self.path_field.trim());
-        let path = self.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
+        let named = PathBuf::from(self.document.path_field.trim());
+        let path = self.document.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
         self.map_columns_of(ctx, &path, why);
     }
 
     /// Opens the mapping dialog for a log.
     pub fn map_columns_of(&mut self, ctx: &egui::Context, path: &Path, why: Option<String>) {
-        mapping::look(ctx, &mut self.jobs, path, self.meta.clone(), why);
+        look(ctx, &mut self.jobs, path, self.document.meta.clone(), why);
     }
 }
 
@@ -207,6 +184,6 @@ mod tests {
         std::fs::write(&sidecar, r#"{"rate_hz": 100}"#).expect("writable");
         let mut session = Session::new();
         session.open_any(&egui::Context::default(), &sidecar);
-        assert!(session.banners[0].text.contains("open its log first"), "{:?}", session.banners);
+        assert!(session.messages.banners[0].text.contains("open its log first"), "{:?}", session.messages.banners);
     }
 }

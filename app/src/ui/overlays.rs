@@ -1,6 +1,6 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, change};
 use super::plots::choices::Overlaid;
 use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
@@ -8,6 +8,9 @@ use super::session::Session;
 use estimator::segment::SystemState;
 use estimator::signal::lag::lag;
 use std::sync::Arc;
+
+/// Finding the place of a recording on another one.
+pub const ALIGN: JobKind = JobKind::new("align");
 
 /// Quantities that tell best where two recordings match, the best first: forces rise and fall with every contact.
 const TELLING: [&str; 5] = ["Task signals", "Force", "Torque", "Position", "Angle"];
@@ -33,46 +36,54 @@ impl Session {
 
     /// Shifts a recording to where it is most like the shown one, in the background.
     pub fn align(&mut self, ctx: &egui::Context, recording: usize) {
-        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+        let (Some(fixed), Some(moved)) =
+            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
+        else {
             return;
         };
-        self.jobs.start_watched(ctx, JobKind::Align, "Laying recordings over each other".to_owned(), move |_| {
-            Outcome::Aligned(recording, most_alike(&fixed, &moved))
+        self.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
+            let found = most_alike(&fixed, &moved);
+            change(move |session: &mut Self, _| session.aligned(recording, found))
         });
     }
 
     /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
     pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
-        let pair = (self.current, recording);
-        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+        let pair = (self.document.current, recording);
+        let (Some(fixed), Some(moved)) =
+            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
+        else {
             return;
         };
-        if likeliest.contains_key(&pair) || self.jobs.is_running(JobKind::Align) {
+        if likeliest.contains_key(&pair) || self.jobs.is_running(ALIGN) {
             return;
         }
         // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
-        self.jobs.start_watched(ctx, JobKind::Align, "Comparing recordings".to_owned(), move |_| {
-            Outcome::MostAlike(pair, most_alike(&fixed, &moved).ok())
+        self.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
+            let found = most_alike(&fixed, &moved).ok();
+            change(move |session: &mut Self, _| {
+                session.plots.likeliest.insert(pair, found);
+            })
         });
     }
 
     pub(super) fn aligned(&mut self, recording: usize, found: Result<f64, String>) {
         match found {
             Ok(offset_s) => self.shift_overlay(recording, offset_s),
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.messages.fail(problem),
         }
     }
 
     /// When a recording is touched for the first time, s; `None` where its states are not known.
     pub fn first_contact_s(&self, recording: usize) -> Option<f64> {
-        let states = &self.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
+        let states = &self.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
         let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
         states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
     }
 
     /// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
     pub fn align_by_contact(&mut self, recording: usize) -> bool {
-        let both = self.first_contact_s(self.current).zip(self.first_contact_s(recording));
+        let both = self.first_contact_s(self.document.current).zip(self.first_contact_s(recording));
         if let Some((here, there)) = both {
             self.shift_overlay(recording, here - there);
         }

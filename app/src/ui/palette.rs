@@ -1,41 +1,12 @@
 //! The command palette: every action by a few letters of its name.
 
-use super::actions::{self, Action};
 use super::app::App;
 use super::icons;
 use super::theme::{self, palette, space};
+use crate::ui::actions::list::Action;
+use crate::ui::actions::search;
+use crate::ui::command_palette::{GROUP, HEIGHT, LINE, WIDTH, moved_by_keys};
 use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
-
-/// Width of the list, points.
-const WIDTH: f32 = 520.0;
-/// Its height at most.
-const HEIGHT: f32 = 380.0;
-/// Width of the column with the names of the menus.
-const GROUP: f32 = 54.0;
-/// Height of a line.
-const LINE: f32 = 28.0;
-
-/// The palette and what is typed into it.
-#[derive(Debug, Default)]
-pub struct CommandPalette {
-    shown: bool,
-    query: String,
-    chosen: usize,
-    /// Set when the chosen line has to come into sight.
-    follow: bool,
-}
-
-impl CommandPalette {
-    /// Opens it, empty.
-    pub fn open(&mut self) {
-        *self = Self { shown: true, ..Self::default() };
-    }
-
-    /// True while it is open.
-    pub fn is_open(&self) -> bool {
-        self.shown
-    }
-}
 
 /// Draws it over the window while it is open, and does what is chosen.
 pub fn show(ui: &Ui, app: &mut App) {
@@ -85,24 +56,12 @@ pub fn show(ui: &Ui, app: &mut App) {
 
 /// What has the letters that were typed.
 fn found_for(app: &App) -> Vec<Action> {
-    let mut found = actions::matching(app, &app.palette.query);
+    let mut found = search::matching(app, &app.palette.query);
     if app.palette.query.is_empty() {
         // What can be done now stands first.
         found.sort_by_key(|action| action.why_not(app).is_some());
     }
     found
-}
-
-fn moved_by_keys(ui: &Ui, palette: &mut CommandPalette, count: usize) {
-    let (down, up) = ui.input_mut(|i| {
-        let none = egui::Modifiers::NONE;
-        (i.count_and_consume_key(none, Key::ArrowDown), i.count_and_consume_key(none, Key::ArrowUp))
-    });
-    if down + up > 0 {
-        palette.chosen = (palette.chosen + down).saturating_sub(up);
-        palette.follow = true;
-    }
-    palette.chosen = palette.chosen.min(count.saturating_sub(1));
 }
 
 /// One action; true when it was clicked.
@@ -122,7 +81,7 @@ fn line(ui: &mut Ui, app: &mut App, action: &Action, index: usize) -> bool {
     let ink = if why.is_none() { p.text } else { p.faint };
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink2(vec2(10.0, 0.0))));
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let right = why.map_or_else(|| actions::key_text(ui, action), str::to_owned);
+        let right = why.map_or_else(|| search::key_text(ui, action), str::to_owned);
         ui.label(RichText::new(right).size(11.0).color(p.secondary));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let (place, _) = ui.allocate_exact_size(vec2(icons::SIZE, icons::SIZE), Sense::hover());

@@ -1,8 +1,8 @@
 //! The time cursor: seeking, playing, and the view that follows.
 
-use super::session::Session;
+use super::document::Document;
 
-impl Session {
+impl Document {
     /// Puts the cursor to the beginning of a span and shows the span with its surroundings.
     pub fn look_at(&mut self, from_s: f64, to_s: f64) {
         let Some((first, last)) = self.prepared().map(|p| p.span()) else { return };
@@ -53,8 +53,9 @@ impl Session {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+
     use crate::ui::prepare::Prepared;
+    use crate::ui::session::Session;
     use haptics::recording::Recording;
     use std::sync::Arc;
 
@@ -69,32 +70,32 @@ mod tests {
     #[test]
     fn the_cursor_stays_inside_and_the_view_follows() {
         let mut session = clockless(1_001);
-        session.view_s = (0.0, 100.0);
-        session.seek(500.0);
-        assert!(session.view_s.0 <= 500.0 && session.view_s.1 >= 500.0);
-        assert!((session.view_s.1 - session.view_s.0 - 100.0).abs() < 1e-9);
-        session.seek(1e9);
-        assert_eq!(session.cursor_s, 1_000.0);
+        session.document.view_s = (0.0, 100.0);
+        session.document.seek(500.0);
+        assert!(session.document.view_s.0 <= 500.0 && session.document.view_s.1 >= 500.0);
+        assert!((session.document.view_s.1 - session.document.view_s.0 - 100.0).abs() < 1e-9);
+        session.document.seek(1e9);
+        assert_eq!(session.document.cursor_s, 1_000.0);
     }
 
     #[test]
     fn a_span_is_shown_with_its_surroundings() {
         let mut session = clockless(1_001);
-        session.look_at(500.0, 510.0);
-        assert_eq!((session.view_s, session.cursor_s), ((485.0, 525.0), 500.0));
-        session.look_at(0.0, 1_000.0);
-        assert_eq!(session.view_s, (0.0, 1_000.0));
-        session.look_at(1_000.0, 1_000.0);
-        assert_eq!((session.view_s, session.cursor_s), ((980.0, 1_000.0), 1_000.0));
+        session.document.look_at(500.0, 510.0);
+        assert_eq!((session.document.view_s, session.document.cursor_s), ((485.0, 525.0), 500.0));
+        session.document.look_at(0.0, 1_000.0);
+        assert_eq!(session.document.view_s, (0.0, 1_000.0));
+        session.document.look_at(1_000.0, 1_000.0);
+        assert_eq!((session.document.view_s, session.document.cursor_s), ((980.0, 1_000.0), 1_000.0));
     }
 
     #[test]
     fn playback_ends_and_starts_over() {
         let mut session = clockless(1_001);
-        session.toggle_play();
-        session.advance(20.0);
-        assert!(!session.playing && session.cursor_s == 1_000.0);
-        session.toggle_play();
-        assert!(session.playing && session.cursor_s == 0.0);
+        session.document.toggle_play();
+        session.document.advance(20.0);
+        assert!(!session.document.playing && session.document.cursor_s == 1_000.0);
+        session.document.toggle_play();
+        assert!(session.document.playing && session.document.cursor_s == 0.0);
     }
 }

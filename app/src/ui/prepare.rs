@@ -1,8 +1,8 @@
 //! A recording made ready to be looked at: task signals, paths, and channels grouped by quantity. Computed once, in the
 //! background.
 
-use super::format;
-use super::plots::Levels;
+use crate::text::format;
+use crate::ui::plots::levels::Levels;
 use estimator::segment::task_of;
 use estimator::signal::task::{TaskSignals, TipSeries, is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;

@@ -1,29 +1,28 @@
 //! A project: which recordings, how they are fitted, and what was looked at, in one small JSON file.
 
 use super::fit_choice::FitChoice;
-use super::jobs::{JobKind, Outcome, Ticket};
 use super::plots::choices::KeptChoices;
-use super::prepare::Prepared;
-use super::session::{Session, Workspace, sentence};
-use crate::video::VideoSource;
-use estimator::log::Watch;
+use crate::text::sentence::sentence;
+use crate::ui::workspace::Workspace;
+use crate::video::reading::VideoSource;
+use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The ending of project files.
 pub const ENDING: &str = "touchstone.json";
+
 /// The version that this program writes.
-const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 1;
 
 /// A file with recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// The log.
-    #[serde(with = "super::any_path")]
+    #[serde(with = "crate::path_bytes")]
     pub log: PathBuf,
     /// A sidecar that does not stand beside it.
-    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::any_path")]
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "crate::path_bytes")]
     pub meta: Option<PathBuf>,
 }
 
@@ -53,21 +52,6 @@ pub struct Project {
 }
 
 impl Project {
-    /// What a session has open.
-    pub fn of(session: &Session) -> Self {
-        Self {
-            touchstone_project: VERSION,
-            recordings: session.sources.clone(),
-            videos: session.videos.sources.clone(),
-            choice: session.choice.clone(),
-            current: session.current,
-            cursor_s: session.cursor_s,
-            view_s: session.view_s,
-            workspace: session.workspace,
-            plots: session.plots.kept(),
-        }
-    }
-
     /// Reads one; an error is a sentence.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = haptics::text_file::read(path)
@@ -110,113 +94,11 @@ impl Project {
     }
 }
 
-/// Writes beside the file first, so that a crash or a full disk leaves the old one or the new one.
-pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
-    haptics::text_file::write(path, text).map_err(|e| {
-        format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
-    })
-}
-
 /// Whether a JSON file is a project.
 pub fn is_project(path: &Path) -> bool {
     let text = haptics::text_file::read(path).unwrap_or_default();
     let value: Option<serde_json::Value> = serde_json::from_str(&text).ok();
     value.is_some_and(|v| v.get("touchstone_project").is_some())
-}
-
-/// Reads every file of a project; work for a job.
-fn read_all(project: Project, ticket: &Ticket) -> Outcome {
-    let mut recordings = Vec::new();
-    let count = project.recordings.len().max(1) as f64;
-    for (index, source) in project.recordings.iter().enumerate() {
-        let progress = |share: f64| ticket.tell((index as f64 + share) / count);
-        let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: None };
-        match estimator::log::load_watched(&source.log, source.meta.as_deref(), &watch) {
-            Ok(read) => recordings.extend(read.into_iter().map(|r| Arc::new(Prepared::new(r)))),
-            Err(estimator::log::LogError::Cancelled { .. }) => return Outcome::Cancelled,
-            Err(error) => return Outcome::Failed(sentence(&error.to_string())),
-        }
-    }
-    Outcome::Project(Box::new(project), recordings)
-}
-
-impl Session {
-    /// Opens a project file in the background.
-    pub fn open_project(&mut self, ctx: &egui::Context, path: &Path) {
-        match Project::read(path) {
-            Ok(project) => {
-                self.opening_project = Some(path.to_path_buf());
-                self.restore(ctx, project);
-            }
-            Err(problem) => self.fail(problem),
-        }
-    }
-
-    /// Opens what a project names, in the background.
-    pub fn restore(&mut self, ctx: &egui::Context, project: Project) {
-        if project.recordings.is_empty() {
-            self.fail("This project names no recording.");
-            return;
-        }
-        self.jobs.start_watched(ctx, JobKind::Load, "Opening the project".to_owned(), move |ticket| {
-            read_all(project, ticket)
-        });
-    }
-
-    /// A project's files were read.
-    pub(super) fn opened_project(&mut self, ctx: &egui::Context, project: Project, recordings: Vec<Arc<Prepared>>) {
-        let first = project.recordings.first().cloned().unwrap_or_default();
-        self.meta = first.meta;
-        self.path_field.clear();
-        self.path = Some(first.log);
-        self.sources = project.recordings;
-        self.show(recordings);
-        self.videos.sources = project.videos;
-        self.choice = project.choice;
-        self.select(project.current);
-        if project.view_s.1 > project.view_s.0 {
-            self.view_s = project.view_s;
-        }
-        self.seek(project.cursor_s);
-        self.workspace = project.workspace;
-        self.plots.restore(project.plots);
-        self.project_path = self.opening_project.take();
-        if let Some(path) = self.project_path.clone() {
-            self.recent.note(&path);
-        }
-        self.refit(ctx);
-    }
-
-    /// Adds the recordings of another file to those that are open, and fits all of them together.
-    pub fn add_log(&mut self, ctx: &egui::Context, path: &Path) {
-        if self.sources.is_empty() {
-            self.open_any(ctx, path);
-            return;
-        }
-        let mut project = Project::of(self);
-        project.recordings.push(Source { log: path.to_path_buf(), meta: None });
-        self.opening_project.clone_from(&self.project_path);
-        self.restore(ctx, project);
-    }
-
-    /// Writes the project where it was opened, or asks where.
-    pub fn save_project(&mut self, ctx: &egui::Context) {
-        match self.project_path.clone() {
-            Some(path) => self.save_project_as(ctx, path),
-            None => super::files::ask(ctx, &mut self.jobs, super::jobs::Purpose::SaveProject),
-        }
-    }
-
-    /// Writes the project there.
-    pub fn save_project_as(&mut self, ctx: &egui::Context, path: PathBuf) {
-        let project = Project::of(self);
-        self.project_path = Some(path.clone());
-        self.recent.note(&path);
-        self.jobs.start(ctx, JobKind::Save, move || match project.write(&path) {
-            Ok(()) => Outcome::Saved(path),
-            Err(problem) => Outcome::Failed(problem),
-        });
-    }
 }
 
 #[cfg(test)]

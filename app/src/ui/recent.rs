@@ -8,7 +8,7 @@ const MOST: usize = 10;
 
 /// Files that were open, the newest first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Recent(#[serde(with = "super::any_path")] Vec<PathBuf>);
+pub struct Recent(#[serde(with = "crate::path_bytes")] Vec<PathBuf>);
 
 impl Recent {
     /// A file was opened or saved.

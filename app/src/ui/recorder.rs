@@ -1,22 +1,28 @@
 //! The window's part of recording: the card beside the trainer, what becomes of a recording that ended, and recordings that a killed
 //! program left behind.
 
-use super::format;
+use super::files::saved;
 use super::icons::Icon;
-use super::jobs::{JobKind, Outcome};
-use super::mapping::name_of;
-use super::messages;
-use super::opening;
-use super::session::{Session, Tone};
-use super::theme;
+use super::jobs::{JobKind, change};
+use super::session::Session;
 use super::widgets::{primary_button, recording_light, remark};
+use super::{messages, opening, theme};
 use crate::recorder::{Status, folder};
+use crate::text::file_name::name_of;
+use crate::text::format;
+use crate::ui::file_kind::LOAD;
+use crate::ui::message_list::Tone;
 use egui::Ui;
 use std::path::Path;
 
+/// Waiting for the end of a recording.
+pub const RECORD: JobKind = JobKind::new("record").writes();
+/// Looking for recordings that a killed program left behind.
+const RECOVER: JobKind = JobKind::new("recover");
+
 /// The card beside the trainer's picture.
 pub fn controls(ui: &mut Ui, session: &mut Session) {
-    let Some(status) = session.trainer.recording_status() else {
+    let Some(status) = session.training.trainer.recording_status() else {
         ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
         if primary_button(ui, true, (Icon::Record, "Record")).on_hover_text(whereto(session)).clicked() {
             start(session);
@@ -41,13 +47,13 @@ pub fn controls(ui: &mut Ui, session: &mut Session) {
             stop_and_open(&ctx, session);
         }
         if ui.button((Icon::Remove, "Discard")).on_hover_text("Ends the recording and removes its file").clicked() {
-            session.trainer.discard_recording();
+            session.training.trainer.discard_recording();
         }
     });
 }
 
 fn whereto(session: &Session) -> String {
-    let folder = session.trainer.recordings_folder.clone().or_else(folder::of_user);
+    let folder = session.training.trainer.recordings_folder.clone().or_else(folder::of_user);
     folder.map_or_else(|| "R".to_owned(), |folder| format!("R\nGoes to {}", folder.display()))
 }
 
@@ -71,49 +77,48 @@ fn megabytes(bytes: u64) -> String {
 
 /// Begins to record; what is in the way is said.
 pub fn start(session: &mut Session) {
-    if let Err(problem) = session.trainer.start_recording() {
-        session.fail(problem);
+    if let Err(problem) = session.training.trainer.start_recording() {
+        session.messages.fail(problem);
     }
 }
 
 /// Ends the recording and opens it as a log, all in the background.
 pub fn stop_and_open(ctx: &egui::Context, session: &mut Session) {
-    let status = session.trainer.recording_status().unwrap_or_default();
-    let Some(stopping) = session.trainer.stop_recording() else { return };
+    let status = session.training.trainer.recording_status().unwrap_or_default();
+    let Some(stopping) = session.training.trainer.stop_recording() else { return };
     if status.files > 1 {
-        session.say(Tone::Done, format!("The recording has {} files; the newest one is opened.", status.files));
+        session
+            .messages
+            .say(Tone::Done, format!("The recording has {} files; the newest one is opened.", status.files));
     }
     // A sidecar that was named for another log is not for this one.
-    session.meta = None;
-    session.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
-    session.jobs.start_watched(ctx, JobKind::Load, "Reading the recording".to_owned(), move |ticket| {
-        match stopping.wait() {
-            Ok(finished) => opening::read(finished.path, None, ticket),
-            Err(problem) => Outcome::Failed(problem),
-        }
-    });
+    session.document.meta = None;
+    session.document.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
+    session
+        .jobs
+        .start(ctx, LOAD, "Reading the recording", move |ticket| opening::read(stopping.wait()?.path, None, ticket));
 }
 
 /// Recordings that ended without being asked to are told; call once a frame.
 pub fn follow(ctx: &egui::Context, session: &mut Session) {
-    while let Some(stopping) = session.trainer.take_ended_recording() {
-        session.jobs.start(ctx, JobKind::Record, move || match stopping.wait() {
-            Ok(finished) => Outcome::Saved(finished.path),
-            Err(problem) => Outcome::Failed(problem),
-        });
+    while let Some(stopping) = session.training.trainer.take_ended_recording() {
+        session.jobs.start(ctx, RECORD, "", move |_| saved(stopping.wait()?.path));
     }
 }
 
 /// Looks for recordings that a killed program left behind, in the background.
 pub fn look_for_unfinished(ctx: &egui::Context, session: &mut Session) {
-    let Some(folder) = session.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
-    session.jobs.start(ctx, JobKind::Recover, move || Outcome::Unfinished(folder::unfinished(&folder)));
+    let Some(folder) = session.training.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
+    session.jobs.start(ctx, RECOVER, "", move |_| {
+        let unfinished = folder::unfinished(&folder);
+        change(|session: &mut Session, _| session.document.unfinished = unfinished)
+    });
 }
 
 /// Above the workspace: a recording that has no end, with the way to open it.
 pub fn unfinished(ui: &mut Ui, session: &mut Session) {
-    let count = session.unfinished.len();
-    let path = session.unfinished.first().cloned().unwrap_or_default();
+    let count = session.document.unfinished.len();
+    let path = session.document.unfinished.first().cloned().unwrap_or_default();
     let (mut open, mut dismiss) = (false, false);
     messages::strip(ui, "unfinished recordings", count.min(1), |ui| {
         messages::message(ui, Tone::Error, &said(&path, count), |ui| {
@@ -122,7 +127,7 @@ pub fn unfinished(ui: &mut Ui, session: &mut Session) {
         });
     });
     if open || dismiss {
-        session.unfinished.remove(0);
+        session.document.unfinished.remove(0);
         folder::forget(&path);
     }
     if open {

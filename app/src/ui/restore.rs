@@ -2,9 +2,9 @@
 
 use super::app::App;
 use super::autosave::Autosave;
-use super::mapping::name_of;
 use super::messages;
-use super::session::Tone;
+use crate::text::file_name::name_of;
+use crate::ui::message_list::Tone;
 use egui::Ui;
 use std::path::Path;
 
@@ -13,9 +13,9 @@ impl App {
     pub fn keep(&mut self, folder: &Path, fresh: bool) {
         let Some((autosave, before)) = Autosave::begin(folder) else { return };
         self.dock = before.dock.clone();
-        self.session.recent = before.recent.clone();
-        self.session.assistant = before.assistant;
-        self.session.comfort = before.comfort;
+        self.session.document.recent = before.recent.clone();
+        self.session.training.assistant = before.assistant;
+        self.session.training.comfort = before.comfort;
         self.tour.seen = before.toured;
         self.autosave = Some(autosave);
         if !before.ended && !before.project.recordings.is_empty() {
@@ -48,7 +48,7 @@ pub fn offer(ui: &mut Ui, app: &mut App) {
     }
     if let Some(state) = app.left_behind.take().filter(|_| again) {
         let ctx = ui.ctx().clone();
-        app.session.opening_project = state.project_path;
+        app.session.document.opening_project = state.project_path;
         app.session.restore(&ctx, state.project);
     }
 }

@@ -1,12 +1,8 @@
 //! The rules of a task while they are edited: a draft that is tried at once where it can be used.
 
-use super::jobs::{JobKind, Outcome};
-use super::session::{Session, sentence};
 use estimator::segment::SystemState;
 use estimator::segment::definition::{Definition, StateRule, signals};
-use estimator::segment::library;
 use haptics::recording::Task;
-use std::sync::Arc;
 
 /// An open editor.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,22 +22,6 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// Opens the rules of the task that is chosen; says why not where it has none.
-    pub fn open(session: &mut Session) -> Option<Box<Self>> {
-        let found = session.prepared().cloned().and_then(|prepared| session.choice.definition(&prepared));
-        match found {
-            Some(Ok(task)) => Some(Box::new(Self::of(task))),
-            Some(Err(problem)) => {
-                session.fail(problem);
-                None
-            }
-            None => {
-                session.fail("The task of this recording is not known; choose one first.");
-                None
-            }
-        }
-    }
-
     /// An editor of a task.
     pub fn of(task: Definition) -> Self {
         let own = Task::from_name(&task.name).is_none();
@@ -89,53 +69,6 @@ impl Rules {
         } else {
             rule.when.insert(signal.to_owned(), now);
         }
-    }
-}
-
-/// Looks at what was changed, and tells the states anew with it. Call once a frame.
-pub fn follow(ctx: &egui::Context, session: &mut Session) {
-    let running = session.jobs.is_running(JobKind::Segment);
-    let Some(rules) = session.rules.as_mut().filter(|rules| rules.untried) else { return };
-    rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
-    if rules.fault.is_some() {
-        rules.untried = false;
-        return;
-    }
-    if running {
-        // One after the other: the newest draft waits for its turn.
-        return;
-    }
-    rules.untried = false;
-    let same = rules.draft == rules.before;
-    let draft = rules.draft.clone();
-    if !same || session.choice.own.is_some() {
-        session.choice.task = Some(draft.like);
-        session.choice.own = Some(Arc::new(draft));
-    }
-    session.resegment(ctx);
-}
-
-/// Writes the draft under its new name, in the background.
-pub fn save(ctx: &egui::Context, session: &mut Session) {
-    let Some(rules) = session.rules.as_mut() else { return };
-    let mut task = rules.draft.clone();
-    rules.name.trim().clone_into(&mut task.name);
-    if task.title == rules.before.title && task.name != rules.before.name {
-        task.title = task.name.replace(['-', '_'], " ");
-    }
-    let Some(folder) = library::folder() else {
-        session.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
-        return;
-    };
-    match library::save(folder, &task) {
-        Ok(path) => {
-            (rules.before, rules.draft) = (task.clone(), task.clone());
-            session.choice.task = Some(task.like);
-            session.choice.own = Some(Arc::new(task));
-            session.resegment(ctx);
-            session.jobs.start(ctx, JobKind::Save, move || Outcome::Saved(path));
-        }
-        Err(error) => session.fail(sentence(&error.to_string())),
     }
 }
 

@@ -1,13 +1,15 @@
 //! How much the simulated force depends on every parameter, and which parameters stand in for each other.
 
-use super::jobs::{JobKind, Outcome};
+use super::jobs::JobKind;
 use super::prepare::Prepared;
-use super::session::Session;
 use super::what_if;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Computing how the force depends on the parameters.
+pub const SENSITIVITY: JobKind = JobKind::new("sensitivity");
 
 /// Parameters are changed by this share of their value …
 pub const CHANGE: f64 = 0.1;
@@ -50,35 +52,6 @@ impl Sensitivity {
     }
 }
 
-impl Session {
-    /// Computes it now, for a picture.
-    pub(super) fn look_at_sensitivity(&mut self) {
-        let Some(analysis) = &self.analysis else { return };
-        let given = self.choice.given_to_all(&self.recordings);
-        let found = sensitivity(analysis, &self.recordings, &given, |_| {}, &AtomicBool::new(false));
-        self.sensitivity = found.map(Arc::new);
-    }
-
-    /// Computes it in the background, unless it is there.
-    pub fn want_sensitivity(&mut self, ctx: &egui::Context) {
-        let Some(analysis) = self.analysis.clone() else { return };
-        let there = self.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
-        // A fit that is about to change needs none.
-        if there || self.stale || self.jobs.is_running(JobKind::Sensitivity) || self.jobs.is_running(JobKind::Fit) {
-            return;
-        }
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        let what = "Looking how the force depends on the parameters".to_owned();
-        self.jobs.start_watched(ctx, JobKind::Sensitivity, what, move |ticket| {
-            let given = choice.given_to_all(&recordings);
-            match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-                Some(found) => Outcome::Sensitive(Arc::new(found)),
-                None => Outcome::Cancelled,
-            }
-        });
-    }
-}
-
 /// Effects of all identified parameters, and the correlations of the fit; `None` when cancelled.
 pub fn sensitivity(
     analysis: &Arc<Analysis>,
@@ -108,7 +81,7 @@ pub fn sensitivity(
 }
 
 /// Predicted force of every channel and recording with one value changed.
-fn predicted(
+pub(crate) fn predicted(
     analysis: &Analysis,
     recordings: &[Arc<Prepared>],
     given: &[Recording],
@@ -121,7 +94,7 @@ fn predicted(
 }
 
 /// RMS of the difference, samples that are not finite left out.
-fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+pub(crate) fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     let pairs = a.iter().zip(b).flat_map(|(a, b)| a.iter().zip(b));
     let (sum, count) = pairs
         .map(|(a, b)| (a - b).powi(2))
@@ -130,7 +103,7 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     (sum / count.max(1) as f64).sqrt()
 }
 
-fn correlations(analysis: &Analysis) -> Vec<Correlations> {
+pub(crate) fn correlations(analysis: &Analysis) -> Vec<Correlations> {
     let several = analysis.fit.correlated.iter().filter(|g| g.parameters.len() > 1);
     several
         .filter_map(|group| {
@@ -143,41 +116,4 @@ fn correlations(analysis: &Analysis) -> Vec<Correlations> {
             (kept.len() > 1).then(|| Correlations { names, values: kept.iter().map(|i| row(*i)).collect() })
         })
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ui::tests::{CRANK, STACK, session};
-
-    fn found(recording: Recording) -> Sensitivity {
-        let session = session(recording);
-        let analysis = session.analysis.clone().expect("fitted");
-        let given = session.choice.given_to_all(&session.recordings);
-        sensitivity(&analysis, &session.recordings, &given, |_| {}, &AtomicBool::new(false)).expect("not cancelled")
-    }
-
-    #[test]
-    fn the_force_depends_on_the_weight_as_the_weight_says() {
-        let found = found(STACK.clone());
-        let weight = found.effects.iter().find(|e| e.name == "block-1.weight_N").expect("weighed");
-        // A tenth of 0.35 N, shared by two fingers, for about a fifth of the time.
-        assert!(weight.force_rms > 0.001 && weight.force_rms < 0.035, "{weight:?}");
-        assert!(weight.by_its_error.is_some_and(|e| e < 0.3 * weight.force_rms));
-        assert!(found.effects.is_sorted_by(|a, b| a.force_rms >= b.force_rms));
-    }
-
-    #[test]
-    fn correlations_are_symmetric_and_one_with_themselves() {
-        let found = found(CRANK.clone());
-        assert!(!found.groups.is_empty());
-        for group in &found.groups {
-            for (i, row) in group.values.iter().enumerate() {
-                assert!((row[i] - 1.0).abs() < 1e-9);
-                assert!(
-                    row.iter().enumerate().all(|(j, r)| r.abs() <= 1.0 + 1e-9 && (r - group.values[j][i]).abs() < 1e-9)
-                );
-            }
-        }
-    }
 }

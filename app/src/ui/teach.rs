@@ -115,7 +115,7 @@ mod tests {
     fn what_fits_find_is_explained() {
         for recording in [STACK.clone(), CRANK.clone(), cart()] {
             let session = session(recording);
-            for parameter in &session.analysis.as_ref().expect("fitted").fit.parameters {
+            for parameter in &session.calibration.analysis.as_ref().expect("fitted").fit.parameters {
                 assert!(super::parameter(&parameter.name).is_some(), "{}", parameter.name);
             }
         }

@@ -178,38 +178,6 @@ pub fn state_ink(dark: bool, state: SystemState) -> Color32 {
     }
 }
 
-/// What a state is called in words.
-pub fn state_name(state: SystemState) -> &'static str {
-    match state {
-        SystemState::FreeMotion => "Free motion",
-        SystemState::HoldOnGround => "Hold on ground",
-        SystemState::HoldAboveGround => "Hold above ground",
-        SystemState::SlidingOnGround => "Sliding on ground",
-        SystemState::Turning => "Turning",
-        SystemState::Holding => "Holding",
-        SystemState::Insertion => "Insertion",
-        SystemState::Penetration => "Penetration",
-        SystemState::Extraction => "Extraction",
-        SystemState::NoState => "No state",
-    }
-}
-
-/// What a state is called where there is little room.
-pub fn state_short(state: SystemState) -> &'static str {
-    match state {
-        SystemState::FreeMotion => "Free",
-        SystemState::HoldOnGround => "Ground",
-        SystemState::HoldAboveGround => "In the air",
-        SystemState::SlidingOnGround => "Slides",
-        SystemState::Turning => "Turns",
-        SystemState::Holding => "Holds",
-        SystemState::Insertion => "In",
-        SystemState::Penetration => "Through",
-        SystemState::Extraction => "Out",
-        SystemState::NoState => "–",
-    }
-}
-
 /// Black or white, whichever reads better on `background`.
 pub fn ink_on(background: Color32) -> Color32 {
     let [r, g, b, _] = background.to_array().map(f32::from);

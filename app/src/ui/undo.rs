@@ -1,31 +1,31 @@
 //! Undo and redo of everything about the fit that the user changes, and of recordings that lie over each other.
 
 use super::fit_choice::FitChoice;
-use super::plots::choices::Overlaid;
-use super::session::{Session, Tone};
+use super::plots::choices::{Overlaid, PlotChoices};
 use egui::util::undoer::{Settings, Undoer};
 
 /// Changes that follow each other faster are one.
-const ONE_CHANGE_S: f32 = 0.6;
+pub(crate) const ONE_CHANGE_S: f32 = 0.6;
+
 /// So many are kept.
-const KEPT: usize = 200;
+pub(crate) const KEPT: usize = 200;
 
 /// What can be taken back, and brought back.
 pub struct Undo {
-    undoer: Undoer<Undoable>,
+    pub(crate) undoer: Undoer<Undoable>,
 }
 
 /// What the user changes and may want back.
 #[derive(Clone, Debug, PartialEq)]
-struct Undoable {
-    choice: FitChoice,
+pub(crate) struct Undoable {
+    pub(crate) choice: FitChoice,
     /// Which recordings lie over the shown one, and how far they are shifted.
-    overlaid: Vec<Overlaid>,
+    pub(crate) overlaid: Vec<Overlaid>,
 }
 
 impl Undoable {
-    fn of(session: &Session) -> Self {
-        Self { choice: session.choice.clone(), overlaid: session.plots.overlaid.clone() }
+    pub(crate) fn of(choice: &FitChoice, plots: &PlotChoices) -> Self {
+        Self { choice: choice.clone(), overlaid: plots.overlaid.clone() }
     }
 }
 
@@ -36,64 +36,8 @@ impl Default for Undo {
     }
 }
 
-impl Session {
-    /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
-    pub fn note_changes(&mut self, now_s: f64, held: bool) {
-        if !self.recordings.is_empty() && !held {
-            let now = Undoable::of(self);
-            self.undo.undoer.feed_state(now_s, &now);
-        }
-    }
-
-    /// Begins anew, with other recordings.
-    pub fn forget_changes(&mut self) {
-        self.undo = Undo::default();
-    }
-
-    /// True when there is something to take back.
-    pub fn can_undo(&self) -> bool {
-        self.undo.undoer.has_undo(&Undoable::of(self))
-    }
-
-    /// True when something was taken back.
-    pub fn can_redo(&self) -> bool {
-        self.undo.undoer.has_redo(&Undoable::of(self))
-    }
-
-    /// Takes the last change back.
-    pub fn undo(&mut self) {
-        let now = Undoable::of(self);
-        if let Some(before) = self.undo.undoer.undo(&now).cloned() {
-            self.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
-            self.put_back(before);
-        }
-    }
-
-    /// Brings back what was taken back.
-    pub fn redo(&mut self) {
-        let now = Undoable::of(self);
-        if let Some(after) = self.undo.undoer.redo(&now).cloned() {
-            self.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
-            self.put_back(after);
-        }
-    }
-
-    fn put_back(&mut self, Undoable { choice, overlaid }: Undoable) {
-        self.plots.overlaid = overlaid;
-        if let (Some(rules), true) = (self.rules.as_mut(), self.choice.own != choice.own) {
-            rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
-            rules.untried = true;
-        }
-        let segments_differ = self.choice.segments != choice.segments;
-        self.choice = choice;
-        if segments_differ {
-            self.show_segments();
-        }
-    }
-}
-
 /// What differs between two choices, in words.
-fn difference(now: &Undoable, then: &Undoable) -> String {
+pub(crate) fn difference(now: &Undoable, then: &Undoable) -> String {
     let (a, b) = (&now.choice, &then.choice);
     let changed = [
         (a.task != b.task, "task"),
@@ -109,92 +53,4 @@ fn difference(now: &Undoable, then: &Undoable) -> String {
     ];
     let names: Vec<&str> = changed.iter().filter(|(differs, _)| *differs).map(|(_, name)| *name).collect();
     names.join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ui::prepare::Prepared;
-    use estimator::segment::Method;
-    use haptics::recording::Recording;
-    use std::sync::Arc;
-
-    fn session() -> Session {
-        let mut session = Session::new();
-        session.show(vec![Arc::new(Prepared::new(Recording::default()))]);
-        session
-    }
-
-    /// Frames pass.
-    fn wait(session: &mut Session, from_s: f64) -> f64 {
-        for frame in 0..60 {
-            session.note_changes(from_s + f64::from(frame) / 30.0, false);
-        }
-        from_s + 2.0
-    }
-
-    #[test]
-    fn changes_are_taken_back_one_by_one_and_brought_back() {
-        let mut session = session();
-        let mut now = wait(&mut session, 0.0);
-        session.choice.method = Method::Hmm;
-        now = wait(&mut session, now);
-        session.choice.only_s = Some((1.0, 2.0));
-        wait(&mut session, now);
-        assert!(session.can_undo() && !session.can_redo());
-        session.undo();
-        assert_eq!((session.choice.method, session.choice.only_s), (Method::Hmm, None));
-        assert!(session.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
-        session.undo();
-        assert_eq!(session.choice.method, Method::Threshold);
-        assert!(!session.can_undo());
-        session.undo();
-        session.redo();
-        session.redo();
-        assert_eq!(session.choice.only_s, Some((1.0, 2.0)));
-        assert!(!session.can_redo());
-    }
-
-    #[test]
-    fn a_drag_is_one_change() {
-        let mut session = session();
-        let mut now = wait(&mut session, 0.0);
-        for step in 0..100 {
-            session.choice.only_s = Some((0.0, f64::from(step)));
-            now += 0.02;
-            session.note_changes(now, true);
-        }
-        wait(&mut session, now);
-        session.undo();
-        assert_eq!(session.choice.only_s, None);
-    }
-
-    #[test]
-    fn a_drag_in_which_one_hesitates_or_that_is_drawn_slowly_is_one_change() {
-        let mut session = session();
-        let mut now = wait(&mut session, 0.0);
-        for step in 0..4 {
-            session.choice.only_s = Some((0.0, f64::from(step)));
-            for _ in 0..5 {
-                now += 0.4;
-                session.note_changes(now, true);
-            }
-        }
-        wait(&mut session, now);
-        session.undo();
-        assert_eq!(session.choice.only_s, None);
-        assert!(!session.can_undo());
-    }
-
-    #[test]
-    fn other_recordings_begin_with_nothing_to_take_back() {
-        let mut session = session();
-        let now = wait(&mut session, 0.0);
-        session.choice.method = Method::Hmm;
-        wait(&mut session, now);
-        let again = session.recordings.clone();
-        session.show(again);
-        wait(&mut session, 10.0);
-        assert!(!session.can_undo());
-    }
 }

@@ -1,13 +1,15 @@
 //! What if a parameter had another value: the world with it, its replay and what that leaves of the measured force, live.
 
-use super::fitting::replay_forces;
-use super::jobs::{JobKind, Outcome, Replayed};
-use super::session::Session;
+use super::jobs::JobKind;
+use super::replayed::Replayed;
 use estimator::calibrate;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
 use haptics::world::World;
 use std::collections::BTreeMap;
+
+/// Replaying with a value that is tried.
+pub(crate) const WHAT_IF: JobKind = JobKind::new("what-if");
 
 /// Values that are tried, and what comes of them.
 #[derive(Clone, Debug, Default)]
@@ -75,72 +77,4 @@ pub fn residual_rms(replays: &[Option<Replayed>]) -> Option<f64> {
     let simulations = replays.iter().flatten().filter_map(|r| r.simulation.as_ref());
     let rms: Vec<f64> = simulations.flat_map(|s| s.residual_rms.iter().map(|(_, rms)| *rms)).collect();
     (!rms.is_empty()).then(|| (rms.iter().map(|r| r * r).sum::<f64>() / rms.len() as f64).sqrt())
-}
-
-impl Session {
-    /// Tries a value, or with `None` no longer.
-    pub fn try_value(&mut self, name: &str, value: Option<f64>) {
-        match value {
-            Some(value) => drop(self.what_if.values.insert(name.to_owned(), value)),
-            None => drop(self.what_if.values.remove(name)),
-        }
-        if !self.what_if.is_on() {
-            self.what_if.forget();
-        }
-    }
-
-    /// Replays with the newest tried values when the last replay has come; call once a frame.
-    pub fn follow_what_if(&mut self, ctx: &egui::Context) {
-        if !self.what_if.is_behind() || self.jobs.is_running(JobKind::WhatIf) {
-            return;
-        }
-        let Some(analysis) = self.analysis.clone() else { return };
-        let (recordings, choice, values) = (self.recordings.clone(), self.choice.clone(), self.what_if.values.clone());
-        self.jobs.start(ctx, JobKind::WhatIf, move || {
-            let world = world(&analysis, &choice.given_to_all(&recordings), &values);
-            Outcome::Tried(values, replay_forces(&world, &recordings))
-        });
-    }
-
-    /// Replays with the tried values now, for a picture.
-    pub(super) fn try_now(&mut self) {
-        let Some(analysis) = &self.analysis else { return };
-        let values = self.what_if.values.clone();
-        let world = world(analysis, &self.choice.given_to_all(&self.recordings), &values);
-        let replays = replay_forces(&world, &self.recordings);
-        self.what_if.take(values, replays);
-    }
-
-    /// The replay that plots show: of the tried values while something is tried.
-    pub fn shown_curves(&self) -> Option<&Replayed> {
-        let tried = self.what_if.replays.get(self.current).filter(|_| self.what_if.is_on());
-        tried.and_then(Option::as_ref).or_else(|| self.replay())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ui::tests::{CRANK, STACK, session};
-
-    fn tried(session: &Session, name: &str, factor: f64) -> f64 {
-        let analysis = session.analysis.as_ref().expect("fitted");
-        let (object, plain) = name.split_once('.').expect("object.name");
-        let value = analysis.fit.value(object, plain).expect("identified");
-        let recordings = session.choice.given_to_all(&session.recordings);
-        let world = world(analysis, &recordings, &[(name.to_owned(), factor * value)].into());
-        residual_rms(&replay_forces(&world, &session.recordings)).expect("predicts")
-    }
-
-    #[test]
-    fn a_wrong_weight_leaves_more_of_the_force_and_the_fitted_one_as_much_as_before() {
-        for (recording, name) in [(STACK.clone(), "block-1.weight_N"), (CRANK.clone(), "crank.weight_N")] {
-            let session = session(recording);
-            let before = residual_rms(&session.replays).expect("predicts");
-            let same = tried(&session, name, 1.0);
-            assert!((same - before).abs() < 1e-9 + 1e-6 * before, "{name}: {same} and {before}");
-            let heavy = tried(&session, name, 1.6);
-            assert!(heavy > 1.1 * before, "{name}: {heavy} against {before}");
-        }
-    }
 }

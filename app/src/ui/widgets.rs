@@ -239,7 +239,7 @@ pub fn gauge(ui: &mut Ui, label: &str, newtons: f64, most: f64, limit: f64, colo
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.allocate_ui_with_layout(vec2(46.0, 16.0), Layout::right_to_left(Align::Center), |ui| {
                 ui.set_min_width(46.0);
-                ui.label(RichText::new(format!("{} N", super::format::number(newtons, 2))).size(12.0));
+                ui.label(RichText::new(format!("{} N", crate::text::format::number(newtons, 2))).size(12.0));
             });
             bar(ui, newtons, most, Some(limit), color);
         });

@@ -1,6 +1,6 @@
 //! Interface to `ffmpeg` and `ffprobe`.
 
-use super::VideoError;
+use crate::video::reading::VideoError;
 use serde::Deserialize;
 use std::ffi::OsString;
 use std::io::Read;
@@ -80,7 +80,7 @@ pub fn look(file: &Path) -> Result<Facts, VideoError> {
     let rate_hz = [&stream.avg_frame_rate, &stream.r_frame_rate].into_iter().find_map(|text| ratio(text));
     let duration = stream.duration.as_ref().or(probe.format.duration.as_ref());
     let duration_s = duration.and_then(|text| text.parse().ok()).filter(|s: &f64| s.is_finite() && *s > 0.0);
-    Ok(Facts { rate_hz: rate_hz.unwrap_or(super::MOST_HZ), duration_s: duration_s.unwrap_or(0.0) })
+    Ok(Facts { rate_hz: rate_hz.unwrap_or(crate::video::reading::MOST_HZ), duration_s: duration_s.unwrap_or(0.0) })
 }
 
 /// `30000/1001` → 29.97; `None` if the text is not a rate.

@@ -1,7 +1,15 @@
-use super::*;
+use crate::video::program::is_there;
+use crate::video::reading::Video;
+use crate::video::reading::VideoError;
+use crate::video::reading::Watch;
+use crate::video::reading::looks_like_video;
+use crate::video::reading::motion;
+use crate::video::writer::Writer;
 use image::RgbImage;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
 
 /// Writes a video of generated pictures: `of(k)` is the picture of index `k`.
 pub fn film(file: &Path, rate_hz: u32, count: usize, of: impl Fn(usize) -> RgbImage) {

@@ -1,7 +1,7 @@
 //! Videos made from pictures, by the program `ffmpeg`: for the gallery and tests, which have no camera.
 
-use super::VideoError;
 use super::program::{first_line, first_words, input, not_started};
+use crate::video::reading::VideoError;
 use image::RgbImage;
 use std::io::Write as _;
 use std::path::Path;

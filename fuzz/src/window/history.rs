@@ -1,7 +1,8 @@
 //! Any bytes as the database of a history, with an attempt that waits beside it: a history that is read and added to, or one sentence.
 //! Seeds are databases that `touchstone history --import … --database …` made.
 
-use app::history::{Attempt, Query, Store};
+use app::history::attempt::Attempt;
+use app::history::store::{Query, Store};
 
 const LINE: &str = r#"{"trainee": "Ada", "lesson": "pinch", "began": "2026-11-22T10:00:00Z", "duration_s": 20.0, "completed": true,
     "score": 81.0, "meets_criterion": false, "proficient": false, "measures": {}, "measures_version": 1, "grade_version": 1}"#;

@@ -11,7 +11,7 @@ use super::score::{Figures, Row, ask};
 use super::sensor::quantised;
 use super::sets::{Counts, Job, Set, battery};
 use super::simulate::Setup;
-use estimator::diagnose::Diagnosis;
+use estimator::diagnose::Findings;
 
 fn spec(bench: Bench, effects: Vec<(Effect, u32)>) -> Spec {
     Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz: 1000.0, seconds: 10.0 }

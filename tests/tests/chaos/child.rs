@@ -1,7 +1,8 @@
 //! This test again as a process of its own, to be killed or to meet a full disk.
 
 use crate::documents::attempt;
-use app::history::{Attempt, Query, Store};
+use app::history::attempt::Attempt;
+use app::history::store::{Query, Store};
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
 use app::ui::project::{Project, Source};
 use haptics::device::{ScriptedOperator, Skill};

@@ -2,7 +2,9 @@
 //! refused in a sentence.
 
 use crate::{Chaos, must_be_a_sentence, mutate};
-use app::history::{Attempt, Conditions, History, Query, Store};
+use app::history::attempt::{Attempt, Conditions};
+use app::history::keeper::History;
+use app::history::store::{Query, Store};
 use app::ui::autosave::State as Kept;
 use app::ui::project::Project;
 use estimator::segment::definition::Definition;

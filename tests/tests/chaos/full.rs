@@ -2,7 +2,8 @@
 
 use crate::documents::attempt;
 use crate::{Chaos, child, must_be_a_sentence};
-use app::history::{Answer, History, Query, Store};
+use app::history::keeper::{Answer, History};
+use app::history::store::{Query, Store};
 use app::recorder::{Recorder, Status};
 use app::ui::project::Project;
 use estimator::log;

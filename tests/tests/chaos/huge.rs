@@ -1,7 +1,7 @@
 //! Files of 5 GB under every name that the program reads, and tables of 10⁵ columns: refused in a sentence or read, in bounded memory.
 
 use crate::{Chaos, MEMORY, must_be_a_sentence};
-use app::history::Store;
+use app::history::store::Store;
 use app::ui::autosave::Autosave;
 use app::ui::prepare::Prepared;
 use app::ui::project::Project;

@@ -1,7 +1,7 @@
 //! SIGKILL in the middle of recording, keeping and saving, and a restart in the same folder, again and again.
 
 use crate::{Chaos, child};
-use app::history::{Query, Store};
+use app::history::store::{Query, Store};
 use app::recorder::folder;
 use app::ui::project::Project;
 use estimator::log;

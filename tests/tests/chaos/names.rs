@@ -1,7 +1,7 @@
 //! Names that nobody should choose: of files, columns, states, trainees, worlds. They are kept as they are, and stay where they belong.
 
 use crate::{Chaos, logs};
-use app::history::{Query, Store};
+use app::history::store::{Query, Store};
 use app::ui::project::{Project, Source};
 use estimator::log;
 use haptics::recording::{Channel, Recording};
@@ -140,7 +140,7 @@ fn in_a_report(log: &Path) {
     log::write(&[recording], log, &[]).expect("writes");
     let files: [(PathBuf, Option<PathBuf>); 1] = [(log.to_path_buf(), None)];
     let page = log.with_file_name("page.html");
-    app::report::of_files(&files, &page, |_, recording| recording).expect("a page");
+    app::report::of_files::of_files(&files, &page, |_, recording| recording).expect("a page");
     let text = std::fs::read_to_string(&page).expect("text");
     assert!(!text.contains("<script>alert"), "a name became part of the page");
 }

@@ -3,10 +3,11 @@
 
 use crate::{Chaos, logs, must_be_a_sentence};
 use app::ui::autosave::{Autosave, State as Kept};
-use app::ui::dock::Dock;
-use app::ui::jobs::JobKind;
-use app::ui::project::Project;
-use app::ui::session::{Session, Tone};
+use app::ui::dock::arrangement::Dock;
+use app::ui::message_list::Tone;
+use app::ui::project_files::project_of;
+use app::ui::refits::FIT;
+use app::ui::session::Session;
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -36,7 +37,7 @@ fn settle(ctx: &egui::Context, session: &mut Session) {
 }
 
 fn take_messages(session: &mut Session, path: &Path) {
-    for banner in session.banners.drain(..) {
+    for banner in session.messages.banners.drain(..) {
         if banner.tone == Tone::Error {
             must_be_a_sentence(&banner.text, path);
         }
@@ -65,7 +66,7 @@ impl Bench {
             0 => session.add_log(ctx, &path),
             1 => session.undo(),
             2 => session.refit(ctx),
-            3 => session.jobs.cancel(JobKind::Fit),
+            3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),
             _ => session.open_any(ctx, &path),
         }
@@ -85,7 +86,11 @@ impl Bench {
         settle(ctx, session);
         session.open(ctx, &workspace().join("assets/recordings/crank.csv"));
         settle(ctx, session);
-        assert!(session.analysis.is_some(), "after all that a good log is fitted: {:?}", session.fit_problem);
+        assert!(
+            session.calibration.analysis.is_some(),
+            "after all that a good log is fitted: {:?}",
+            session.calibration.fit_problem
+        );
         chaos.count("fits that answered", 1);
     }
 }
@@ -103,7 +108,7 @@ pub fn jobs(chaos: &mut Chaos) {
     autosave.end(&session, &dock, true);
     drop(autosave);
     let (_, Kept { project, .. }) = Autosave::begin(&kept_in).expect("the next start");
-    assert_eq!(project, Project::of(&session), "what was open is found");
+    assert_eq!(project, project_of(&session), "what was open is found");
 }
 
 fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context, log: &Path) {

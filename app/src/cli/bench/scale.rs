@@ -131,7 +131,7 @@ impl ScaleBench {
             let _ = writeln!(text, "   grows as n^{:.2}", curve.exponent());
         }
         if let Some(out) = &self.out {
-            crate::ui::project::write_whole(out, &loglog::svg(&curves)).map_err(anyhow::Error::msg)?;
+            crate::write_whole::write_whole(out, &loglog::svg(&curves)).map_err(anyhow::Error::msg)?;
             let _ = writeln!(text, "picture: {}", out.display());
         }
         let said = Said { optimised: !cfg!(debug_assertions), scale: curves.into_iter().map(Grows::from).collect() };

@@ -3,7 +3,7 @@
 //! At 4 kHz 99 of 100 ticks may start 50 µs late and 999 of 1000 may start 250 µs late, a fifth of a period and a whole
 //! one. Other rates have the same shares of their period. In addition, a tick must leave half of its period free.
 
-use crate::ui::format::short_time;
+use crate::text::format::short_time;
 use haptics::servo::rate::{COMPUTE_SHARE, MISSED_SHARE};
 use haptics::servo::timing::Timing;
 use schemars::JsonSchema;

@@ -1,13 +1,14 @@
 //! Result of a test, in plain words and as JSON.
 
 mod board;
-mod limits;
+pub mod limits;
 mod push;
 
-pub use limits::{Limits, limit_sentence, limits};
-
 use super::super::Output;
-use crate::ui::format::short_time;
+use crate::cli::device::report::limits::Limits;
+use crate::cli::device::report::limits::limit_sentence;
+use crate::cli::device::report::limits::limits;
+use crate::text::format::short_time;
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
 use haptics::device::haply::Tally;
@@ -52,9 +53,9 @@ pub(crate) struct Said<'a> {
     packets: Option<Packets>,
     /// Answers of the left and the right board; null without boards.
     boards: Option<[board::Counts; 2]>,
-    /// The servo's punctuality.
+    /// Timing of the servo.
     timing: &'a Timing,
-    /// What the system granted.
+    /// Privileges granted by the system.
     privileges: Privileges,
     /// Stiffness up to which the device is passive on its own, N/m.
     #[serde(rename = "passive_stiffness_N_m")]
@@ -125,9 +126,9 @@ pub struct Measured<'a> {
     pub spec: &'a DeviceSpec,
     /// Latency stated by the device, s.
     pub delay_s: f64,
-    /// Timing of the servo.
+    /// The servo's punctuality.
     pub timing: &'a Timing,
-    /// Privileges granted by the system.
+    /// What the system granted.
     pub privileges: Privileges,
     /// Every tick.
     pub ticks: &'a [TickRecord],

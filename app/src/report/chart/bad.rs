@@ -1,9 +1,10 @@
 //! Unreliable parts of a recording: gaps, which no curve may cross, and spans in which a channel is constant or
 //! saturated.
 
-use super::{Frame, key, short};
-use crate::ui::format;
-use crate::ui::plots::{Columns, Samples, decimate_in};
+use crate::report::chart::frame::{Frame, key, short};
+use crate::text::format;
+use crate::ui::plots::decimate::{Columns, decimate_in};
+use crate::ui::plots::levels::Samples;
 use crate::ui::prepare::{Prepared, Trace};
 use egui_plot::PlotPoint;
 use estimator::log::gaps;
@@ -145,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_curve_is_broken_at_a_gap_and_keeps_its_ends() {
-        use crate::ui::plots::Levels;
+        use crate::ui::plots::levels::Levels;
         let times: Vec<f64> = (0..8000).map(|i| f64::from(i) * 1e-3 + if i < 5000 { 0.0 } else { 2.0 }).collect();
         let prepared = Prepared::new(Recording { time_s: Some(times.clone()), ..Recording::default() });
         let levels = Levels::new(times.clone());

@@ -1,10 +1,10 @@
 //! States over time, and the subtask of each.
 
-use super::{LEFT, RIGHT, WIDE, bad, key, short};
+use super::bad;
+use crate::report::chart::frame::{LEFT, RIGHT, WIDE, key, short};
 use crate::report::style::state_variable;
-use crate::ui::format;
-use crate::ui::panels::segments::word;
-use crate::ui::theme::state_short;
+use crate::text::format;
+use crate::text::states::{state_of_task, state_short};
 use estimator::segment::{Interval, Segmentation, SystemState};
 use maud::{Markup, html};
 
@@ -45,7 +45,7 @@ pub fn band(segmentation: &Segmentation, span_s: (f64, f64), holes: &[(f64, f64)
 
 fn piece(segmentation: &Segmentation, interval: &Interval, (from, to): (f64, f64)) -> Markup {
     let variable = state_variable(interval.state);
-    let (name, width) = (word(segmentation, interval.state), to - from);
+    let (name, width) = (state_of_task(segmentation, interval.state), to - from);
     let fits = |text: &str| width > LETTER * text.chars().count() as f64 + 6.0;
     let label = [name, state_short(interval.state)].into_iter().find(|text| fits(text));
     html! {
@@ -96,7 +96,7 @@ pub fn legend(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Markup {
         span class="keys block" {
             @for (state, time) in &shares {
                 @let share = format::number(100.0 * time / whole.max(1e-12), 0);
-                (key(&state_variable(*state), &format!("{} {share} %", word(segmentation, *state))))
+                (key(&state_variable(*state), &format!("{} {share} %", state_of_task(segmentation, *state))))
             }
             @if !holes.is_empty() { (key("faint", "gap")) }
         }

@@ -1,7 +1,8 @@
 //! Force residuals of the base and the extended model: over time, and against each candidate variable.
 
-use super::{Frame, WIDE, key};
-use crate::ui::plots::{BAND_SIGMAS, Cloud, Residuals, Suspect};
+use crate::report::chart::frame::{Frame, WIDE, key};
+use crate::ui::plots::residual_plot::BAND_SIGMAS;
+use crate::ui::plots::residuals::{Cloud, Residuals, Suspect};
 use egui_plot::PlotPoint;
 use maud::{Markup, html};
 use std::fmt::Write as _;
@@ -73,7 +74,7 @@ fn against(curves: &Residuals, cloud: &Cloud, found: bool) -> Markup {
         let _ = write!(dots, "M{:.1} {:.1}h0", frame.right(point.x), frame.down(point.y));
     }
     let inside = html! {
-        rect class="noise" x="0" width=(width) y=(super::short(top)) height=(super::short(bottom - top)) {}
+        rect class="noise" x="0" width=(width) y=(crate::report::chart::frame::short(top)) height=(crate::report::chart::frame::short(bottom - top)) {}
         path class="dots" style="stroke:var(--simulated)" d=(dots) {}
         @for (trend, dash) in cloud.trend_before.iter().zip(["line broad", "line broad dashed"]) {
             (lines(&frame, trend, dash, "simulated"))

@@ -1,6 +1,7 @@
 //! The path in space, with the detected constraints. Both axes have the same scale.
 
-use super::{Frame, bad, key, range_of};
+use super::bad;
+use crate::report::chart::frame::{Frame, key, range_of};
 use crate::ui::prepare::Prepared;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;

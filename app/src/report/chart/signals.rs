@@ -1,10 +1,11 @@
 //! Measured curves, and measured curves over simulated ones.
 
-use super::{Frame, WIDE, bad, key, range_of};
+use super::bad;
+use crate::report::chart::frame::{Frame, WIDE, key, range_of};
 use crate::report::collect::Drawn;
 use crate::report::style::{role_name, state_variable};
-use crate::ui::format;
-use crate::ui::plots::Levels;
+use crate::text::format;
+use crate::ui::plots::levels::Levels;
 use crate::ui::prepare::{Group, Prepared, Trace};
 use egui_plot::PlotPoint;
 use estimator::segment::{Segmentation, SystemState};
@@ -93,7 +94,7 @@ fn tints(segmentation: Option<&Segmentation>, frame: &Frame, holes: &[(f64, f64)
             @for (t0, t1) in bad::outside(holes, (interval.t0, interval.t1)) {
                 @let (from, to) = (frame.right(t0), frame.right(t1));
                 @if to - from > 0.5 {
-                    rect class="tint" x=(super::short(from)) y="0" width=(super::short(to - from)) height=(super::short(height))
+                    rect class="tint" x=(crate::report::chart::frame::short(from)) y="0" width=(crate::report::chart::frame::short(to - from)) height=(crate::report::chart::frame::short(height))
                         style=(format!("fill:var(--{})", state_variable(interval.state))) {}
                 }
             }

@@ -1,14 +1,14 @@
 //! Deficits of the simulation: causes with their evidence and gain, alternatives, the next experiment.
 
-use super::failed;
-use crate::diagnosis_words::{
+use crate::report::chart::cloud;
+use crate::report::collect::Content;
+use crate::report::page::parts::failed;
+use crate::text::diagnosis_words::{
     compared_unit, gain_unit, headline, listed, residual_unit, said_in_words, shown_unit, small, state_in_words,
     symbol, title,
 };
-use crate::report::chart;
-use crate::report::collect::Content;
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::diagnose::{Cause, CauseParameter, Findings, RolloutOf};
 use estimator::words::amount;
 use haptics::law::{self, Kind};
@@ -58,7 +58,7 @@ fn answer(content: &Content, diagnosis: &Findings) -> Markup {
         @for drawn in &content.drawn {
             @if let Some(curves) = &drawn.residuals {
                 @if content.recordings.len() > 1 { h4 { (drawn.prepared.recording.name) } }
-                (chart::residuals(curves, found))
+                (cloud::residuals(curves, found))
             }
         }
     }

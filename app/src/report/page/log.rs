@@ -1,11 +1,10 @@
 //! The section of one log.
 
 use super::{diagnosis, recording, replay, results, unknown};
-use crate::diagnosis_words::{headline_of, small};
-use crate::report::Sheet;
-use crate::report::collect::Content;
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::report::collect::{Content, Sheet};
+use crate::text::diagnosis_words::{headline_of, small};
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::diagnose::{Findings, Verdict};
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::recording::Task;

@@ -1,11 +1,11 @@
 //! Content of the recordings, data-quality problems, and states over time.
 
-use super::fact;
-use crate::report::chart;
+use crate::report::chart::{bad, band, signals};
 use crate::report::collect::{Content, Drawn};
-use crate::ui::format;
-use crate::ui::panels::segments::word;
-use crate::ui::session::sentence;
+use crate::report::page::parts::fact;
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::text::states::state_of_task;
 use estimator::segment::{Interval, Segmentation};
 use haptics::recording::Recording;
 use maud::{Markup, html};
@@ -116,7 +116,7 @@ pub fn course(content: &Content) -> Markup {
                     None if drawn.prepared.clockless() => p class="muted" { "No states: they are told from velocities, and this log has no clock." },
                     None => p class="muted" { "No states were told in this recording." },
                 }
-                (chart::signals(drawn))
+                (signals::signals(drawn))
                 @if let Some(segmentation) = &drawn.segmentation { (intervals(segmentation)) }
             }
             @if all > content.drawn.len() {
@@ -127,11 +127,11 @@ pub fn course(content: &Content) -> Markup {
 }
 
 fn states(segmentation: &Segmentation, drawn: &Drawn) -> Markup {
-    let holes = chart::holes(&drawn.prepared);
+    let holes = bad::holes(&drawn.prepared);
     html! {
         figure {
-            figcaption { b { "States and subtasks" } (chart::legend(segmentation, &holes)) }
-            (chart::band(segmentation, drawn.prepared.span(), &holes))
+            figcaption { b { "States and subtasks" } (band::legend(segmentation, &holes)) }
+            (band::band(segmentation, drawn.prepared.span(), &holes))
         }
     }
 }
@@ -148,7 +148,7 @@ fn intervals(segmentation: &Segmentation) -> Markup {
                 tbody { @for interval in told.iter().take(FEW_ROWS) {
                     tr {
                         td { (interval.subtask.as_deref().unwrap_or_default()) }
-                        td { (word(segmentation, interval.state)) }
+                        td { (state_of_task(segmentation, interval.state)) }
                         td class="number" { (format::number(interval.t0, 2)) }
                         td class="number" { (format::number(interval.t1, 2)) }
                         td class="number" { (format::number(100.0 * interval.probability, 0)) " %" }

@@ -1,10 +1,10 @@
 //! Measured vs. simulated: the measured motion through the calibrated world.
 
-use super::failed;
-use crate::diagnosis_words::listed;
-use crate::report::chart;
+use crate::report::chart::{bad, frame, signals};
 use crate::report::collect::{Content, Drawn};
-use crate::ui::format;
+use crate::report::page::parts::failed;
+use crate::text::diagnosis_words::listed;
+use crate::text::format;
 use estimator::diagnose::{Findings, Verdict};
 use estimator::signal::noise::white_noise;
 use estimator::simulate::Simulation;
@@ -129,20 +129,20 @@ fn table(all: &[Left<'_>], simulation: &Simulation) -> Markup {
 
 fn replay(drawn: &Drawn, simulation: &Simulation) -> Markup {
     let rms = |name: &str| simulation.residual_rms.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
-    let holes = chart::holes(&drawn.prepared);
+    let holes = bad::holes(&drawn.prepared);
     html! {
         @if !simulation.residual_rms.is_empty() { (table(&left(drawn, simulation), simulation)) }
         @if !holes.is_empty() {
             p class="muted small" { "Nothing is simulated in the " @if holes.len() == 1 { "gap" } @else { (holes.len()) " gaps" }
                 ": what was held goes on where the fingers are found again." }
         }
-        div class="keys small" { (chart::key("measured", "measured; below: measured less simulated")) (chart::key("simulated", "simulated")) }
+        div class="keys small" { (frame::key("measured", "measured; below: measured less simulated")) (frame::key("simulated", "simulated")) }
         // A single channel has the whole width.
         @let alone = simulation.predicted.len() == 1;
         div class=[(!alone).then_some("pair")] {
             @for channel in &simulation.predicted {
-                @let width = if alone { chart::WIDE } else { 0.5 * chart::WIDE };
-                (chart::against_virtual(&drawn.prepared, channel, &simulation.time_s, rms(&channel.name), width))
+                @let width = if alone { frame::WIDE } else { 0.5 * frame::WIDE };
+                (signals::against_virtual(&drawn.prepared, channel, &simulation.time_s, rms(&channel.name), width))
             }
         }
     }

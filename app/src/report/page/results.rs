@@ -1,11 +1,11 @@
 //! Parameters with their standard errors, and constraints.
 
-use super::{fact, failed};
-use crate::constraint_words;
-use crate::report::chart;
+use crate::report::chart::path;
 use crate::report::collect::{Content, Drawn, MOST_DRAWN, is_lost};
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::report::page::parts::{fact, failed};
+use crate::text::constraint_words::constraint_words;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::estimate::{Constraint, ConstraintKind, Parameter};
 use maud::{Markup, html};
 
@@ -90,7 +90,7 @@ pub fn constraints(content: &Content) -> Markup {
         @if all.len() > MOST_CARDS { (kinds(all)) }
     };
     let pictures: Vec<Markup> =
-        content.drawn.iter().filter_map(|d| chart::path(&d.prepared, &held(content, d, all))).collect();
+        content.drawn.iter().filter_map(|d| path::path(&d.prepared, &held(content, d, all))).collect();
     html! {
         section class="card" {
             h3 { "Constraints" }
@@ -122,6 +122,7 @@ fn kinds(all: &[Constraint]) -> Markup {
     html! { p class="muted" { "Of all " (all.len()) " recordings: " (words.join(", ")) "." } }
 }
 
+/// The name of a constraint in a heading.
 pub fn title(kind: ConstraintKind) -> &'static str {
     match kind {
         ConstraintKind::Revolute => "A hinge: turning about a fixed axis",

@@ -1,9 +1,9 @@
 //! Parameters and effects that are not identifiable, and the motion that would reveal them.
 
-use crate::diagnosis_words::{listed, title};
 use crate::report::collect::{Content, is_lost};
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::diagnosis_words::{listed, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
 use estimator::diagnose::NotExcited;
 use estimator::estimate::{ConstraintKind, Parameter};
 use maud::{Markup, html};

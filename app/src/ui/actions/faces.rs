@@ -1,7 +1,8 @@
 //! Appearance of the actions in menus and in the palette.
 
-use super::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::icons::Icon;
+use crate::ui::panels::list;
 
 impl Action {
     /// Icon of the action; an entry of a list has the icon of the list.
@@ -39,7 +40,7 @@ impl Action {
             Self::ToStart => Icon::ToStart,
             Self::ToEnd => Icon::ToEnd,
             Self::Open(workspace) => workspace.icon(),
-            Self::Panel(pane) => pane.icon(),
+            Self::Panel(pane) => list::registration(*pane).map_or(Icon::Panel, |panel| panel.icon),
             Self::Arrange | Self::Layout(_) => Icon::Arrange,
             Self::Theme => Icon::Theme,
             Self::Larger => Icon::Larger,

@@ -1,10 +1,12 @@
 //! The list of actions: names, keys, groups, and reasons against them.
 
+use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
-use crate::ui::dock::Pane;
-use crate::ui::format;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
+use crate::ui::session::Session;
+use crate::ui::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
 use strum::{EnumIter, IntoEnumIterator as _};
@@ -99,7 +101,7 @@ pub enum Action {
     /// Deletes the open layout's name.
     DeleteLayout,
     /// Shows or hides a panel.
-    Panel(Pane),
+    Panel(PanelId),
     /// Switches the theme.
     Theme,
     /// Enlarges the window's content.
@@ -183,24 +185,26 @@ impl Action {
     pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
         let session = &app.session;
         let layouts = app.dock.names(session.workspace).map(|name| Self::Layout(name.to_owned()));
-        let panels = Pane::of(session.workspace).iter().filter(|p| **p != Pane::Segments).map(|p| Self::Panel(*p));
-        let recent = session.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
-        let recordings = (0..session.recordings.len()).filter(|i| *i != session.current).map(Self::Select);
+        let panels = list::of(session.workspace).into_iter().filter(|p| *p != PanelId::SEGMENTS).map(Self::Panel);
+        let recent = session.document.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
+        let recordings =
+            (0..session.document.recordings.len()).filter(|i| *i != session.document.current).map(Self::Select);
         let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
         let places = if known { places(session) } else { Vec::new() };
         let fixed = Self::iter().flat_map(|action| match action {
             Self::Open(_) => Workspace::CHOICES.map(|(workspace, ..)| Self::Open(workspace)).to_vec(),
             Self::Panel(_) => {
                 if known {
-                    vec![Self::Panel(Pane::Segments)]
+                    vec![Self::Panel(PanelId::SEGMENTS)]
                 } else {
                     Vec::new()
                 }
             }
             other => vec![other],
         });
-        let lessons = session.lessons.all.iter().map(|lesson| Self::Lesson(lesson.title.clone()));
-        let answers = session.lessons.answers().into_iter().enumerate().map(|(k, words)| Self::Answer(k, words));
+        let lessons = session.training.lessons.all.iter().map(|lesson| Self::Lesson(lesson.title.clone()));
+        let answers =
+            session.training.lessons.answers().into_iter().enumerate().map(|(k, words)| Self::Answer(k, words));
         let all: Vec<Self> = fixed
             .chain(answers)
             .chain(lessons)
@@ -222,7 +226,7 @@ impl Action {
             Self::Select(index) => format!("Show recording {}", index + 1),
             Self::GoTo { what, .. } => format!("Go to: {what}"),
             Self::Open(workspace) => format!("Open {}", workspace.title()),
-            Self::Panel(pane) => format!("Panel: {}", pane.title()),
+            Self::Panel(pane) => format!("Panel: {}", list::registration(*pane).map_or("", |panel| panel.title)),
             Self::Lesson(title) => format!("Lesson: {title}"),
             Self::Answer(_, words) => format!("Answer: {words}"),
             Self::Layout(name) => format!("Arrangement: {name}"),
@@ -398,31 +402,38 @@ impl Action {
     /// Reason against the action, as a sentence; `None` if it is available.
     pub fn why_not(&self, app: &App) -> Option<&'static str> {
         let session = &app.session;
-        let loaded = !session.recordings.is_empty();
+        let loaded = !session.document.recordings.is_empty();
         let need = |there: bool, why: &'static str| (!there).then_some(why);
         let recording = || need(loaded, "Open a log first.");
-        let fit = || need(session.analysis.is_some(), "There is no fit yet.");
+        let fit = || need(session.calibration.analysis.is_some(), "There is no fit yet.");
         match self {
             Self::SaveLog | Self::MapColumns | Self::Fit | Self::Rules | Self::Diagnose => recording(),
             Self::AddLog | Self::SaveProject | Self::SaveProjectAs | Self::Reload => {
-                need(session.path.is_some(), "Open a log first.")
+                need(session.document.path.is_some(), "Open a log first.")
             }
-            Self::Report => need(session.path.is_some(), "Open or save a log first: a report is of files."),
-            Self::AddVideo => recording()
-                .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
+            Self::Report => need(session.document.path.is_some(), "Open or save a log first: a report is of files."),
+            Self::AddVideo => recording().or_else(|| {
+                need(session.document.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")
+            }),
             Self::SaveWorld | Self::ExportWorld => fit(),
             Self::TrainCalibrated | Self::PractiseOnThis => {
-                fit().or_else(|| need(session.can_train(), "This world has nothing for the hand."))
+                fit().or_else(|| need(session.calibration.can_train(), "This world has nothing for the hand."))
             }
             Self::Undo => need(session.can_undo(), "Nothing was changed."),
             Self::Redo => need(session.can_redo(), "Nothing was taken back."),
-            Self::ForgetStates => {
-                need(session.choice.segments.contains_key(&session.current), "No state was set by hand.")
+            Self::ForgetStates => need(
+                session.calibration.choice.segments.contains_key(&session.document.current),
+                "No state was set by hand.",
+            ),
+            Self::ForgetStated => {
+                need(!session.calibration.choice.stated.is_empty(), "Nothing is stated of parameters.")
             }
-            Self::ForgetStated => need(!session.choice.stated.is_empty(), "Nothing is stated of parameters."),
-            Self::FitShown => recording()
-                .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
-            Self::FitWhole => need(session.choice.only_s.is_some(), "The whole recording is fitted already."),
+            Self::FitShown => recording().or_else(|| {
+                need(session.document.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")
+            }),
+            Self::FitWhole => {
+                need(session.calibration.choice.only_s.is_some(), "The whole recording is fitted already.")
+            }
             Self::Extend => need(session.diagnosing.answer.is_some(), "Diagnose first."),
             Self::Feel => need(session.diagnosing.worlds.is_some(), "Extend the model first."),
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => recording().or_else(|| {
@@ -430,7 +441,7 @@ impl Action {
             }),
             Self::Assistant => need(session.workspace == Workspace::Train, "The assistant helps in Train."),
             Self::Watch | Self::Practise | Self::TakeTest => {
-                need(session.lessons.open.is_some(), "Open a lesson first.")
+                need(session.training.lessons.open.is_some(), "Open a lesson first.")
             }
             Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
             Self::StartOver => need(session.workspace == Workspace::Train, "There is nothing to start over here."),
@@ -447,7 +458,7 @@ impl Action {
         match self {
             Self::Panel(pane) => Some(app.dock.has(app.session.workspace, *pane)),
             Self::Arrange => Some(app.dock.arranging),
-            Self::Assistant => Some(app.session.assistant.on),
+            Self::Assistant => Some(app.session.training.assistant.on),
             Self::Layout(name) => Some(app.dock.chosen(app.session.workspace) == Some(name)),
             Self::Open(workspace) => Some(app.session.workspace == *workspace),
             _ => None,
@@ -459,7 +470,7 @@ impl Action {
 fn places(session: &Session) -> Vec<Action> {
     let Some(segmentation) = session.segmentation() else { return Vec::new() };
     let mut places: Vec<Action> = Vec::new();
-    let named = session.analysis.as_ref().is_some_and(|a| decides(a.task));
+    let named = session.calibration.analysis.as_ref().is_some_and(|a| decides(a.task));
     for interval in segmentation.states.iter().filter(|_| named) {
         let Some(subtask) = &interval.subtask else { continue };
         let what = format::object(subtask).to_lowercase();

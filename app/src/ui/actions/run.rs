@@ -1,13 +1,13 @@
 //! Execution of the actions.
 
-use super::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::app::App;
-use crate::ui::dock::naming::Naming;
-use crate::ui::files;
+use crate::ui::dock::name_field::Naming;
 use crate::ui::fit_choice::Stated;
-use crate::ui::jobs::Purpose;
-use crate::ui::rules::Rules;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::message_list::Tone;
+use crate::ui::session::Session;
+use crate::ui::workspace::Workspace;
+use crate::ui::{editing_rules, files};
 use egui::{Context, ViewportCommand};
 
 /// Step of the zoom.
@@ -49,7 +49,9 @@ fn with_layouts(action: &Action, app: &mut App) {
         (Action::SaveLayout, chosen) => app.dock.naming = Some(Naming::to_save(workspace, chosen.as_deref())),
         (Action::RenameLayout, Some(name)) => app.dock.naming = Some(Naming::to_rename(workspace, &name)),
         (Action::DeleteLayout, Some(name)) if app.dock.delete(workspace, &name) => {
-            app.session.say(Tone::Done, format!("The arrangement “{name}” is deleted; panels stay where they are."));
+            app.session
+                .messages
+                .say(Tone::Done, format!("The arrangement “{name}” is deleted; panels stay where they are."));
         }
         (Action::Layout(name), _) => {
             app.dock.choose(workspace, name);
@@ -60,28 +62,28 @@ fn with_layouts(action: &Action, app: &mut App) {
 
 fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
-        Action::OpenLog => files::ask(ctx, &mut session.jobs, Purpose::OpenLog),
-        Action::AddLog => files::ask(ctx, &mut session.jobs, Purpose::AddLog),
-        Action::AddVideo => files::ask(ctx, &mut session.jobs, Purpose::OpenVideo),
-        Action::OpenWorld => files::ask(ctx, &mut session.jobs, Purpose::OpenWorld),
-        Action::OpenProject => files::ask(ctx, &mut session.jobs, Purpose::OpenProject),
+        Action::OpenLog => files::ask(ctx, &mut session.jobs, files::OPEN_LOG),
+        Action::AddLog => files::ask(ctx, &mut session.jobs, files::ADD_LOG),
+        Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
+        Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
+        Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
         Action::OpenRecent(path) => session.open_any(ctx, path),
         Action::SaveProject => session.save_project(ctx),
-        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, Purpose::SaveProject),
-        Action::SaveLog => files::ask(ctx, &mut session.jobs, Purpose::SaveLog),
-        Action::SaveWorld => files::ask(ctx, &mut session.jobs, Purpose::SaveWorld),
-        Action::ExportWorld => files::ask(ctx, &mut session.jobs, Purpose::ExportWorld),
-        Action::Report => files::ask(ctx, &mut session.jobs, Purpose::SaveReport),
+        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
+        Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
+        Action::SaveWorld => files::ask(ctx, &mut session.jobs, files::SAVE_WORLD),
+        Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
+        Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
         Action::Reload => session.reload(ctx),
         Action::MapColumns => session.map_columns(ctx, None),
         Action::Undo => session.undo(),
         Action::Redo => session.redo(),
         Action::Fit => session.refit(ctx),
-        Action::Rules => session.rules = Rules::open(session),
+        Action::Rules => session.calibration.rules = editing_rules::open(session),
         Action::ForgetStates => session.forget_states(ctx),
-        Action::ForgetStated => session.choice.stated = Stated::default(),
-        Action::FitShown => session.choice.only_s = Some(session.view_s),
-        Action::FitWhole => session.choice.only_s = None,
+        Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
+        Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
+        Action::FitWhole => session.calibration.choice.only_s = None,
         Action::Diagnose => {
             session.workspace = Workspace::Diagnose;
             session.diagnose(ctx);
@@ -89,10 +91,10 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Extend => session.extend_model(ctx),
         Action::Feel => session.feel(),
         Action::TrainCalibrated => {
-            session.train_calibrated = true;
+            session.training.train_calibrated = true;
             session.workspace = Workspace::Train;
         }
-        Action::Assistant => session.assistant.on = !session.assistant.on,
+        Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
         Action::StartOver => session.start_over(),
         Action::Answer(index, _) => session.end_lesson(ctx, Some(*index)),
         Action::Lesson(title) => session.open_lesson_titled(ctx, title),
@@ -100,18 +102,18 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Practise => session.practise_lesson(),
         Action::TakeTest => session.test_lesson(),
         Action::PractiseOnThis => session.practise_on_this(ctx),
-        Action::Record if session.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
+        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),
-        Action::Play => session.toggle_play(),
-        Action::ToStart => session.seek(f64::NEG_INFINITY),
-        Action::ToEnd => session.seek(f64::INFINITY),
+        Action::Play => session.document.toggle_play(),
+        Action::ToStart => session.document.seek(f64::NEG_INFINITY),
+        Action::ToEnd => session.document.seek(f64::INFINITY),
         Action::ShowAll => {
-            if let Some(prepared) = session.prepared() {
-                session.view_s = prepared.span();
+            if let Some(prepared) = session.document.prepared() {
+                session.document.view_s = prepared.span();
             }
         }
-        Action::Select(index) => session.select(*index),
-        Action::GoTo { from_s, to_s, .. } => session.look_at(*from_s, *to_s),
+        Action::Select(index) => session.document.select(*index),
+        Action::GoTo { from_s, to_s, .. } => session.document.look_at(*from_s, *to_s),
         Action::Open(workspace) => session.workspace = *workspace,
         // Actions of the window.
         _ => {}

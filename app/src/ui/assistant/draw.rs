@@ -2,8 +2,9 @@
 //! concerned.
 
 use super::words::{self, Urgency};
-use super::{Assistant, Circle, Said, said};
-use crate::ui::scene::SceneResponse;
+use crate::ui::assistant::readings::{Circle, Said, said};
+use crate::ui::assistant::state::Assistant;
+use crate::ui::scene::view::SceneResponse;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::widgets::compact;
@@ -36,7 +37,7 @@ const ABOUT_SLIP: &str = "Share of the friction that is free. The friction is no
 /// Draws the assistant's output over the trainer's picture.
 pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
     let Some(said) = said(session) else { return };
-    let parts = session.assistant;
+    let parts = session.training.assistant;
     let canvas = Canvas { ui, view };
     if parts.constraint {
         said.pulls.iter().for_each(|pull| canvas.pull(pull));
@@ -47,7 +48,7 @@ pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
         Warning::Collision(_) => parts.collision,
         Warning::Edge { .. } => parts.edge,
     };
-    let state = session.trainer.seen();
+    let state = session.training.trainer.seen();
     let tips = state.map_or([Vec2::zeros(); 2], |s| s.input.tip_in_world);
     let warnings: Vec<&Warning> = said.warnings.iter().filter(wanted).collect();
     for warning in &warnings {
@@ -211,7 +212,7 @@ impl Canvas<'_> {
     /// Draws the nearby arc of the workspace's edge.
     fn edge(&self, session: &Session, at_m: Vec2) {
         const PIECES: u32 = 24;
-        let Some((_, world)) = session.trainer.scene() else { return };
+        let Some((_, world)) = session.training.trainer.scene() else { return };
         let workspace = world.hand.workspace;
         let middle = (at_m - workspace.center_m).y.atan2((at_m - workspace.center_m).x);
         let arc = (0..=PIECES).map(|k| {

@@ -1,7 +1,8 @@
 //! Texts of the assistant: every number with its standard error.
 
-use super::{Assistant, Circle};
-use crate::ui::format::{number, object, with_error};
+use crate::text::format::{number, object, with_error};
+use crate::ui::assistant::readings::Circle;
+use crate::ui::assistant::state::Assistant;
 use estimator::assistant::{Guess, Held, Known, Slip, Warning};
 use estimator::online::Pull;
 

@@ -1,7 +1,9 @@
 //! Appearance of tiles, and operations allowed on them.
 
 use super::layout::GAP;
-use super::{Pane, Panels};
+use super::panes::Panels;
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette};
 use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
@@ -14,7 +16,9 @@ const LEAST: f32 = 120.0;
 
 /// Draws the panels of a session.
 pub struct Tiling<'a> {
+    /// The panels.
     pub panels: &'a mut Panels,
+    /// The session that they show.
     pub session: &'a mut Session,
     /// True if every panel shows its title.
     pub arranging: bool,
@@ -26,17 +30,18 @@ fn of(visuals: &Visuals) -> &'static Palette {
     Palette::of(visuals.dark_mode)
 }
 
-impl Behavior<Pane> for Tiling<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
+impl Behavior<PanelId> for Tiling<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut PanelId) -> UiResponse {
         self.panels.ui(*pane, ui, self.session);
         UiResponse::None
     }
 
-    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
-        RichText::new(pane.title()).font(egui::FontId::new(12.0, theme::semibold())).into()
+    fn tab_title_for_pane(&mut self, pane: &PanelId) -> WidgetText {
+        let title = list::registration(*pane).map_or("", |panel| panel.title);
+        RichText::new(title).font(egui::FontId::new(12.0, theme::semibold())).into()
     }
 
-    fn is_tab_closable(&self, _tiles: &Tiles<Pane>, _tile: TileId) -> bool {
+    fn is_tab_closable(&self, _tiles: &Tiles<PanelId>, _tile: TileId) -> bool {
         self.arranging
     }
 
@@ -77,11 +82,17 @@ impl Behavior<Pane> for Tiling<'_> {
         of(visuals).window
     }
 
-    fn tab_bg_color(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Color32 {
+    fn tab_bg_color(&self, visuals: &Visuals, _tiles: &Tiles<PanelId>, _tile: TileId, state: &TabState) -> Color32 {
         if state.active { of(visuals).card } else { Color32::TRANSPARENT }
     }
 
-    fn tab_outline_stroke(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Stroke {
+    fn tab_outline_stroke(
+        &self,
+        visuals: &Visuals,
+        _tiles: &Tiles<PanelId>,
+        _tile: TileId,
+        state: &TabState,
+    ) -> Stroke {
         if state.active { Stroke::new(1.0, of(visuals).border) } else { Stroke::NONE }
     }
 
@@ -89,7 +100,7 @@ impl Behavior<Pane> for Tiling<'_> {
         Stroke::NONE
     }
 
-    fn tab_text_color(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Color32 {
+    fn tab_text_color(&self, visuals: &Visuals, _tiles: &Tiles<PanelId>, _tile: TileId, state: &TabState) -> Color32 {
         if state.active { of(visuals).text } else { of(visuals).secondary }
     }
 

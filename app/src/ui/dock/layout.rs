@@ -1,11 +1,12 @@
 //! The standard layouts, and column widths for the window.
 
-use super::Pane;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
+use crate::ui::session::Session;
+use crate::ui::workspace::Workspace;
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
-use strum::IntoEnumIterator as _;
 
 /// Gap between panels, and around them, points.
 pub const GAP: f32 = 12.0;
@@ -15,47 +16,50 @@ const PLOTS: f32 = 446.0;
 const TRAINER_SIDE: f32 = 312.0;
 
 /// Standard layout of a workspace.
-pub fn standard(workspace: Workspace) -> Tree<Pane> {
+pub fn standard(workspace: Workspace) -> Tree<PanelId> {
     let mut tiles = Tiles::default();
     let root = match workspace {
         Workspace::Calibrate => {
             let [recording, scene, log, results] =
-                [Pane::Recording, Pane::Scene, Pane::Log, Pane::Results].map(|p| tiles.insert_pane(p));
+                [PanelId::RECORDING, PanelId::SCENE, PanelId::LOG, PanelId::RESULTS].map(|p| tiles.insert_pane(p));
             let middle = tiles.insert_vertical_tile(vec![scene, log]);
             tiles.insert_horizontal_tile(vec![recording, middle, results])
         }
-        Workspace::Train => side_by_side(&mut tiles, [Pane::Trainer, Pane::TrainerSide]),
-        Workspace::Diagnose => side_by_side(&mut tiles, [Pane::Diagnose, Pane::Diagnosis]),
-        Workspace::Devices => side_by_side(&mut tiles, [Pane::Devices, Pane::DeviceDetail]),
+        Workspace::Train => side_by_side(&mut tiles, [PanelId::TRAINER, PanelId::TRAINER_SIDE]),
+        Workspace::Diagnose => side_by_side(&mut tiles, [PanelId::DIAGNOSE, PanelId::DIAGNOSIS]),
+        Workspace::Devices => side_by_side(&mut tiles, [PanelId::DEVICES, PanelId::DEVICE_DETAIL]),
     };
     Tree::new(egui::Id::unique(("dock", workspace)), root, tiles)
 }
 
 /// Panels of the standard layout.
-pub fn standard_panes(workspace: Workspace) -> BTreeSet<Pane> {
+pub fn standard_panes(workspace: Workspace) -> BTreeSet<PanelId> {
     let tree = standard(workspace);
-    Pane::iter().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
+    list::ids().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
 }
 
-fn side_by_side(tiles: &mut Tiles<Pane>, panes: [Pane; 2]) -> TileId {
+fn side_by_side(tiles: &mut Tiles<PanelId>, panes: [PanelId; 2]) -> TileId {
     let children = panes.map(|p| tiles.insert_pane(p)).to_vec();
     tiles.insert_horizontal_tile(children)
 }
 
 /// Sets the columns of an unmodified layout to widths for the available space.
-pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &Session) {
+pub fn suit(tree: &mut Tree<PanelId>, workspace: Workspace, room: Vec2, session: &Session) {
     let wide = room.x - 2.0 * GAP;
     match workspace {
         Workspace::Calibrate => {
             let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
             // The rules need more space than the picture.
-            let upper =
-                if session.rules.is_some() { 0.48 * room.y } else { (0.40 * room.y).min(room.y - PLOTS).max(150.0) };
+            let upper = if session.calibration.rules.is_some() {
+                0.48 * room.y
+            } else {
+                (0.40 * room.y).min(room.y - PLOTS).max(150.0)
+            };
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
         }
         Workspace::Train => {
-            let left = session.comfort.left_handed;
+            let left = session.training.comfort.left_handed;
             side_first(tree, left);
             let [side, picture] = [Some(TRAINER_SIDE), None];
             columns(tree, LinearDir::Horizontal, &if left { [side, picture] } else { [picture, side] }, wide);
@@ -70,8 +74,8 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
 }
 
 /// Puts the trainer's controls left or right of its picture.
-fn side_first(tree: &mut Tree<Pane>, left: bool) {
-    let (Some(pane), Some(root)) = (tree.tiles.find_pane(&Pane::TrainerSide), tree.root()) else { return };
+fn side_first(tree: &mut Tree<PanelId>, left: bool) {
+    let (Some(pane), Some(root)) = (tree.tiles.find_pane(&PanelId::TRAINER_SIDE), tree.root()) else { return };
     // A pane is in the row itself, or in a tab container there.
     let holder = tree.tiles.parent_of(pane).filter(|holder| *holder != root);
     if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(root) {
@@ -82,12 +86,12 @@ fn side_first(tree: &mut Tree<Pane>, left: bool) {
 
 /// Sets the shares of the outermost columns, or of the rows within one: given sizes, and one that takes the rest.
 /// Shares stay as they are where panels were added or removed.
-fn columns(tree: &mut Tree<Pane>, dir: LinearDir, widths: &[Option<f32>], room: f32) {
+fn columns(tree: &mut Tree<PanelId>, dir: LinearDir, widths: &[Option<f32>], room: f32) {
     let gaps = GAP * (widths.len() as f32 - 1.0);
     let rest = (room - gaps - widths.iter().flatten().sum::<f32>()).max(1.0);
     let root = tree.root();
     let outer = root.and_then(|root| tree.tiles.get_container(root)).map(Container::children_vec).unwrap_or_default();
-    let asked = |tree: &Tree<Pane>, tile: TileId| {
+    let asked = |tree: &Tree<PanelId>, tile: TileId| {
         tree.tiles.get_container(tile).is_some_and(
             |container| matches!(container, Container::Linear(l) if l.dir == dir && l.children.len() == widths.len()),
         )

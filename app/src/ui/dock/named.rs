@@ -1,7 +1,7 @@
 //! Named layouts, several per workspace.
 
-use super::{Arrangement, Dock};
-use crate::ui::session::Workspace;
+use crate::ui::dock::arrangement::{Arrangement, Dock};
+use crate::ui::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -95,13 +95,13 @@ impl Dock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::dock::Pane;
+    use crate::ui::panel_id::PanelId;
 
     const AT: Workspace = Workspace::Calibrate;
 
     fn with_segments() -> Dock {
         let mut dock = Dock::default();
-        dock.toggle(AT, Pane::Segments);
+        dock.toggle(AT, PanelId::SEGMENTS);
         assert!(dock.save_as(AT, " with states "));
         dock
     }
@@ -110,12 +110,12 @@ mod tests {
     fn a_named_arrangement_comes_back_after_the_standard_one() {
         let mut dock = with_segments();
         dock.reset(AT);
-        assert!(!dock.has(AT, Pane::Segments) && dock.chosen(AT).is_none());
+        assert!(!dock.has(AT, PanelId::SEGMENTS) && dock.chosen(AT).is_none());
         assert!(dock.choose(AT, "with states"));
-        assert!(dock.has(AT, Pane::Segments) && dock.is_moved(AT) && dock.chosen(AT) == Some("with states"));
+        assert!(dock.has(AT, PanelId::SEGMENTS) && dock.is_moved(AT) && dock.chosen(AT) == Some("with states"));
         // Later changes do not affect the saved layout.
-        dock.toggle(AT, Pane::Segments);
-        assert!(dock.choose(AT, "with states") && dock.has(AT, Pane::Segments));
+        dock.toggle(AT, PanelId::SEGMENTS);
+        assert!(dock.choose(AT, "with states") && dock.has(AT, PanelId::SEGMENTS));
         assert!(!dock.choose(AT, "nothing of the kind"));
         assert_eq!(dock.names(Workspace::Train).count(), 0, "every workspace has its own");
     }
@@ -123,17 +123,17 @@ mod tests {
     #[test]
     fn several_are_renamed_replaced_and_deleted() {
         let mut dock = with_segments();
-        dock.toggle(AT, Pane::Scene);
+        dock.toggle(AT, PanelId::SCENE);
         assert!(dock.save_as(AT, "no picture"));
         assert_eq!(dock.names(AT).collect::<Vec<_>>(), ["no picture", "with states"]);
         assert!(!dock.rename(AT, "no picture", "with states"), "that one is another's");
         assert!(dock.rename(AT, "no picture", "curves only") && dock.chosen(AT) == Some("curves only"));
-        assert!(dock.choose(AT, "with states") && dock.has(AT, Pane::Scene));
+        assert!(dock.choose(AT, "with states") && dock.has(AT, PanelId::SCENE));
         assert!(dock.save_as(AT, "curves only"), "replaced");
-        assert!(dock.choose(AT, "curves only") && dock.has(AT, Pane::Scene));
+        assert!(dock.choose(AT, "curves only") && dock.has(AT, PanelId::SCENE));
         assert!(dock.delete(AT, "curves only") && !dock.delete(AT, "curves only"));
         assert_eq!((dock.names(AT).collect::<Vec<_>>(), dock.chosen(AT)), (vec!["with states"], None));
-        assert!(dock.has(AT, Pane::Scene), "panels stay where they are");
+        assert!(dock.has(AT, PanelId::SCENE), "panels stay where they are");
     }
 
     #[test]
@@ -151,7 +151,7 @@ mod tests {
         let text = serde_json::to_string(&dock).expect("written");
         let mut again: Dock = serde_json::from_str(&text).expect("read");
         again.reset(AT);
-        assert!(again.choose(AT, "with states") && again.has(AT, Pane::Segments));
+        assert!(again.choose(AT, "with states") && again.has(AT, PanelId::SEGMENTS));
         let old: Dock = serde_json::from_str(r#"{"all": {}}"#).expect("of an older version");
         assert_eq!(old.names(AT).count(), 0);
     }

@@ -1,36 +1,10 @@
 //! The dialog for the name of a layout.
 
 use crate::ui::app::App;
-use crate::ui::session::Workspace;
+use crate::ui::dock::name_field::WIDTH;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::primary_button;
 use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
-
-/// Width of the dialog, points.
-const WIDTH: f32 = 360.0;
-
-/// Name that is being typed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Naming {
-    workspace: Workspace,
-    /// Layout that is renamed; `None` if a new one is saved.
-    renamed: Option<String>,
-    name: String,
-    /// True once the field has received the focus.
-    begun: bool,
-}
-
-impl Naming {
-    /// Dialog to save the current layout; `name` is proposed.
-    pub fn to_save(workspace: Workspace, name: Option<&str>) -> Self {
-        Self { workspace, renamed: None, name: name.unwrap_or_default().to_owned(), begun: false }
-    }
-
-    /// Dialog to rename a layout.
-    pub fn to_rename(workspace: Workspace, old: &str) -> Self {
-        Self { workspace, renamed: Some(old.to_owned()), name: old.to_owned(), begun: false }
-    }
-}
 
 /// Draws the dialog while a name is asked for.
 pub fn show(ui: &Ui, app: &mut App) {

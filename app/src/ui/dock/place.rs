@@ -1,40 +1,24 @@
 //! Position of a restored panel: that of the standard layout, or beside related panels.
 
-use super::{Arrangement, Pane};
+use crate::ui::dock::arrangement::Arrangement;
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
 use egui_tiles::{Container, ContainerKind, Tile, TileId};
-
-/// Related panels, the nearest first, with the container for both, and true if the panel comes first in it.
-fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
-    use ContainerKind::{Horizontal, Tabs, Vertical};
-    match pane {
-        Pane::Video => &[(Pane::Scene, Horizontal, false), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
-        Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
-        Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false), (Pane::Diagnosis, Tabs, false)],
-        Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false), (Pane::Diagnosis, Tabs, false)],
-        Pane::Progress => &[(Pane::Trainer, Tabs, false)],
-        // A third column would leave too little space for the curves.
-        Pane::Results => &[(Pane::Diagnosis, Tabs, false)],
-        _ => &[],
-    }
-}
-
-/// True for panels of the left edge.
-fn comes_first(pane: Pane) -> bool {
-    matches!(pane, Pane::Recording | Pane::Trainer | Pane::Diagnose | Pane::Devices)
-}
 
 impl Arrangement {
     /// Adds a panel: beside its neighbour, otherwise at its edge, otherwise alone.
-    pub(super) fn add(&mut self, pane: Pane) {
+    pub(super) fn add(&mut self, pane: PanelId) {
         let tile = self.tree.tiles.insert_pane(pane);
-        let beside = neighbours(pane).iter().find_map(|(other, kind, first)| Some((self.find(*other)?, *kind, *first)));
+        let panel = list::registration(pane);
+        let neighbours = panel.map_or(&[][..], |panel| panel.neighbours);
+        let beside = neighbours.iter().find_map(|(other, kind, first)| Some((self.find(*other)?, *kind, *first)));
         match (beside, self.tree.root()) {
             (Some((other, ContainerKind::Tabs, _)), _) => self.share_tabs(other, tile),
             (Some((other, kind, first)), _) => {
                 let other = self.whole(other, kind);
                 self.split(other, kind, if first { vec![tile, other] } else { vec![other, tile] });
             }
-            (None, Some(root)) => self.at_the_edge(root, tile, comes_first(pane)),
+            (None, Some(root)) => self.at_the_edge(root, tile, panel.is_some_and(|panel| panel.at_the_left)),
             (None, None) => self.tree.root = Some(tile),
         }
         self.tree.make_active(|id, _| id == tile);

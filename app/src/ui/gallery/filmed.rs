@@ -1,9 +1,10 @@
 //! The recorded hand as a film: a video for screenshots of the video panel.
 
-use crate::ui::scene::{camera_for, options_for, scene_world};
+use crate::ui::scene::overlay::{camera_for, options_for, scene_world};
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::video::{VideoSource, Writer};
+use crate::video::reading::VideoSource;
+use crate::video::writer::Writer;
 use anyhow::Context as _;
 use render::{Headless, SceneView, ViewOptions};
 use std::path::Path;
@@ -19,15 +20,15 @@ const ASIDE_RAD: [f32; 2] = [0.7, 0.18];
 
 /// Films the shown recording about the time cursor.
 pub fn filmed(session: &mut Session, file: &Path) -> anyhow::Result<VideoSource> {
-    let prepared = session.prepared().cloned().context("there is no recording to film")?;
+    let prepared = session.document.prepared().cloned().context("there is no recording to film")?;
     let world = scene_world(session, &prepared);
     let mut camera = camera_for(session, &prepared);
     camera.orbit(ASIDE_RAD[0], ASIDE_RAD[1]);
-    let (middle_s, begins_at_s) = (session.cursor_s, session.cursor_s - 0.5 * LENGTH_S);
+    let (middle_s, begins_at_s) = (session.document.cursor_s, session.document.cursor_s - 0.5 * LENGTH_S);
     let mut headless = Headless::new()?;
     let mut writer = Writer::begin(file, SIZE, RATE_HZ)?;
     for k in 0..=(LENGTH_S * RATE_HZ) as u32 {
-        session.seek(begins_at_s + f64::from(k) / RATE_HZ);
+        session.document.seek(begins_at_s + f64::from(k) / RATE_HZ);
         let (state, options) = options_for(session, &prepared, &world);
         let theme = theme::scene_theme(false);
         // A camera does not see force arrows.
@@ -38,6 +39,6 @@ pub fn filmed(session: &mut Session, file: &Path) -> anyhow::Result<VideoSource>
         writer.add(&image::DynamicImage::ImageRgba8(picture).into_rgb8())?;
     }
     writer.finish(file)?;
-    session.seek(middle_s);
-    Ok(VideoSource { file: file.to_path_buf(), recording: session.current, begins_at_s })
+    session.document.seek(middle_s);
+    Ok(VideoSource { file: file.to_path_buf(), recording: session.document.current, begins_at_s })
 }

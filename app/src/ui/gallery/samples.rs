@@ -1,12 +1,16 @@
 //! Recordings for the pictures: those bundled with the program, and performances of the scripted operator.
 
 use super::filmed::filmed;
-use crate::cli::built_in;
-use crate::experiment;
-use crate::history::{Attempt, Conditions};
-use crate::ui::screenshot::{Panel, PanelInput, session_for};
-use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
-use crate::video::VideoSource;
+use crate::built_in::built_in;
+use crate::experiment::perform;
+use crate::experiment::simulated;
+use crate::experiment::timetable;
+use crate::ui::gallery::sample::Sample;
+use crate::ui::picture_input::PictureInput;
+use crate::ui::stage;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::video::reading::VideoSource;
 use crate::worlds;
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::{Experiment, SensorFault};
@@ -15,7 +19,6 @@ use haptics::law::{EccentricMass, Effect};
 use haptics::recording::{Channel, Recording};
 use haptics::servo::recorder::SensorModel;
 use haptics::world::{Content, World, presets};
-use jiff::{SignedDuration, Timestamp};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,31 +26,6 @@ use tempfile::TempDir;
 
 /// Maximum length of a performance, s of simulated time: a script that does not end is cut off.
 const LONGEST_S: f64 = 120.0;
-
-/// Source of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sample {
-    /// The built-in recording of two blocks.
-    Stack,
-    /// The built-in recording of a crank.
-    Crank,
-    /// The scripted operator with the needle.
-    Needle,
-    /// A tool that opens a door.
-    Door,
-    /// A crank with an eccentric mass, or on a tilted table: the recording cannot discriminate.
-    Askew,
-    /// A block that leaks, or is weighed by a drifting sensor: the recording cannot discriminate.
-    Leaking,
-    /// A hinge with an eccentric mass, or on a tilted axis: the recording cannot discriminate.
-    Hinge,
-    /// A cart on a rail, of which only position and force are known.
-    Rail,
-    /// A table whose columns are not yet mapped.
-    Foreign,
-    /// A built-in world, performed live.
-    World(&'static str),
-}
 
 /// Cache of generated recordings.
 #[derive(Default)]
@@ -92,9 +70,9 @@ impl Samples {
     }
 
     /// Film of the virtual hand in the middle of a recording, from a camera beside it.
-    pub fn film(&mut self, input: &PanelInput) -> anyhow::Result<VideoSource> {
+    pub fn film(&mut self, input: &PictureInput) -> anyhow::Result<VideoSource> {
         let file = self.folder()?.join("hand.mp4");
-        filmed(&mut session_for(input, Panel::Scene)?, &file)
+        filmed(&mut stage::fitted(input)?, &file)
     }
 
     fn folder(&mut self) -> anyhow::Result<&Path> {
@@ -167,46 +145,13 @@ pub fn hinge() -> (Recording, blind::case::Object) {
     (recording, object)
 }
 
-/// Fictitious attempts of a trainee at one lesson: four sessions, slow and hesitant at first.
-pub fn practice() -> Vec<Attempt> {
-    let begun: Timestamp = "2026-11-02T17:00:00Z".parse().unwrap_or_default();
-    (0..23_u32)
-        .map(|k| {
-            let session = k / 6;
-            let scatter = 5.0 * (2.3 * f64::from(k)).sin() + 3.0 * (5.1 * f64::from(k)).cos();
-            let score = 96.0 - 55.0 * (f64::from(k) + 1.0).powf(-0.7) + 0.7 * scatter;
-            let met = |score: f64| score >= 88.0;
-            let began_s = i64::from(session) * 86_400 + i64::from(k % 6) * 150;
-            Attempt {
-                trainee: "Ada".to_owned(),
-                lesson: "pinch".to_owned(),
-                conditions: Conditions::default(),
-                began: begun.saturating_add(SignedDuration::from_secs(began_s)).unwrap_or(begun),
-                duration_s: 18.0 + 30.0 * (f64::from(k) + 1.0).powf(-0.5),
-                completed: k != 1,
-                score: (k != 1).then_some(score),
-                meets_criterion: met(score),
-                proficient: false,
-                measures: serde_json::Value::Null,
-                measures_version: 1,
-                grade_version: 1,
-                recording: Some(PathBuf::from(format!(
-                    "recordings/2026-11-{:02}_pinch_{}.mcap",
-                    2 + session,
-                    k % 6 + 1
-                ))),
-            }
-        })
-        .collect()
-}
-
 /// Recording of an experiment on a world that represents the real object.
 pub fn done_with(world: &World, asked: &Experiment, name: &str) -> anyhow::Result<Recording> {
-    let table = experiment::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
+    let table = timetable::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
     let sensing = (&SensorFault::default(), SensorModel::TYPICAL.force_noise_n);
-    let mut recording = experiment::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
+    let mut recording = perform::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
     // Here the world represents the real object.
-    recording.meta.other.remove(experiment::SIMULATED);
+    recording.meta.other.remove(simulated::SIMULATED);
     name.clone_into(&mut recording.name);
     Ok(recording)
 }

@@ -2,14 +2,16 @@
 //! states, moves a boundary, tries a value, diagnoses, extends, compares by feel, and writes the report. Every step is
 //! checked and can be drawn.
 
+use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::format;
-use crate::ui::jobs::JobKind;
-use crate::ui::scene;
+use crate::ui::diagnosis_state::EXTEND;
+use crate::ui::message_list::Tone;
+use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Clock;
+use crate::ui::trainer::live::Clock;
+use crate::ui::workspace::Workspace;
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
 use egui::{Event, Key, Modifiers, Pos2, Role, pos2};
@@ -52,7 +54,7 @@ pub fn walk(
     let mut step = |walker: &mut Walker, name: &str| {
         look(name, walker.picture()?)?;
         // A person's pace would outlast these banners.
-        walker.harness.state_mut().session.banners.retain(|banner| banner.tone != Tone::Done);
+        walker.harness.state_mut().session.messages.banners.retain(|banner| banner.tone != Tone::Done);
         anyhow::Ok(())
     };
     walker.hover(&table);
@@ -94,10 +96,10 @@ pub(super) fn foreign_crank(folder: &Path) -> anyhow::Result<PathBuf> {
 
 fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'static, App>> {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     // The walk waits for the refit; the duration of the first one on a busy machine must not decide whether it runs.
-    session.refits.at_once = Duration::MAX;
+    session.calibration.refits.at_once = Duration::MAX;
     let builder = Harness::builder()
         .with_size(egui::vec2(size[0] as f32, size[1] as f32))
         .with_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light })
@@ -116,7 +118,7 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
     let surface = state.clone();
     let builder = builder.with_context_setup(move |ctx| {
         theme::install(ctx);
-        scene::announce(ctx, &surface);
+        callback::announce(ctx, &surface);
     });
     Ok(builder.renderer(WgpuTestRenderer::from_render_state(state)).build_ui_state(show, app))
 }
@@ -151,7 +153,7 @@ impl Walker {
         let begun = Instant::now();
         while !so(self.session()) {
             if begun.elapsed() > PATIENCE {
-                bail!("{what} did not come: {:?}", self.session().banners);
+                bail!("{what} did not come: {:?}", self.session().messages.banners);
             }
             std::thread::sleep(Duration::from_millis(5));
             self.harness.run_steps(1);
@@ -163,7 +165,7 @@ impl Walker {
     /// Runs frames until no job is active and a change counts as complete.
     fn calm(&mut self) -> anyhow::Result<()> {
         self.harness.run_steps(3);
-        self.until("rest", |s| !s.jobs.is_busy() && !s.stale)?;
+        self.until("rest", |s| !s.jobs.is_busy() && !s.calibration.stale)?;
         self.harness.run_steps(50);
         Ok(())
     }
@@ -227,7 +229,7 @@ impl Walker {
 
     pub(super) fn accept_mapping(&mut self) -> anyhow::Result<()> {
         self.click(Role::Button, "Save sidecar and open")?;
-        self.until("the fit", |s| s.mapping.is_none() && s.analysis.is_some())?;
+        self.until("the fit", |s| s.mapping.is_none() && s.calibration.analysis.is_some())?;
         self.calm()
     }
 
@@ -272,7 +274,9 @@ impl Walker {
         self.harness.drag_at(half);
         self.harness.run_steps(2);
         self.harness.drop_at(half);
-        self.until("the replay of another value", |s| s.what_if.is_on() && !s.what_if.is_behind())?;
+        self.until("the replay of another value", |s| {
+            s.calibration.what_if.is_on() && !s.calibration.what_if.is_behind()
+        })?;
         self.calm()
     }
 
@@ -290,16 +294,16 @@ impl Walker {
 
     fn extend(&mut self) -> anyhow::Result<()> {
         self.click(Role::Button, "Extend the model")?;
-        self.until("the extended model", |s| s.diagnosing.worlds.is_some() && !s.jobs.is_running(JobKind::Extend))
+        self.until("the extended model", |s| s.diagnosing.worlds.is_some() && !s.jobs.is_running(EXTEND))
     }
 
     fn feel(&mut self) -> anyhow::Result<()> {
         self.click(Role::Button, "Feel it in Train")?;
-        self.until("the trainer", |s| s.workspace == Workspace::Train && s.trainer.compare.is_some())?;
-        let before = self.session().trainer.choice;
+        self.until("the trainer", |s| s.workspace == Workspace::Train && s.training.trainer.compare.is_some())?;
+        let before = self.session().training.trainer.choice;
         self.harness.key_press(Key::B);
         self.harness.run_steps(3);
-        if self.session().trainer.choice == before {
+        if self.session().training.trainer.choice == before {
             bail!("the key B did not switch between the worlds");
         }
         Ok(())
@@ -313,7 +317,7 @@ impl Walker {
         let begun = Instant::now();
         while !std::fs::read_to_string(to).is_ok_and(|text| text.trim_end().ends_with("</html>")) {
             if begun.elapsed() > PATIENCE {
-                bail!("the report was not written: {:?}", self.session().banners);
+                bail!("the report was not written: {:?}", self.session().messages.banners);
             }
             std::thread::sleep(Duration::from_millis(20));
             self.harness.run_steps(1);

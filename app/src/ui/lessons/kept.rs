@@ -1,19 +1,19 @@
 //! Storage of completed attempts in the trainee's history.
 
-use super::Debrief;
-use crate::history::{Attempt, Conditions};
+use crate::history::attempt::{Attempt, Conditions};
+use crate::ui::lessons::state::Debrief;
 use crate::ui::session::Session;
 use jiff::{SignedDuration, Timestamp};
 
 impl Session {
     /// Stores a graded attempt under the trainee's name; does nothing without a name.
     pub(super) fn keep_graded(&mut self, debrief: &Debrief) {
-        self.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
-        let Some(trainee) = self.learning.trainee.clone() else { return };
-        let line = self.trainer.delay();
+        self.training.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
+        let Some(trainee) = self.training.learning.trainee.clone() else { return };
+        let line = self.training.trainer.delay();
         let conditions = Conditions { delay_ms: 1e3 * line.round_trip_s, predicted: line.predicted && !line.is_none() };
         let attempt = attempt_of(debrief, trainee, conditions, Timestamp::now());
-        let before = self.learning.attempts.iter().rev().find(|earlier| earlier.is_like(&attempt));
+        let before = self.training.learning.attempts.iter().rev().find(|earlier| earlier.is_like(&attempt));
         let proficient = attempt.meets_criterion && before.is_some_and(|earlier| earlier.meets_criterion);
         self.keep_attempt(Attempt { proficient, ..attempt });
     }

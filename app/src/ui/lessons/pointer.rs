@@ -1,10 +1,11 @@
 //! Simulated mouse hand that repeats the expert's performance more slowly: for screenshots and tests with a manual
 //! clock.
 
-use super::Phase;
 use super::trace::Point;
-use crate::ui::session::{Session, sentence};
-use crate::ui::trainer::Pinch;
+use crate::text::sentence::sentence;
+use crate::ui::lessons::state::Phase;
+use crate::ui::session::Session;
+use crate::ui::trainer::pinch::Pinch;
 use estimator::training::lesson::Lesson;
 use haptics::Vec2;
 use haptics::world::State;
@@ -30,15 +31,17 @@ impl Session {
     pub fn follow_expert(&mut self, seconds: f64) {
         let mut left_s = seconds;
         while left_s > 0.0 {
-            let Some(open) = self.lessons.open.as_ref() else { return };
+            let Some(open) = self.training.lessons.open.as_ref() else { return };
             let (Some(trace), true) = (&open.expert, matches!(open.phase, Phase::Practising | Phase::Testing)) else {
                 return;
             };
-            let now_s = self.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
+            let now_s = self.training.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
             let Some(point) = trace.at(SLOWER * now_s).copied() else { return };
             self.point_as(&point);
-            self.trainer.advance(FRAME_S);
-            if !self.see_lesson() || self.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed()) {
+            self.training.trainer.advance(FRAME_S);
+            if !self.see_lesson()
+                || self.training.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed())
+            {
                 return;
             }
             left_s -= FRAME_S;
@@ -46,7 +49,7 @@ impl Session {
     }
 
     fn point_as(&mut self, point: &Point) {
-        let pinch = &mut self.trainer.pinch;
+        let pinch = &mut self.training.trainer.pinch;
         let pointed = Pointed::of(point, pinch.opening_m());
         pinch.move_to(pointed.at_m);
         pinch.button = pointed.pinches;

@@ -1,6 +1,6 @@
 //! Trace of a hand, thinned for pictures: the expert's and the trainee's side by side.
 
-use super::sentence;
+use crate::text::sentence::sentence;
 use estimator::training::lesson::Lesson;
 use estimator::training::lesson::perform::perform;
 use haptics::Vec2;

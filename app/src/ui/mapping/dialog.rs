@@ -1,8 +1,12 @@
 //! The dialog's frame: heading, columns on the left, preview on the right, actions below.
 
-use super::{Mapping, name_of, options, plot, save, table};
+use super::preview::PREVIEW;
+use super::{options, plot, table};
+use crate::text::file_name::name_of;
+use crate::ui::files::SAVE;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::JobKind;
+use crate::ui::mapping::actions::save;
+use crate::ui::mapping::state::Mapping;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{plain_card, primary_button, remark, sheet};
@@ -18,7 +22,10 @@ enum Done {
 pub fn show(ui: &mut Ui, session: &mut Session) {
     let Some(mut mapping) = session.mapping.take() else { return };
     let ctx = ui.ctx().clone();
-    mapping.preview.follow(&ctx, &mut session.jobs, &mapping.path, &mapping.draft);
+    let about = (mapping.path.as_path(), &mapping.draft);
+    mapping.preview.follow(&ctx, &mut session.jobs, about, |session: &mut Session| {
+        session.mapping.as_mut().map(|mapping| &mut mapping.preview)
+    });
     let width = ui.available_width();
     let frame = |left, right, top, bottom| Frame::new().inner_margin(Margin { left, right, top, bottom });
     Side::top("mapping head").frame(frame(12, 12, 10, 0)).show_separator_line(false).resizable(false).show(ui, |ui| {
@@ -50,14 +57,14 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
     match done {
         Some(Done::Cancel) => {
-            session.jobs.cancel(JobKind::Preview);
+            session.jobs.cancel(PREVIEW);
             // The file is still not open, for the same reason.
-            if let Some(why) = mapping.why.filter(|_| session.path.as_ref() != Some(&mapping.path)) {
-                session.fail(why);
+            if let Some(why) = mapping.why.filter(|_| session.document.path.as_ref() != Some(&mapping.path)) {
+                session.messages.fail(why);
             }
         }
         Some(Done::Save) => {
-            session.jobs.cancel(JobKind::Preview);
+            session.jobs.cancel(PREVIEW);
             save(&ctx, &mut session.jobs, &mapping);
             session.mapping = Some(mapping);
         }
@@ -82,7 +89,7 @@ fn head(ui: &mut Ui, mapping: &Mapping) {
 fn foot(ui: &mut Ui, mapping: &mut Mapping, session: &Session) -> Option<Done> {
     let mut done = None;
     ui.horizontal(|ui| {
-        let saving = session.jobs.is_running(JobKind::Save);
+        let saving = session.jobs.is_running(SAVE);
         let loads = matches!(mapping.preview.seen, Some(Ok(_)));
         let ready = loads && !saving && !mapping.preview.is_stale(&session.jobs);
         let hint = "A mapping is saved when the log can be read with it";

@@ -2,9 +2,10 @@
 
 use super::draft::Role;
 use crate::ui::app::App;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Clock;
+use crate::ui::trainer::live::Clock;
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::fmt::Write as _;
@@ -32,7 +33,7 @@ fn rig_table(folder: &Path) -> PathBuf {
 
 fn window() -> Harness<'static, App> {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     let builder = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(8).with_accessibility_check(false);
     let mut harness =
         builder.with_context_setup(theme::install).build_ui_state(|ui, app: &mut App| app.show(ui), App::new(session));
@@ -43,7 +44,7 @@ fn window() -> Harness<'static, App> {
 fn wait(harness: &mut Harness<'_, App>, what: &str, until: impl Fn(&Session) -> bool) {
     let begun = Instant::now();
     while !until(&harness.state().session) {
-        assert!(begun.elapsed() < Duration::from_mins(1), "{what}: {:?}", harness.state().session.banners);
+        assert!(begun.elapsed() < Duration::from_mins(1), "{what}: {:?}", harness.state().session.messages.banners);
         std::thread::sleep(Duration::from_millis(5));
         harness.run_steps(1);
     }
@@ -103,9 +104,9 @@ fn a_rigs_table_becomes_a_fit_by_clicking_only() {
     wait(&mut harness, "the preview follows", previewed);
     assert!(harness.query_by_label("Nothing is missing: the log can be fitted.").is_some());
     harness.get_by_label("Save sidecar and open").click();
-    wait(&mut harness, "fitted", |s| s.mapping.is_none() && s.analysis.is_some());
+    wait(&mut harness, "fitted", |s| s.mapping.is_none() && s.calibration.analysis.is_some());
     let session = &harness.state().session;
-    let mass = session.analysis.as_ref().and_then(|a| a.fit.value("mechanism", "mass_kg")).expect("a mass");
+    let mass = session.calibration.analysis.as_ref().and_then(|a| a.fit.value("mechanism", "mass_kg")).expect("a mass");
     assert!((mass / 2.0 - 1.0).abs() < 0.02, "{mass}");
     let saved = std::fs::read_to_string(&sidecar).expect("saved");
     let saved: serde_json::Value = serde_json::from_str(&saved).expect("JSON");
@@ -125,8 +126,12 @@ fn cancel_changes_nothing() {
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
     let session = &harness.state().session;
-    assert!(session.mapping.is_none() && session.recordings.is_empty());
-    assert!(session.banners[0].text.contains("`y_m` is missing"), "the reason is said: {:?}", session.banners);
+    assert!(session.mapping.is_none() && session.document.recordings.is_empty());
+    assert!(
+        session.messages.banners[0].text.contains("`y_m` is missing"),
+        "the reason is said: {:?}",
+        session.messages.banners
+    );
     assert!(!folder.path().join("half.meta.json").exists());
 }
 
@@ -142,7 +147,7 @@ fn known_columns_open_no_dialog_and_a_button_does() {
     std::fs::write(&path, text).expect("writable");
     let mut harness = window();
     drop_file(&mut harness, &path);
-    wait(&mut harness, "loaded", |s| !s.recordings.is_empty());
+    wait(&mut harness, "loaded", |s| !s.document.recordings.is_empty());
     assert!(harness.state().session.mapping.is_none());
     assert_eq!(harness.state().session.workspace, Workspace::Calibrate);
     harness.get_by_label("Map columns …").click();

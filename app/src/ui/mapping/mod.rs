@@ -3,121 +3,22 @@
 //! [`facts`] inspects the file, [`words`] and [`guess`] read the names, [`draft`] is edited and becomes the sidecar,
 //! [`preview`] loads with it in the background, [`dialog`] draws.
 
+pub mod actions;
 pub mod dialog;
+#[cfg(test)]
+mod dialog_tests;
 pub mod draft;
+#[cfg(test)]
+mod draft_tests;
 pub mod facts;
 pub mod file_units;
 pub mod guess;
-pub mod names;
-mod options;
-mod plot;
-pub mod preview;
-mod table;
-pub mod words;
-
-use super::jobs::{JobKind, Jobs, Outcome};
-use super::session::sentence;
-use draft::Draft;
-use estimator::log::{LogError, sidecar_path, write_sidecar};
-use facts::FileFacts;
-use haptics::recording::Meta;
-use preview::Preview;
-use std::path::{Path, PathBuf};
-
-/// An open dialog.
-#[derive(Debug)]
-pub struct Mapping {
-    /// Path of the log.
-    pub path: PathBuf,
-    /// Path of the sidecar that will be written.
-    pub sidecar: PathBuf,
-    /// Reason why the dialog opened by itself, in one sentence.
-    pub why: Option<String>,
-    /// Facts about the log.
-    pub file: FileFacts,
-    /// Mapping that is being edited.
-    pub draft: Draft,
-    /// Preview of the mapped log.
-    pub preview: Preview,
-    /// Part of the preview that is drawn.
-    view: plot::View,
-}
-
-/// Inspected file, on its way to a dialog.
-#[derive(Debug)]
-pub struct Looked {
-    path: PathBuf,
-    sidecar: PathBuf,
-    why: Option<String>,
-    file: FileFacts,
-    meta: Meta,
-}
-
-impl From<Looked> for Mapping {
-    fn from(looked: Looked) -> Self {
-        let Looked { path, sidecar, why, file, meta } = looked;
-        let draft = Draft::new(&file, meta);
-        Self { path, sidecar, why, file, draft, preview: Preview::default(), view: plot::View::default() }
-    }
-}
-
-/// Inspects a log in the background; the dialog opens when that is done.
-pub fn look(ctx: &egui::Context, jobs: &mut Jobs, path: &Path, sidecar: Option<PathBuf>, why: Option<String>) {
-    let path = path.to_path_buf();
-    let what = format!("Looking at {}", name_of(&path));
-    jobs.start_watched(ctx, JobKind::Look, what, move |_| {
-        look_now(path, sidecar, why).map_or_else(Outcome::Failed, |looked| Outcome::Looked(Box::new(looked)))
-    });
-}
-
-/// Inspects a log and its sidecar (`sidecar`, or the one beside it).
-pub fn look_now(path: PathBuf, sidecar: Option<PathBuf>, why: Option<String>) -> Result<Looked, String> {
-    let sidecar = sidecar.unwrap_or_else(|| sidecar_path(&path));
-    let meta = read_sidecar(&sidecar)?;
-    let file = facts::look(&path).map_err(|e| sentence(&e.to_string()))?;
-    Ok(Looked { path, sidecar, why, file, meta })
-}
-
-/// Writes the sidecar in the background; the log is opened with it afterwards.
-pub fn save(ctx: &egui::Context, jobs: &mut Jobs, mapping: &Mapping) {
-    let (meta, path, sidecar) = (mapping.draft.sidecar(), mapping.path.clone(), mapping.sidecar.clone());
-    jobs.start(ctx, JobKind::Save, move || match write_sidecar(&meta, &sidecar) {
-        Ok(()) => Outcome::Mapped { log: path, sidecar },
-        Err(error) => Outcome::Failed(sentence(&error.to_string())),
-    });
-}
-
-/// Existing sidecar; an empty one if there is none.
-fn read_sidecar(path: &Path) -> Result<Meta, String> {
-    let text = match haptics::text_file::read(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Meta::default()),
-        Err(error) => return Err(format!("The sidecar cannot be read ({error}): {}", path.display())),
-    };
-    serde_json::from_str(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| format!("The sidecar is malformed ({error}); correct it or remove it: {}", path.display()))
-}
-
-/// True for an error that a mapping can fix.
-pub fn mends(error: &LogError) -> bool {
-    matches!(
-        error,
-        LogError::MissingColumn { .. }
-            | LogError::UnknownUnit { .. }
-            | LogError::WrongDimension { .. }
-            | LogError::DuplicateColumn { .. }
-            | LogError::NothingSelected { .. }
-    )
-}
-
-/// Display name of a file.
-pub fn name_of(path: &Path) -> String {
-    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-}
-
-#[cfg(test)]
-mod dialog_tests;
-#[cfg(test)]
-mod draft_tests;
 #[cfg(test)]
 mod guess_tests;
+pub mod names;
+pub mod options;
+pub mod plot;
+pub mod preview;
+pub mod state;
+pub mod table;
+pub mod words;

@@ -1,10 +1,11 @@
 //! The preview: the path or the curves, missing data, and warnings.
 
-use super::Mapping;
 use super::preview::Seen;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::icons::Icon;
-use crate::ui::plots::{decimate, marks, time_axis, value_axis};
+use crate::ui::mapping::state::{Mapping, View};
+use crate::ui::plots::axes::{marks, time_axis, value_axis};
+use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, mix, palette, space};
@@ -13,18 +14,6 @@ use egui::{RichText, ScrollArea, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;
 use render::ColorRole;
-
-/// Content of the preview.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum View {
-    /// The path if there is one, otherwise the first curves.
-    #[default]
-    Automatic,
-    /// The path in the plane.
-    Path,
-    /// The curves of a group.
-    Curves(usize),
-}
 
 /// Draws the preview.
 pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {

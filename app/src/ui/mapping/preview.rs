@@ -1,15 +1,18 @@
 //! Result of a mapping: loaded in the background, a moment after the last edit.
 
 use super::draft::Draft;
-use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
+use crate::text::sentence::sentence;
+use crate::ui::jobs::{JobKind, Jobs, Ticket, change};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::sentence;
 use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;
 use estimator::signal::task::{is_two_fingered, task_signals, tip_series};
 use haptics::recording::{Meta, Recording, Task};
 use std::path::Path;
 use std::sync::Arc;
+
+/// Reading a log for the preview of a mapping.
+pub const PREVIEW: JobKind = JobKind::new("preview");
 
 /// Delay after an edit before the file is read again, s.
 const REST_S: f64 = 0.25;
@@ -37,10 +40,16 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Runs once per frame: reads the file again when the mapping has changed and then rested.
-    pub fn follow(&mut self, ctx: &egui::Context, jobs: &mut Jobs, path: &Path, draft: &Draft) {
+    /// Once a picture: reads the file again when the mapping has changed and rests. The answer goes to the preview that is `open` then.
+    pub fn follow<T: 'static>(
+        &mut self,
+        ctx: &egui::Context,
+        jobs: &mut Jobs<T>,
+        (path, draft): (&Path, &Draft),
+        open: fn(&mut T) -> Option<&mut Self>,
+    ) {
         if let Some(clash) = draft.clash() {
-            jobs.cancel(JobKind::Preview);
+            jobs.cancel(PREVIEW);
             (self.seen, self.asked, self.edited) = (Some(Err(clash)), Some(draft.meta.clone()), None);
             return;
         }
@@ -59,8 +68,13 @@ impl Preview {
         }
         self.asked = Some(meta.clone());
         let path = path.to_path_buf();
-        jobs.start_watched(ctx, JobKind::Preview, "Reading for the preview".to_owned(), move |ticket| {
-            Outcome::Previewed(Box::new(see(&path, &meta, ticket)))
+        jobs.start(ctx, PREVIEW, "Reading for the preview", move |ticket| {
+            let seen = see(&path, &meta, ticket);
+            change(move |window: &mut T, _| {
+                if let Some(preview) = open(window) {
+                    preview.seen = Some(seen);
+                }
+            })
         });
     }
 
@@ -71,8 +85,8 @@ impl Preview {
     }
 
     /// True while the preview is older than the mapping.
-    pub fn is_stale(&self, jobs: &Jobs) -> bool {
-        self.edited.is_some() || jobs.is_running(JobKind::Preview) || self.asked.is_none()
+    pub fn is_stale<T: 'static>(&self, jobs: &Jobs<T>) -> bool {
+        self.edited.is_some() || jobs.is_running(PREVIEW) || self.asked.is_none()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::draft::{Draft, Role, Row};
 use super::file_units::FileUnit;
 use super::names::{dimension, find};
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::{self, palette};
 use egui::{Align, ComboBox, DragValue, Label, Layout, RichText, Role as Accessible, Ui, WidgetInfo};
 use egui_extras::{Column, TableBuilder};

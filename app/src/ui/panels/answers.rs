@@ -3,7 +3,8 @@
 use crate::boards::{ADVICE, Answers};
 use crate::ui::icons::Icon;
 use crate::ui::theme;
-use crate::ui::trainer::{Steering, Trainer};
+use crate::ui::trainer::hand::Steering;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{fact, plain_card, remark};
 use egui::Ui;
 use haptics::device::haply::Tally;

@@ -1,6 +1,6 @@
 //! Switches of the assistant's parts over the picture.
 
-use crate::ui::assistant;
+use crate::ui::assistant::readings;
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::widgets::{call, card};
@@ -31,8 +31,8 @@ mod words {
 
 /// The card beside the trainer's picture.
 pub fn assistant(ui: &mut Ui, session: &mut Session) {
-    let silent = assistant::silent(session);
-    let parts = &mut session.assistant;
+    let silent = readings::silent(session);
+    let parts = &mut session.training.assistant;
     let mut on = parts.on;
     let switch = |ui: &mut Ui| {
         let hint = words::SAYS_OVER_THE_PICTURE;
@@ -67,5 +67,5 @@ pub fn assistant(ui: &mut Ui, session: &mut Session) {
             });
         }
     });
-    session.assistant.on = on;
+    session.training.assistant.on = on;
 }

@@ -1,12 +1,14 @@
 //! The residual atlas: the residual against the variable of every candidate cause, with the part that this candidate
 //! alone would explain.
 
-use crate::diagnosis_words::{listed, title};
+use crate::text::diagnosis_words::{listed, title};
+use crate::text::format::{self, capitalised};
+use crate::text::sentence::sentence;
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
-use crate::ui::format::{self, capitalised};
 use crate::ui::icons::Icon;
-use crate::ui::plots::{BAND_SIGMAS, decimals, inks, marks};
-use crate::ui::session::{Session, sentence};
+use crate::ui::plots::axes::{decimals, marks};
+use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::compact;
 use egui::{
@@ -184,8 +186,11 @@ fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Findings) 
     if let Some(entry) = law::cause(&cell.id) {
         ui.label(RichText::new(entry.equation).monospace());
         ui.add(
-            egui::Label::new(theme::caption(ui, format!("It shows: {}", crate::diagnosis_words::small(entry.shows))))
-                .wrap(),
+            egui::Label::new(theme::caption(
+                ui,
+                format!("It shows: {}", crate::text::diagnosis_words::small(entry.shows)),
+            ))
+            .wrap(),
         );
     }
     let score = format::number(cell.score, 0);

@@ -1,9 +1,10 @@
 //! Manual editing of states: handles between the states of the band, and the context menu of a state.
 
+use crate::text::format;
+use crate::text::states::state_name;
 use crate::ui::by_hand::Change;
-use crate::ui::format;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, state_color, state_name};
+use crate::ui::theme::{self, palette, state_color};
 use crate::ui::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};
@@ -74,11 +75,11 @@ pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Se
         ui.set_max_width(230.0);
         ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
         if ui.button(words::ONLY_THIS).on_hover_text(words::ONLY_THIS_MORE).clicked() {
-            session.choice.only_s = Some(stretch_s);
+            session.calibration.choice.only_s = Some(stretch_s);
             ui.close();
         }
-        if session.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
-            session.choice.only_s = None;
+        if session.calibration.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
+            session.calibration.choice.only_s = None;
             ui.close();
         }
     });
@@ -87,7 +88,7 @@ pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Se
 /// Context menu of a state; `at_s` is the time under the pointer.
 pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, session: &Session) -> Option<Change> {
     let mut change = None;
-    let cursor_s = session.cursor_s;
+    let cursor_s = session.document.cursor_s;
     response.context_menu(|ui| {
         let interval = &segmentation.states[index];
         ui.label(theme::caption(ui, words::SET_BY_HAND));

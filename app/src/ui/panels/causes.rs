@@ -1,8 +1,8 @@
 //! The card of a diagnosed cause.
 
-use crate::diagnosis_words::{gain_unit, said_in_words, shown_unit, small, symbol, title};
-use crate::ui::format;
-use crate::ui::session::sentence;
+use crate::text::diagnosis_words::{gain_unit, said_in_words, shown_unit, small, symbol, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact};
 use egui::{Align, Color32, FontId, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};

@@ -1,16 +1,15 @@
 //! *Check on other recordings*: the diagnosed causes on held-out recordings.
 
-use crate::diagnosis_words::{listed, shown_unit, title};
-use crate::ui::checking::{Checked, Holds, On, holds};
+use crate::text::diagnosis_words::{listed, shown_unit, title};
+use crate::text::format;
+use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{bar, compact, icon_button, plain_card, remark};
 use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
-use estimator::diagnose::{Diagnosis, Validation};
+use estimator::diagnose::{Findings, Validation};
 use std::path::PathBuf;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -33,7 +32,7 @@ mod words {
 }
 
 /// Card below the causes, if there is a recording to validate on.
-pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
+pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
     if diagnosis.causes.is_empty() {
         return;
     }
@@ -52,14 +51,14 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
 fn ask(ui: &mut Ui, session: &mut Session) {
     let ctx = ui.ctx().clone();
     ui.horizontal(|ui| {
-        let busy = session.jobs.is_running(JobKind::Check);
+        let busy = session.jobs.is_running(CHECK);
         let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
         let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
         let response = ui.add(field.desired_width(width));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING_TO_CHECK_ON));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE_FILES).on_hover_text(words::CHOOSE_FILES_MORE).clicked() {
-            files::ask_many(&ctx, &mut session.jobs, Purpose::Check);
+            files::ask_for_recordings_to_check(&ctx, &mut session.jobs);
         }
         if busy {
             ui.add(egui::Spinner::new().size(16.0));
@@ -73,10 +72,10 @@ fn ask(ui: &mut Ui, session: &mut Session) {
 
 /// Leave-one-out validation: each of several open recordings can be checked with the causes from the others.
 fn left_out(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.len() < 2 {
+    if session.document.recordings.len() < 2 {
         return;
     }
-    let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let names: Vec<String> = session.document.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = None;
     ui.menu_button(words::LEAVE_ONE_OUT, |ui| {
         for (k, name) in names.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 
@@ -26,7 +26,7 @@ mod words {
 /// Card of the persistent comfort settings.
 pub fn card(ui: &mut Ui, session: &mut Session) {
     plain_card(ui, words::COMFORT, |ui| {
-        let comfort = &mut session.comfort;
+        let comfort = &mut session.training.comfort;
         let choices = [
             (&mut comfort.left_handed, words::LEFT_HANDED, words::LEFT_HANDED_MORE),
             (&mut comfort.pauses, words::PAUSE_WHEN_THE_WINDOW, words::PAUSE_WHEN_THE_WINDOW_MORE),
@@ -40,7 +40,7 @@ pub fn card(ui: &mut Ui, session: &mut Session) {
 
 /// Volume control. A build without sound says so.
 fn sound(ui: &mut Ui, session: &mut Session) {
-    let comfort = &mut session.comfort;
+    let comfort = &mut session.training.comfort;
     if !cfg!(feature = "sound") {
         let text = words::THIS_BUILD_IS_SILENT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());

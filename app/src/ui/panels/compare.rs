@@ -2,7 +2,7 @@
 
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::WorldChoice;
+use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
 use egui::{Align, Key, Layout, Ui};
 
@@ -25,10 +25,10 @@ mod words {
 
 /// Card beside the trainer's picture, while there are worlds to compare.
 pub fn compare(ui: &mut Ui, session: &mut Session) {
-    if session.trainer.compare.is_none() {
+    if session.training.trainer.compare.is_none() {
         return;
     }
-    let shown = session.trainer.choice;
+    let shown = session.training.trainer.choice;
     let mut choice = shown;
     let choices = [
         (WorldChoice::Before, words::BEFORE, words::BEFORE_MORE),
@@ -59,8 +59,8 @@ pub fn compare(ui: &mut Ui, session: &mut Session) {
         switch(session, choice);
     }
     if closed {
-        session.trainer.compare = None;
-        if matches!(session.trainer.choice, WorldChoice::Before | WorldChoice::After) {
+        session.training.trainer.compare = None;
+        if matches!(session.training.trainer.choice, WorldChoice::Before | WorldChoice::After) {
             switch(session, WorldChoice::default());
         }
     }
@@ -68,17 +68,21 @@ pub fn compare(ui: &mut Ui, session: &mut Session) {
 
 /// Handles the key that switches, for hands that hold an object.
 pub fn key(ui: &Ui, session: &mut Session) {
-    if session.trainer.compare.is_none() || ui.ctx().egui_wants_keyboard_input() {
+    if session.training.trainer.compare.is_none() || ui.ctx().egui_wants_keyboard_input() {
         return;
     }
     if ui.input(|i| i.key_pressed(Key::B)) {
-        let other = if session.trainer.choice == WorldChoice::After { WorldChoice::Before } else { WorldChoice::After };
+        let other = if session.training.trainer.choice == WorldChoice::After {
+            WorldChoice::Before
+        } else {
+            WorldChoice::After
+        };
         switch(session, other);
     }
 }
 
 fn switch(session: &mut Session, choice: WorldChoice) {
-    if let Err(problem) = session.trainer.choose(choice) {
-        session.fail(problem);
+    if let Err(problem) = session.training.trainer.choose(choice) {
+        session.messages.fail(problem);
     }
 }

@@ -2,7 +2,8 @@
 //! expert's.
 
 use crate::ui::icons::Icon;
-use crate::ui::lessons::{Debrief, Trace};
+use crate::ui::lessons::state::Debrief;
+use crate::ui::lessons::trace::Trace;
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::widgets::{compact, remark};
 use egui::{Align, Layout, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};

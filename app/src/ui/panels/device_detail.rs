@@ -1,12 +1,17 @@
 //! The devices page, right column: capabilities of the running device, its live values, and a gentle push to try it.
 
-use super::{Panel, trainer_timing};
-use crate::ui::format::{number, short_time};
+use super::trainer_timing;
+use crate::text::format::{number, short_time};
 use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Direction, HandDevice, Operator, Trainer, spec_sentences};
+use crate::ui::trainer::hand::{HandDevice, spec_sentences};
+use crate::ui::trainer::live::{Operator, Trainer};
+use crate::ui::trainer::trial::Direction;
 use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
+use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
@@ -15,7 +20,6 @@ use haptics::servo::{Snapshot, passivity};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const DEVICE: &str = "Device";
     pub const NO_DEVICE_IS_RUNNING: &str = "No device is running";
     pub const NO_DEVICE_IS_RUNNING_MORE: &str = "Choose one on the left.";
     pub const SCRIPT_MORE: &str = "Does the task of the world like a person.";
@@ -64,28 +68,30 @@ mod words {
 /// Minimum width for two columns, points: the live values need half of it.
 const TWO_COLUMNS: f32 = 780.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Devices, 1)],
+    ..Registration::new(PanelId::DEVICE_DETAIL, "Device", Icon::Device, || Box::new(DeviceDetail::default()))
+};
+
 /// Panel of the running device.
 #[derive(Default)]
 pub struct DeviceDetail;
 
 impl Panel for DeviceDetail {
-    fn title(&self) -> &'static str {
-        words::DEVICE
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        if let Err(problem) = session.trainer.ensure_running() {
-            session.fail(problem);
+        if let Err(problem) = session.training.trainer.ensure_running() {
+            session.messages.fail(problem);
         }
-        session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+        session.training.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
         // Live values: the page repaints continuously while it is open.
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
-        let Some(spec) = session.trainer.spec().cloned() else {
+        let Some(spec) = session.training.trainer.spec().cloned() else {
             empty_state(ui, (Icon::Device, words::NO_DEVICE_IS_RUNNING), words::NO_DEVICE_IS_RUNNING_MORE, |_| {});
             return;
         };
-        if let Some(fault) = session.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
-            session.fail(fault);
+        if let Some(fault) = session.training.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
+            session.messages.fail(fault);
         }
         ScrollArea::vertical().id_salt("device detail").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -107,16 +113,16 @@ impl Panel for DeviceDetail {
 /// Draws the device's description, its capabilities, and the force test.
 fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
     about(ui, session, spec);
-    limits(ui, &session.trainer, spec);
-    force_test(ui, &mut session.trainer, spec);
+    limits(ui, &session.training.trainer, spec);
+    force_test(ui, &mut session.training.trainer, spec);
     super::passivity::passivity(ui, session);
 }
 
 /// Draws the live values of the device and its timing.
 fn values(ui: &mut Ui, session: &Session) {
-    live(ui, &session.trainer);
-    super::answers::answers(ui, &session.trainer);
-    trainer_timing::timing(ui, &session.trainer);
+    live(ui, &session.training.trainer);
+    super::answers::answers(ui, &session.training.trainer);
+    trainer_timing::timing(ui, &session.training.trainer);
 }
 
 fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
@@ -129,7 +135,7 @@ fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
 
 fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
     plain_card(ui, &spec.name, |ui| {
-        let trainer = &session.trainer;
+        let trainer = &session.training.trainer;
         let what = match trainer.operator {
             Operator::You => trainer.hand.sentence(),
             Operator::Scripted => words::SCRIPT_MORE,

@@ -1,11 +1,15 @@
 //! The devices page, left column: all devices for the fingers, one per line, to choose from.
 
-use super::Panel;
 use super::remote::RemoteCard;
+use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{HandDevice, Operator};
+use crate::ui::trainer::hand::HandDevice;
+use crate::ui::trainer::live::Operator;
 use crate::ui::widgets::{card, plain_card};
+use crate::ui::workspace::Workspace;
 use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, Ui};
 use haptics::device::haply;
 use std::sync::Arc;
@@ -13,7 +17,6 @@ use std::time::{Duration, Instant};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const DEVICES: &str = "Devices";
     pub const BUILT_IN: &str = "Built in";
     pub const OPEN_A_LOG: &str = "Open a log in Calibrate first.";
     pub const NO_PORT_FOUND: &str = "no port found";
@@ -28,6 +31,13 @@ mod words {
 
 /// Interval between scans for ports.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Devices, 0)],
+    at_the_left: true,
+    ..Registration::new(PanelId::DEVICES, "Devices", Icon::Device, || Box::new(DeviceList::default()))
+};
 
 /// The list of devices.
 #[derive(Default)]
@@ -45,10 +55,6 @@ pub(super) enum Choice {
 }
 
 impl Panel for DeviceList {
-    fn title(&self) -> &'static str {
-        words::DEVICES
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         self.look_for_ports(ui);
         let mut chosen = None;
@@ -63,7 +69,7 @@ impl Panel for DeviceList {
                     chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Gamepad), Ok(())));
                 }
                 chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
-                let log = session.prepared().map(drop).ok_or(words::OPEN_A_LOG);
+                let log = session.document.prepared().map(drop).ok_or(words::OPEN_A_LOG);
                 chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
             });
             chosen = chosen.take().or(self.boards(ui, session));
@@ -116,7 +122,7 @@ impl DeviceList {
 /// Draws one device as a clickable line. Returns its choice when it was clicked.
 pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
-    let trainer = &session.trainer;
+    let trainer = &session.training.trainer;
     let (title, sentence) = match &choice {
         Choice::Hand(hand) => (hand.title(), hand.sentence()),
         Choice::Scripted => (words::SCRIPTED_OPERATOR.to_owned(), words::SCRIPTED_OPERATOR_MORE),
@@ -147,15 +153,15 @@ pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<
 
 /// Restarts the engine with the device; a problem is reported.
 fn take(session: &mut Session, choice: Choice) {
-    let log = session.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
+    let log = session.document.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
     let taken = match choice {
         Choice::Hand(hand) => {
-            session.trainer.settings.log = log;
-            session.trainer.take_up(hand)
+            session.training.trainer.settings.log = log;
+            session.training.trainer.take_up(hand)
         }
-        Choice::Scripted => session.trainer.hand_to(Operator::Scripted),
+        Choice::Scripted => session.training.trainer.hand_to(Operator::Scripted),
     };
     if let Err(problem) = taken {
-        session.fail(problem);
+        session.messages.fail(problem);
     }
 }

@@ -1,15 +1,18 @@
 //! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
-use super::Panel;
 use crate::ui::atlas::Sheet;
-use crate::ui::diagnosing::{Answer, StartFrom};
-use crate::ui::files;
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, StartFrom};
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions, inks};
-use crate::ui::session::{Session, Workspace};
+use crate::ui::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::plots::residual_plot::{cloud_plot, force_plot, has_directions, inks};
+use crate::ui::plots::residuals::{Cloud, Residuals};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -68,20 +71,36 @@ const CHOICES: f32 = 216.0;
 /// Height of a plot's heading, points.
 const HEAD: f32 = 20.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Diagnose, 0)],
+    at_the_left: true,
+    pictures: &[&ATLAS],
+    ..Registration::new(PanelId::DIAGNOSE, "Measured and modelled", Icon::Panel, || Box::new(DiagnosePanel::default()))
+};
+
+/// The residual atlas.
+pub static ATLAS: Picture = Picture {
+    name: "atlas",
+    place: 180,
+    help: "The residual atlas",
+    line: "The residual atlas: what is left over against every suspect",
+    size: [720, 540],
+    sample: Sample::Askew,
+    session: stage::atlas,
+    framing: Framing::LargePanel(|| Box::new(DiagnosePanel::default())),
+};
+
 /// Panel of the diagnosis curves.
 #[derive(Default)]
 pub struct DiagnosePanel;
 
 impl Panel for DiagnosePanel {
-    fn title(&self) -> &'static str {
-        words::BEGIN
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let answer = session.diagnosing.answer.clone();
-            let of = session.current;
+            let of = session.document.current;
             let curves = answer.as_ref().and_then(|a| a.residuals.get(of).filter(|r| !r.is_empty()));
             let atlas = answer.as_ref().and_then(|a| Some((&**a, a.atlas.get(of).filter(|sheet| !sheet.is_empty())?)));
             match (curves, atlas) {
@@ -96,29 +115,29 @@ impl Panel for DiagnosePanel {
 }
 
 fn nothing(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.is_empty() {
+    if session.document.recordings.is_empty() {
         let text = words::NOTHING_YET_MORE;
         empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
             }
             if ui.link(words::RECORD_ONE).clicked() {
                 session.workspace = Workspace::Train;
             }
         });
-    } else if session.jobs.is_running(JobKind::Diagnose) {
+    } else if session.jobs.is_running(DIAGNOSE) {
         let text = words::BUSY_MORE;
         empty_state(ui, words::BUSY, text, |ui| {
             ui.add(egui::Spinner::new().size(20.0));
             ui.add_space(space::S);
             if ui.button((Icon::Close, words::CANCEL)).clicked() {
-                session.give_up(JobKind::Diagnose);
+                session.give_up(ui.ctx(), DIAGNOSE);
             }
         });
     } else if let Some(problem) = session.diagnosing.problem.clone() {
         empty_state(ui, (Icon::Doubt, words::CANNOT), &problem, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN_ANOTHER)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
             }
             ui.add_space(space::XS);
             start_from(ui, session);
@@ -147,8 +166,9 @@ fn begin(ui: &mut Ui, session: &mut Session) {
 
 /// Draws the chooser of a mechanism's base model; true if the choice changed.
 pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
-    let task = session.choice.task;
-    let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosing::is_mechanism(&p.recording, task));
+    let task = session.calibration.choice.task;
+    let mechanism =
+        session.document.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
     if !mechanism {
         return false;
     }
@@ -245,23 +265,23 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
 
 /// Draws the chooser of the shown recording, if there are several.
 fn which(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.len() < 2 {
+    if session.document.recordings.len() < 2 {
         return;
     }
     // As tall as the text beside it.
     ui.spacing_mut().button_padding = vec2(space::S, 0.0);
-    let mut chosen = session.current;
-    let name = |k: usize| session.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
+    let mut chosen = session.document.current;
+    let name = |k: usize| session.document.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
     let list = ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0);
     let list = list.show_ui(ui, |ui| {
-        for k in 0..session.recordings.len() {
+        for k in 0..session.document.recordings.len() {
             ui.selectable_value(&mut chosen, k, name(k));
         }
     });
     let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::WHICH);
     list.response.widget_info(label);
-    if chosen != session.current {
-        session.select(chosen);
+    if chosen != session.document.current {
+        session.document.select(chosen);
     }
 }
 

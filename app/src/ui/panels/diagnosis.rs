@@ -1,17 +1,20 @@
 //! Answer of a diagnosis, beside its curves: the verdict, the causes, the extended model, the next experiment.
 
-use super::Panel;
 use super::{causes, check, diagnose, next_experiment, why_not};
-use crate::diagnosis_words::{compared_unit, headline, residual_unit, title};
-use crate::ui::diagnosing::Answer;
-use crate::ui::files;
-use crate::ui::format;
+use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND};
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
-use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::plots::inks;
-use crate::ui::session::{Session, sentence};
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::plots::residual_plot::inks;
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::{Findings, Residual};
 
@@ -38,15 +41,31 @@ mod words {
     pub const WARNINGS: &str = "Warnings";
 }
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Diagnose, 1)],
+    has_contents: |session| session.diagnosing.answer.is_some(),
+    pictures: &[&EXPERIMENT],
+    ..Registration::new(PanelId::DIAGNOSIS, "Diagnosis", Icon::Diagnose, || Box::new(DiagnosisPanel::default()))
+};
+
+/// What a diagnosis answers, with what to record next, rehearsed.
+pub static EXPERIMENT: Picture = Picture {
+    name: "experiment",
+    place: 190,
+    help: "What a diagnosis answers, with what to record next, rehearsed",
+    line: "What to record next, rehearsed on simulated objects",
+    size: COLUMN,
+    sample: Sample::Askew,
+    session: stage::rehearsed,
+    framing: Framing::LargePanel(|| Box::new(DiagnosisPanel::default())),
+};
+
 /// The right column of the diagnosis.
 #[derive(Default)]
 pub struct DiagnosisPanel;
 
 impl Panel for DiagnosisPanel {
-    fn title(&self) -> &'static str {
-        words::DIAGNOSIS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let Some(answer) = session.diagnosing.answer.clone() else { return };
         ScrollArea::vertical().id_salt("diagnosis").auto_shrink(false).show(ui, |ui| {
@@ -70,7 +89,7 @@ impl Panel for DiagnosisPanel {
 fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     let d = &answer.diagnosis;
     let (mut again, mut changed) = (false, false);
-    let busy = session.jobs.is_running(JobKind::Diagnose);
+    let busy = session.jobs.is_running(DIAGNOSE);
     card(
         ui,
         words::DIAGNOSIS,
@@ -127,7 +146,7 @@ fn by_state(ui: &mut Ui, diagnosis: &Findings) {
                 let noise = left.noise_floor.map_or_else(|| RichText::new("–"), shown);
                 figures(
                     ui,
-                    RichText::new(theme::state_name(left.state)).size(12.0),
+                    RichText::new(crate::text::states::state_name(left.state)).size(12.0),
                     [shown(left.rms_before), after, noise],
                 );
             }
@@ -174,7 +193,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     if !plant {
         return;
     }
-    let busy = session.jobs.is_running(JobKind::Extend);
+    let busy = session.jobs.is_running(EXTEND);
     let extended = session.diagnosing.worlds.is_some();
     plain_card(ui, words::EXTENDED_MODEL, |ui| {
         if let Some(problem) = session.diagnosing.worlds_problem.clone() {
@@ -228,7 +247,7 @@ fn feel(ui: &mut Ui, session: &mut Session) {
             session.feel();
         }
         if ui.button((Icon::Save, words::SAVE_WORLD)).on_hover_text(words::SAVE_WORLD_MORE).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveExtended);
+            files::ask(ui.ctx(), &mut session.jobs, files::SAVE_EXTENDED);
         }
     });
     if let Err(problem) = comparison {

@@ -1,14 +1,17 @@
 //! Guidance over the trainer's picture while a person performs an experiment: the current instruction, the remaining
 //! time, and a ghost of the fingers to follow.
 
-use crate::ui::format;
+use crate::text::format;
+use crate::text::sentence::sentence;
 use crate::ui::guided::{Guided, Phase};
 use crate::ui::icons::Icon;
-use crate::ui::lessons::{self, Point, Wait};
-use crate::ui::scene::SceneResponse;
-use crate::ui::session::{Session, sentence};
+use crate::ui::lessons::ghost::Wait;
+use crate::ui::lessons::state;
+use crate::ui::lessons::trace::Point;
+use crate::ui::scene::view::SceneResponse;
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{primary_button, remark};
 use egui::{Frame, Margin, Pos2, ProgressBar, Shape, Stroke, Ui, vec2};
 use haptics::Vec2;
@@ -55,7 +58,7 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
             ui.label(theme::caption(ui, words::EXPERIMENT));
             match &guided.phase {
                 Phase::Ready => ready(ui, guided, &mut begin),
-                Phase::Going(_) => going(ui, guided, &session.trainer),
+                Phase::Going(_) => going(ui, guided, &session.training.trainer),
                 Phase::Ending => drop(ui.label(words::THE_RECORDING_GETS)),
                 Phase::Recorded(_) => recorded(ui, guided, &mut add, &mut begin),
             }
@@ -119,8 +122,8 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
 /// Draws two rings at the desired fingertip positions, filled while they should hold, and their future path.
 pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
     let Some(guided) = &session.experiments.guided else { return };
-    let Some((step, _, goal)) = guided.now(&session.trainer) else { return };
-    let now_s = guided.time_s(&session.trainer).unwrap_or_default();
+    let Some((step, _, goal)) = guided.now(&session.training.trainer) else { return };
+    let now_s = guided.time_s(&session.training.trainer).unwrap_or_default();
     let ahead = (0..=AHEAD_STEPS).map(|k| {
         let later_s = now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS);
         guided.table.route.at(later_s).0.center_m
@@ -131,8 +134,8 @@ pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
 
 /// The same for an expert's fingers in a lesson during practice.
 pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
-    let lessons = &session.lessons;
-    let Some(open) = lessons.open.as_deref().filter(|open| open.phase == lessons::Phase::Practising) else { return };
+    let lessons = &session.training.lessons;
+    let Some(open) = lessons.open.as_deref().filter(|open| open.phase == state::Phase::Practising) else { return };
     let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
     let now_s = open.ghost.time_s;
     let Some(point) = trace.at(now_s).filter(|_| now_s < trace.duration_s()) else { return };

@@ -1,6 +1,6 @@
 //! A long log while it is being read: every column so far, drawn from the reader's preview.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::jobs::Progress;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};

@@ -1,6 +1,6 @@
 //! Legends of the force gauges and of their live curve.
 
-use crate::ui::format::number;
+use crate::text::format::number;
 use crate::ui::theme::{self, palette, role};
 use crate::ui::widgets::{compact, swatch};
 use egui::{Color32, Sense, Shape, Stroke, Ui, vec2};

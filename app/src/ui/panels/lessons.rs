@@ -1,13 +1,14 @@
 //! Lessons beside the trainer's picture: the list, the description of a lesson, and the progress of an attempt.
 
 use super::debrief;
-use crate::ui::dock::Pane;
+use crate::text::format;
 use crate::ui::icons::{self, Icon};
-use crate::ui::lessons::{Open, Phase};
+use crate::ui::lessons::state::{Open, Phase};
+use crate::ui::markdown;
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
-use crate::ui::{format, markdown};
 use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;
@@ -60,8 +61,8 @@ enum Wish {
 
 /// Draws the whole column.
 pub fn side(ui: &mut Ui, session: &mut Session) {
-    session.lessons.load();
-    let wish = if session.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
+    session.training.lessons.load();
+    let wish = if session.training.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
     let ctx = ui.ctx().clone();
     match wish {
         Some(Wish::Open(lesson)) => session.open_lesson(&ctx, &lesson),
@@ -72,7 +73,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
         Some(Wish::Back) => session.back_to_brief(),
         Some(Wish::End(answer)) => session.end_lesson(&ctx, answer),
         Some(Wish::OpenLog(path)) => session.open(&ctx, &path),
-        Some(Wish::Progress) => session.wanted_pane = Some(Pane::Progress),
+        Some(Wish::Progress) => session.wanted_pane = Some(PanelId::PROGRESS),
         None => {}
     }
 }
@@ -82,12 +83,12 @@ fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
     plain_card(ui, words::LESSONS, |ui| {
         ui.label(theme::caption(ui, words::LESSONS_MORE));
         ui.add_space(space::XS);
-        for (place, lesson) in session.lessons.all.iter().enumerate() {
+        for (place, lesson) in session.training.lessons.all.iter().enumerate() {
             if row(ui, place + 1, lesson) {
                 wish = Some(Wish::Open(Arc::clone(lesson)));
             }
         }
-        for problem in &session.lessons.problems {
+        for problem in &session.training.lessons.problems {
             remark(ui, Icon::Wrong, problem);
         }
     });
@@ -106,8 +107,8 @@ fn row(ui: &mut Ui, number: usize, lesson: &Lesson) -> bool {
 
 fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
     let mut wish = None;
-    let open = session.lessons.open.as_deref()?;
-    let (trainer, mut ghost_off) = (&session.trainer, session.lessons.ghost_off);
+    let open = session.training.lessons.open.as_deref()?;
+    let (trainer, mut ghost_off) = (&session.training.trainer, session.training.lessons.ghost_off);
     let all = |ui: &mut Ui| {
         if ui.link(words::ALL_LESSONS).clicked() {
             wish = Some(Wish::Close);
@@ -131,11 +132,11 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
             Phase::Debrief(debrief) => {
                 debrief::show(ui, debrief, open.expert.as_deref());
                 ui.add_space(space::S);
-                debriefed(ui, debrief, session.learning.trainee.as_deref())
+                debriefed(ui, debrief, session.training.learning.trainee.as_deref())
             }
         };
     });
-    session.lessons.ghost_off = ghost_off;
+    session.training.lessons.ghost_off = ghost_off;
     wish.or(asked)
 }
 
@@ -203,7 +204,7 @@ fn asking(ui: &mut Ui, open: &Open) -> Option<Wish> {
     wish
 }
 
-fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&str>) -> Option<Wish> {
+fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::state::Debrief, trainee: Option<&str>) -> Option<Wish> {
     let mut wish = buttons(
         ui,
         &[(words::PRACTISE, words::PRACTISE_MORE, Wish::Practise), (words::WATCH, words::WATCH_MORE, Wish::Watch)],
@@ -288,10 +289,10 @@ fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str)
 
 /// Current instruction for the line over the picture; `None` outside of lessons.
 pub fn hint(session: &Session) -> Option<String> {
-    let open = session.lessons.open.as_deref()?;
+    let open = session.training.lessons.open.as_deref()?;
     match &open.phase {
         Phase::Watching => {
-            let step = open.step(&session.trainer)?;
+            let step = open.step(&session.training.trainer)?;
             Some(open.lesson.demonstration.get(step)?.says.clone())
         }
         Phase::Practising | Phase::Testing => {

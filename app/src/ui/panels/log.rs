@@ -1,25 +1,29 @@
 //! The log: plots with one time axis, the states under them, the time slider.
 
-use super::Panel;
 use super::incoming::incoming;
 use super::overlay::{overlay_legend, overlay_menu};
 use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
-use crate::ui::files;
-use crate::ui::format::number;
+use crate::text::format::number;
+use crate::ui::file_kind::LOAD;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::Purpose;
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::plots::choices::{LogView, PlotChoices};
+use crate::ui::plots::curves::{Drawn, Sources, can_compare, curves};
+use crate::ui::plots::row::{GUTTER, PlotCache, RowInput, RowKind, axis_height, row};
 use crate::ui::plots::shift::Grasp;
-use crate::ui::plots::{
-    Drawn, GUTTER, LogView, PlotCache, PlotChoices, RowInput, RowKind, Sources, XyCache, axis_height, can_compare,
-    curves, row,
-};
+use crate::ui::plots::xy::XyCache;
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
+use egui_tiles::ContainerKind;
 use std::sync::Arc;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -48,6 +52,54 @@ const LEFT_OVER_HEIGHT: f32 = 0.62;
 /// Total height of band, subtasks, legend and slider, points.
 const FOOT: f32 = 102.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 2), (Workspace::Diagnose, 3)],
+    neighbours: &[
+        (PanelId::SCENE, ContainerKind::Vertical, false),
+        (PanelId::VIDEO, ContainerKind::Vertical, false),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&LOG, &XY, &LEFT_OVER],
+    ..Registration::new(PanelId::LOG, "Plots", Icon::Curves, || Box::new(LogPanel::default()))
+};
+
+/// Plots, band and time slider.
+pub static LOG: Picture = Picture {
+    name: "log",
+    place: 0,
+    help: "Plots, band and time slider",
+    line: "The log: curves by quantity, the states as a band, one time cursor",
+    size: PANEL,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
+/// One signal against another.
+pub static XY: Picture = Picture {
+    name: "xy",
+    place: 10,
+    help: "One signal against another",
+    line: "XY: the force of a needle over its depth, coloured by state",
+    size: PANEL,
+    sample: Sample::Needle,
+    session: stage::xy,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
+/// What the models leave of the measured forces.
+pub static LEFT_OVER: Picture = Picture {
+    name: "left-over",
+    place: 20,
+    help: "What the models leave of the measured forces",
+    line: "What is left over: measured less simulated, and less the extended model",
+    size: PANEL,
+    sample: Sample::Crank,
+    session: stage::left_over,
+    framing: Framing::Panel(|| Box::new(LogPanel::default())),
+};
+
 /// The log panel.
 #[derive(Default)]
 pub struct LogPanel {
@@ -56,18 +108,14 @@ pub struct LogPanel {
 }
 
 impl Panel for LogPanel {
-    fn title(&self) -> &'static str {
-        words::LOG
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            if let Some((preview, progress)) = session.jobs.preview() {
+            if let Some((preview, progress)) = session.jobs.preview(LOAD) {
                 incoming(ui, preview, &progress);
                 return;
             }
-            let Some(prepared) = session.prepared().cloned() else {
+            let Some(prepared) = session.document.prepared().cloned() else {
                 nothing_loaded(ui, session);
                 return;
             };
@@ -79,7 +127,11 @@ impl Panel for LogPanel {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
                 LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
             };
-            plots.derived.settle(ui.ctx(), &mut session.jobs);
+            let job =
+                plots.derived.settle(ui.ctx(), &mut session.jobs, |session: &mut Session| &mut session.plots.derived);
+            if let Some(job) = job {
+                job.if_given_up(|session: &mut Session, _| session.plots.give_up());
+            }
             session.plots = plots;
             band(ui, session, area);
             transport(ui, session, area);
@@ -104,7 +156,7 @@ fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
     let text = words::NO_RECORDING_YET_MORE;
     empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
         if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
         }
         if ui.link(words::OR_RECORD_ONE).clicked() {
             session.workspace = Workspace::Train;
@@ -148,13 +200,13 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
 
 /// Sources of the shown recording's curves.
 fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
-    let analysis = session.analysis.as_ref();
+    let analysis = session.calibration.analysis.as_ref();
     Sources {
-        recordings: &session.recordings,
+        recordings: &session.document.recordings,
         prepared,
         simulated: session.shown_curves(),
         extended: session.extended_replay(),
-        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.current)?.as_ref()?))),
+        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
     }
 }
 
@@ -191,9 +243,9 @@ fn shifting(
     area: Rangef,
 ) -> Option<f64> {
     plots.pointed = if let Some(Grasp::Over(place) | Grasp::Takes(place, _)) = grasp { Some(place) } else { None };
-    let clockless = session.prepared().is_some_and(|p| p.clockless());
-    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.current, clockless)) {
-        session.playing = false;
+    let clockless = session.document.prepared().is_some_and(|p| p.clockless());
+    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.document.current, clockless)) {
+        session.document.playing = false;
         session.find_likeliest(ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
@@ -205,18 +257,18 @@ fn shifting(
     let clicked = plots.let_go();
     let x = ui.input(|i| i.pointer.latest_pos()).filter(|_| clicked)?.x;
     let share = f64::from((x - area.min) / area.span().max(1.0));
-    Some(session.view_s.0 + share * (session.view_s.1 - session.view_s.0))
+    Some(session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0))
 }
 
 impl LogPanel {
     /// Draws one signal against another. Returns the horizontal extent of the slider below.
     fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
         let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
-        let times = (session.view_s, session.cursor_s);
+        let times = (session.document.view_s, session.document.cursor_s);
         let (area, seek) = xy_view(ui, &mut self.xy, plots, &sources(session, prepared), times, height);
         if let Some(time) = seek {
-            session.playing = false;
-            session.seek(time);
+            session.document.playing = false;
+            session.document.seek(time);
         }
         area
     }
@@ -260,8 +312,8 @@ impl LogPanel {
                     has_simulated: can_compare(sources.simulated, group),
                     has_extended: can_compare(sources.extended, group),
                     segmentation: sources.analysis.map(|(_, segmentation)| segmentation),
-                    view_s: session.view_s,
-                    cursor_s: session.cursor_s,
+                    view_s: session.document.view_s,
+                    cursor_s: session.document.cursor_s,
                     time_axis: last,
                     height: each * place.share() + if last { axis_height() } else { 0.0 },
                 };
@@ -272,11 +324,11 @@ impl LogPanel {
             }
             seek = seek.or(shifting(ui, session, plots, grasp, area));
             if let Some(view) = view_s {
-                session.view_s = view;
+                session.document.view_s = view;
             }
             if let Some(time) = seek {
-                session.playing = false;
-                session.seek(time);
+                session.document.playing = false;
+                session.document.seek(time);
             }
         });
         area

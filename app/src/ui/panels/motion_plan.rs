@@ -1,9 +1,9 @@
 //! The motion that an experiment requires of a mechanism: a curve to follow on the real machine, and a file of it.
 
-use crate::experiment::MotionPlan;
-use crate::ui::format;
+use crate::experiment::motion_plan::MotionPlan;
+use crate::text::format;
 use crate::ui::icons::Icon;
-use crate::ui::plots::{decimals, marks};
+use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette};
 use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};

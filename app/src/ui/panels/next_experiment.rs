@@ -2,15 +2,15 @@
 //! simulated, performed by hand in Train, or loaded from a file.
 
 use super::motion_plan;
-use crate::diagnosis_words::{listed, one, small, title};
-use crate::experiment::{Outcome, Rehearsal};
-use crate::ui::diagnosing::is_mechanism;
-use crate::ui::experimenting::{ROUNDS, Stage};
+use crate::experiment::rehearse::{Outcome, Rehearsal};
+use crate::text::diagnosis_words::{listed, one, small, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::ui::diagnosis_state::is_mechanism;
+use crate::ui::experiments::{REHEARSE, ROUNDS, Stage};
 use crate::ui::files;
-use crate::ui::format;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
 use egui::{Align, Layout, RichText, TextEdit, Ui};
@@ -68,8 +68,8 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
 
 /// Coordinate of a directly driven mechanism; `None` for objects that the hand of Train can hold.
 fn driven(session: &Session, diagnosis: &Findings) -> Option<Coordinate> {
-    let task = session.choice.task;
-    let is_mechanism = session.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
+    let task = session.calibration.choice.task;
+    let is_mechanism = session.document.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
     is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
 }
 
@@ -78,7 +78,7 @@ fn driven(session: &Session, diagnosis: &Findings) -> Option<Coordinate> {
 fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven: bool) {
     let ctx = ui.ctx().clone();
     ui.horizontal_wrapped(|ui| {
-        let busy = session.jobs.is_running(JobKind::Rehearse);
+        let busy = session.jobs.is_running(REHEARSE);
         let hint = format!(
             "The scripted operator does it {ROUNDS} times on each object that is not excluded, and the question is asked again. The \
              objects are simulated: it shows what would come out, and is no measurement."
@@ -93,11 +93,11 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
             in_train(ui, session, next);
         }
     });
-    if session.jobs.is_running(JobKind::Rehearse) {
+    if session.jobs.is_running(REHEARSE) {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(16.0));
             if ui.link(words::CANCEL).clicked() {
-                session.give_up(JobKind::Rehearse);
+                session.give_up(ui.ctx(), REHEARSE);
             }
         });
     }
@@ -178,7 +178,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
 /// Diagnosed causes of every round, as lines.
 fn came_out(outcome: &Outcome) -> String {
     let names = |ids: &[String]| listed(&ids.iter().map(|id| title(id)).collect::<Vec<_>>());
-    let round = |(k, round): (usize, &crate::experiment::Round)| {
+    let round = |(k, round): (usize, &crate::experiment::rehearse::Round)| {
         let named = if round.named.is_empty() { "nothing".to_owned() } else { names(&round.named) };
         let open = if round.open.is_empty() { String::new() } else { format!("; or {}", names(&round.open)) };
         format!("{}: {named}{open}", k + 1)
@@ -204,7 +204,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-            files::ask(&ctx, &mut session.jobs, Purpose::AddExperiment);
+            files::ask(&ctx, &mut session.jobs, files::ADD_EXPERIMENT);
         }
         let path = session.experiments.path_field.trim().to_owned();
         if entered && !path.is_empty() {

@@ -1,7 +1,7 @@
 //! Recordings overlaid on the shown one: the menu that chooses them, and the legend with their shifts.
 
 use crate::ui::icons::{self, Icon};
-use crate::ui::jobs::JobKind;
+use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, recording as color, space};
 use crate::ui::widgets::{quiet_icon_button, swatch};
@@ -27,7 +27,7 @@ const LONGEST_NAME: usize = 22;
 
 /// Draws the button with the list of the loaded recordings, if there are several.
 pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
-    if session.recordings.len() < 2 {
+    if session.document.recordings.len() < 2 {
         return;
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -35,9 +35,9 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
         egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new(words::OVERLAY).size(11.5))).small();
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.set_min_width(220.0);
-        for recording in 0..session.recordings.len() {
-            let name = session.recordings[recording].recording.name.clone();
-            let here = recording == session.current;
+        for recording in 0..session.document.recordings.len() {
+            let name = session.document.recordings[recording].recording.name.clone();
+            let here = recording == session.document.current;
             let mut on = here || session.plots.overlaid.iter().any(|o| o.recording == recording);
             let words = if here { format!("{name} (shown)") } else { name };
             if ui.add_enabled(!here, egui::Checkbox::new(&mut on, words)).changed() {
@@ -51,16 +51,16 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
 /// Draws one entry for each overlaid recording.
 pub fn overlay_legend(ui: &mut Ui, session: &mut Session) {
     // A recording is not overlaid on itself.
-    let (current, count) = (session.current, session.recordings.len());
+    let (current, count) = (session.document.current, session.document.recordings.len());
     session.plots.overlaid.retain(|o| o.recording != current && o.recording < count);
     if session.plots.overlaid.is_empty() {
         return;
     }
-    let clockless = session.prepared().is_some_and(|p| p.clockless());
+    let clockless = session.document.prepared().is_some_and(|p| p.clockless());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().button_padding.y = 2.0;
-        ui.label(theme::caption(ui, format!("over {}:", short(&session.recordings[current].recording.name))));
+        ui.label(theme::caption(ui, format!("over {}:", short(&session.document.recordings[current].recording.name))));
         for place in 0..session.plots.overlaid.len() {
             let Some(entry) = session.plots.overlaid.get(place).copied() else { break };
             ui.push_id(("overlay", entry.recording), |ui| one(ui, session, place, entry.recording, clockless));
@@ -72,15 +72,15 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
     let dark = ui.visuals().dark_mode;
     ui.add_space(space::S);
     swatch(ui, color(dark, place));
-    let name = session.recordings[recording].recording.name.clone();
+    let name = session.document.recordings[recording].recording.name.clone();
     ui.label(RichText::new(short(&name)).size(11.5).color(palette(ui).text)).on_hover_text(&name);
-    let (first, last) = session.recordings[session.current].span();
+    let (first, last) = session.document.recordings[session.document.current].span();
     if let Some(entry) = session.plots.overlaid.get_mut(place) {
         let (speed, decimals, unit) = if clockless { (1.0, 0, " samples") } else { (1e-3 * (last - first), 3, " s") };
         let drag = DragValue::new(&mut entry.offset_s).speed(speed.min(0.02)).max_decimals(decimals).suffix(unit);
         ui.add(drag).on_hover_text(words::SHIFT_MORE);
     }
-    let running = session.jobs.is_running(JobKind::Align);
+    let running = session.jobs.is_running(ALIGN);
     let hint = words::ALIGN_MORE;
     if ui
         .add_enabled(!running, egui::Button::new((Icon::Align.atom(icons::SMALL, None), words::ALIGN)).small())
@@ -90,7 +90,8 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
         let ctx = ui.ctx().clone();
         session.align(&ctx, recording);
     }
-    let known = session.first_contact_s(recording).is_some() && session.first_contact_s(session.current).is_some();
+    let known =
+        session.first_contact_s(recording).is_some() && session.first_contact_s(session.document.current).is_some();
     let (hint, why) = (words::FIRST_CONTACT_MORE, words::FIRST_CONTACT_NOT);
     let button = egui::Button::new(words::FIRST_CONTACT).small();
     if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {

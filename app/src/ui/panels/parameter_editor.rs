@@ -1,7 +1,7 @@
 //! The editor of one parameter: a trial value is simulated at once, and prior knowledge is set here.
 
+use crate::text::format::{self, Quantity};
 use crate::ui::fit_choice::Stated;
-use crate::ui::format::{self, Quantity};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::teach;
@@ -50,8 +50,8 @@ enum Source {
 
 /// Draws the card of the selected parameter, if there is one.
 pub fn selected(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.analysis.clone() else { return };
-    let Some(name) = session.selected_parameter.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
+    let Some(name) = session.calibration.selected_parameter.clone() else { return };
     let Some(parameter) = analysis.fit.parameters.iter().find(|p| p.full_name() == name) else { return };
     let quantity = format::parameter(&parameter.name, parameter.value);
     let heading = format!("{} · {}", format::object(&parameter.object), quantity.label.to_lowercase());
@@ -67,7 +67,7 @@ pub fn selected(ui: &mut Ui, session: &mut Session) {
         state(ui, session, parameter, &quantity);
     });
     if close {
-        session.selected_parameter = None;
+        session.calibration.selected_parameter = None;
     }
 }
 
@@ -78,7 +78,7 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
         return;
     };
     ui.label(theme::strong(words::TRY_ANOTHER_VALUE));
-    let tried = session.what_if.values.get(&name).copied();
+    let tried = session.calibration.what_if.values.get(&name).copied();
     let reach = (SIGMAS * parameter.std_error.unwrap_or(0.0)).max(SHARE * fitted.abs()).max(1e-9);
     let mut shown = tried.unwrap_or(fitted) * quantity.factor;
     let range = (fitted - reach) * quantity.factor..=(fitted + reach) * quantity.factor;
@@ -100,12 +100,13 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
 
 /// Draws the force residual of the trial values, beside that of the fit.
 fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
-    if !session.what_if.is_on() {
+    if !session.calibration.what_if.is_on() {
         ui.label(theme::caption(ui, words::THE_SIMULATED_CURVES));
         return;
     }
     let p = palette(ui);
-    let (fitted, tried) = (residual_rms(&session.replays), residual_rms(&session.what_if.replays));
+    let (fitted, tried) =
+        (residual_rms(&session.calibration.replays), residual_rms(&session.calibration.what_if.replays));
     if let (Some(fitted), Some(tried)) = (fitted, tried) {
         let change = 100.0 * (tried / fitted.max(1e-12) - 1.0);
         let color = if change > 1.0 { p.caution } else { p.good };
@@ -120,10 +121,10 @@ fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
     } else {
         ui.label(theme::caption(ui, words::REPLAYING));
     }
-    let several = session.what_if.values.len() - usize::from(here);
+    let several = session.calibration.what_if.values.len() - usize::from(here);
     compact(ui, |ui| {
         if ui.link(words::BACK_TO_THE_FITTED).clicked() {
-            session.what_if.forget();
+            session.calibration.what_if.forget();
         }
         if several > 0 {
             ui.label(theme::caption(ui, format!("{several} more tried")));
@@ -133,7 +134,7 @@ fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
 
 fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
     let name = Stated::name_of(parameter);
-    let stated = &mut session.choice.stated;
+    let stated = &mut session.calibration.choice.stated;
     let before = if stated.known.contains_key(&name) {
         Source::Known
     } else if stated.prior.contains_key(&name) {
@@ -152,7 +153,8 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
         stated.known.remove(&name);
         stated.prior.remove(&name);
         // The slider's value is the one to keep.
-        let value = session.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
+        let value =
+            session.calibration.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
         let std = parameter.std_error.filter(|e| *e > 0.0).unwrap_or_else(|| (0.1 * value.abs()).max(1e-6));
         match source {
             Source::Known => drop(stated.known.insert(name.clone(), value)),

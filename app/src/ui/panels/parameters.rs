@@ -1,14 +1,15 @@
 //! The fitted parameters: value ± standard error in readable units. Unidentifiable ones are greyed, with the reason.
 
-use super::Panel;
+use crate::text::format;
 use crate::ui::fit_choice::Stated;
-use crate::ui::format;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
-use crate::ui::jobs::JobKind;
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
+use crate::ui::refits::{FIT, SIMULATE};
 use crate::ui::session::Session;
-use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, remark};
+use crate::ui::{stage, teach};
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
@@ -35,17 +36,25 @@ mod words {
 const LINE: f32 = 21.0;
 
 /// The parameter table.
+pub static PARAMETERS: Picture = Picture {
+    name: "parameters",
+    place: 50,
+    help: "The parameter table",
+    line: "Parameters: values with errors, and how each was found",
+    size: COLUMN,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ParametersPanel::default())),
+};
+
+/// The parameter table.
 #[derive(Default)]
 pub struct ParametersPanel;
 
 impl Panel for ParametersPanel {
-    fn title(&self) -> &'static str {
-        words::PARAMETERS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        let busy = session.jobs.is_running(JobKind::Fit);
-        let analysis = session.analysis.clone();
+        let busy = session.jobs.is_running(FIT);
+        let analysis = session.calibration.analysis.clone();
         let task = analysis.as_ref().map(|a| format::object(a.task.name()));
         card(
             ui,
@@ -70,7 +79,7 @@ impl Panel for ParametersPanel {
 
 /// Explains why there is no table yet.
 fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
-    let (title, text) = match (&session.fit_problem, busy) {
+    let (title, text) = match (&session.calibration.fit_problem, busy) {
         (_, true) => (words::FITTING, words::FITTING_MORE),
         (Some(problem), _) => (words::NO_FIT, problem.as_str()),
         _ => (words::NOTHING_MEASURED_YET, words::NOTHING_MEASURED_YET_MORE),
@@ -136,7 +145,7 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
     let quantity = format::parameter(&parameter.name, parameter.value);
     let stated = is_stated(session, parameter);
     body.row(LINE, |mut row| {
-        row.set_selected(session.selected_parameter.as_ref() == Some(&full));
+        row.set_selected(session.calibration.selected_parameter.as_ref() == Some(&full));
         let name = quantity.label.clone();
         let shown = parameter.value.filter(|_| parameter.identified);
         row.col(|ui| {
@@ -171,8 +180,8 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
         let response = row.response();
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Row, true, &full));
         if response.clicked() {
-            let again = session.selected_parameter.as_ref() == Some(&full);
-            session.selected_parameter = (!again).then(|| full.clone());
+            let again = session.calibration.selected_parameter.as_ref() == Some(&full);
+            session.calibration.selected_parameter = (!again).then(|| full.clone());
         }
         response.on_hover_ui(|ui| explain(ui, parameter));
     });
@@ -187,7 +196,7 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
 
 /// Icon and word beside parameters with a user-defined prior, bound or value.
 fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static str)> {
-    let (stated, name) = (&session.choice.stated, Stated::name_of(parameter));
+    let (stated, name) = (&session.calibration.choice.stated, Stated::name_of(parameter));
     if stated.known.contains_key(&name) {
         Some((Icon::Lock, "frozen"))
     } else if stated.prior.contains_key(&name) {
@@ -208,7 +217,7 @@ fn explain(ui: &mut Ui, parameter: &Parameter) {
         ui.add_space(space::XS);
     }
     ui.label(theme::strong(if parameter.identified { words::HOW_IT_WAS_FOUND } else { words::WHY_NO_VALUE }));
-    ui.label(crate::ui::session::sentence(&parameter.how));
+    ui.label(crate::text::sentence::sentence(&parameter.how));
     ui.label(theme::caption(ui, format!("{} · {} samples", parameter.name, parameter.samples)));
     ui.label(theme::caption(ui, words::CLICK_TO_TRY));
 }
@@ -228,7 +237,7 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
     }
     if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
         residual(ui, session, simulation);
-    } else if session.jobs.is_running(JobKind::Simulate) {
+    } else if session.jobs.is_running(SIMULATE) {
         ui.label(theme::caption(ui, words::REPLAYING_THE_MOTION));
     }
 }
@@ -238,7 +247,7 @@ const DEPARTS: f64 = 0.5;
 
 /// Draws the force residual of the simulation in the fitted world.
 fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
-    let Some(prepared) = session.prepared() else { return };
+    let Some(prepared) = session.document.prepared() else { return };
     // Taken together: a channel that carries little force may be entirely wrong.
     let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {

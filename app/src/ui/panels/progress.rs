@@ -1,24 +1,27 @@
 //! *Progress*: the trainee, the learning curve at a lesson, and the attempts.
 
-use super::Panel;
-use crate::history::Attempt;
-use crate::ui::files;
-use crate::ui::format;
+use crate::history::attempt::Attempt;
+use crate::text::format;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::Purpose;
 use crate::ui::learning::{Learned, Practised};
-use crate::ui::plots::{decimals, inks, marks};
+use crate::ui::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::plots::axes::{decimals, marks};
+use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{call, compact, empty_state, plain_card};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
     TextEdit, Ui, pos2, vec2,
 };
+use egui_tiles::ContainerKind;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const PROGRESS: &str = "Progress";
     pub const WHO_PRACTISES: &str = "Who practises";
     pub const CHOOSE_WHO_PRACTISES: &str =
         "Choose who practises, or add them: their attempts at lessons are kept and shown here.";
@@ -68,21 +71,37 @@ const ROW: f32 = 18.0;
 /// Maximum number of attempts in the table: the last ones.
 const MOST_ROWS: usize = 200;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 2)],
+    neighbours: &[(PanelId::TRAINER, ContainerKind::Tabs, false)],
+    pictures: &[&PROGRESS_PICTURE],
+    ..Registration::new(PanelId::PROGRESS, "Progress", Icon::Progress, || Box::new(ProgressPanel::default()))
+};
+
+/// How a trainee gets better, from a made-up history.
+pub static PROGRESS_PICTURE: Picture = Picture {
+    name: "progress",
+    place: 210,
+    help: "How a trainee gets better, from a made-up history",
+    line: "Progress: a trainee's learning curve at a lesson (a made-up history)",
+    size: [720, 760],
+    sample: Sample::World("stack"),
+    session: stage::progress,
+    framing: Framing::Panel(|| Box::new(ProgressPanel::default())),
+};
+
 /// Panel of the trainee's progress.
 #[derive(Default)]
 pub struct ProgressPanel;
 
 impl Panel for ProgressPanel {
-    fn title(&self) -> &'static str {
-        words::PROGRESS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, words::WHO_PRACTISES, |ui| who(ui, session));
-            if session.learning.attempts.is_empty() {
-                let text = match &session.learning.trainee {
+            if session.training.learning.attempts.is_empty() {
+                let text = match &session.training.learning.trainee {
                     Some(name) => {
                         format!("{name} has not attempted a lesson yet. What they do is kept and shown here.")
                     }
@@ -98,7 +117,7 @@ impl Panel for ProgressPanel {
 }
 
 fn who(ui: &mut Ui, session: &mut Session) {
-    let learning = &mut session.learning;
+    let learning = &mut session.training.learning;
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         let shown = learning.trainee.clone().unwrap_or_else(|| words::NOBODY_YET.to_owned());
@@ -125,7 +144,7 @@ fn who(ui: &mut Ui, session: &mut Session) {
     if let Some(name) = chosen {
         learning.choose(&name);
     }
-    if !session.learning.is_kept() {
+    if !session.training.learning.is_kept() {
         let text = words::NOTHING_IS_KEPT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     }
@@ -133,8 +152,9 @@ fn who(ui: &mut Ui, session: &mut Session) {
 
 fn learning(ui: &mut Ui, session: &mut Session) {
     lessons(ui, session);
-    let learned = session.learning.learned.clone();
-    let expert = session.learning.shown().and_then(|p| session.learning.experts.get(&p.lesson).copied());
+    let learned = session.training.learning.learned.clone();
+    let expert =
+        session.training.learning.shown().and_then(|p| session.training.learning.experts.get(&p.lesson).copied());
     if learned.tries.is_empty() {
         ui.label(theme::caption(ui, words::NONE_OF_THESE));
         return;
@@ -146,7 +166,7 @@ fn learning(ui: &mut Ui, session: &mut Session) {
 
 /// Draws the chooser of the lesson.
 fn lessons(ui: &mut Ui, session: &mut Session) {
-    let (practised, shown) = (session.learning.practised(), session.learning.shown());
+    let (practised, shown) = (session.training.learning.practised(), session.training.learning.shown());
     let mut chosen: Option<Practised> = None;
     ui.horizontal(|ui| {
         let words = shown.as_ref().map(Practised::words).unwrap_or_default();
@@ -162,7 +182,7 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
         call(&list.response, words::LESSON);
     });
     if chosen.is_some() {
-        session.learning.look_at(chosen);
+        session.training.learning.look_at(chosen);
     }
     let (p, model) = (palette(ui), inks(ui).model);
     ui.horizontal_wrapped(|ui| {
@@ -340,7 +360,7 @@ fn when(attempt: &Attempt) -> String {
 
 fn attempts(ui: &mut Ui, session: &mut Session) {
     compact(ui, |ui| {
-        let all = session.learning.learned.attempts.len();
+        let all = session.training.learning.learned.attempts.len();
         ui.label(theme::caption(
             ui,
             if all == 1 { words::ONE_ATTEMPT_ALONE.to_owned() } else { format!("{all} attempts.") },
@@ -348,14 +368,14 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let hint = words::SAVE_AS_A_TABLE_MORE;
             if ui.link(words::SAVE_AS_A_TABLE).on_hover_text(hint).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveHistory);
+                files::ask(ui.ctx(), &mut session.jobs, files::SAVE_HISTORY);
             }
         });
     });
     ui.add_space(space::XS);
     let p = palette(ui);
     ui.spacing_mut().interact_size.y = ROW;
-    let rows = &session.learning.learned.attempts;
+    let rows = &session.training.learning.learned.attempts;
     // In a narrow panel the table is wider than its card.
     ScrollArea::horizontal().id_salt("table").show(ui, |ui| table(ui, rows, p));
 }
@@ -378,7 +398,7 @@ fn table(ui: &mut Ui, rows: &[Attempt], p: &Palette) {
                 (true, false) => (words::NOT_MET, p.secondary),
             };
             ui.label(RichText::new(criterion).size(12.0).color(color));
-            let file = attempt.recording.as_ref().map(|path| (crate::ui::mapping::name_of(path), path));
+            let file = attempt.recording.as_ref().map(|path| (crate::text::file_name::name_of(path), path));
             match file {
                 Some((name, path)) => {
                     ui.add(egui::Label::new(RichText::new(name).size(12.0)).truncate())

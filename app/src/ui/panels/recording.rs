@@ -1,14 +1,16 @@
 //! The left column of the calibration: choice of the recording, its task, refit, save.
 
-use super::Panel;
-use crate::ui::files;
+use crate::text::format;
+use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
-use crate::ui::format;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{call, fact, icon_button, plain_card, primary_button};
+use crate::ui::workspace::Workspace;
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
@@ -67,6 +69,13 @@ mod words {
     pub const REFIT: &str = "Refit";
 }
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 0)],
+    at_the_left: true,
+    ..Registration::new(PanelId::RECORDING, "Recording and fit", Icon::Fit, || Box::new(RecordingPanel::default()))
+};
+
 /// The recording panel.
 #[derive(Default)]
 pub struct RecordingPanel {
@@ -76,15 +85,11 @@ pub struct RecordingPanel {
 }
 
 impl Panel for RecordingPanel {
-    fn title(&self) -> &'static str {
-        words::RECORDING
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, words::RECORDING, |ui| source(ui, session));
-            if session.prepared().is_some() {
+            if session.document.prepared().is_some() {
                 plain_card(ui, words::FIT, |ui| fit(ui, session));
                 plain_card(ui, words::SAVE, |ui| self.save(ui, session));
             }
@@ -98,31 +103,31 @@ fn source(ui: &mut Ui, session: &mut Session) {
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(size, layout, |ui| {
         if icon_button(ui, Icon::Open, true, words::OPEN).on_hover_text(words::OPEN_MORE).clicked() {
-            files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
+            files::ask(&ctx, &mut session.jobs, files::OPEN_LOG);
         }
-        let field = TextEdit::singleline(&mut session.path_field).hint_text(words::PATH);
+        let field = TextEdit::singleline(&mut session.document.path_field).hint_text(words::PATH);
         ui.add(field.desired_width(ui.available_width()))
     });
     let enter = response.inner.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     ui.horizontal_wrapped(|ui| {
-        let named = !session.path_field.trim().is_empty();
+        let named = !session.document.path_field.trim().is_empty();
         if enter && named {
-            let path = PathBuf::from(session.path_field.trim());
+            let path = PathBuf::from(session.document.path_field.trim());
             session.open_any(&ctx, &path);
         }
-        let named = named || session.path.is_some();
+        let named = named || session.document.path.is_some();
         let hint = words::MAP_MORE;
         if ui.add_enabled(named, egui::Button::new((Icon::Columns, words::MAP))).on_hover_text(hint).clicked() {
             session.map_columns(&ctx, None);
         }
     });
-    let Some(prepared) = session.prepared().cloned() else {
+    let Some(prepared) = session.document.prepared().cloned() else {
         ui.label(theme::caption(ui, words::DROP));
         return;
     };
     ui.add_space(space::XS);
     let recording = &prepared.recording;
-    if session.recordings.len() > 1 {
+    if session.document.recordings.len() > 1 {
         choose_trial(ui, session);
     } else {
         fact(ui, words::NAME, recording.name.clone()).on_hover_text(whole_path(session));
@@ -139,12 +144,12 @@ fn source(ui: &mut Ui, session: &mut Session) {
 }
 
 fn whole_path(session: &Session) -> String {
-    session.path.as_ref().map(|path| path.display().to_string()).unwrap_or_default()
+    session.document.path.as_ref().map(|path| path.display().to_string()).unwrap_or_default()
 }
 
 fn choose_trial(ui: &mut Ui, session: &mut Session) {
-    let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
-    let mut chosen = session.current;
+    let names: Vec<String> = session.document.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let mut chosen = session.document.current;
     let list = ComboBox::from_id_salt("trial")
         .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
         .selected_text(&names[chosen])
@@ -155,8 +160,8 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
             }
         });
     call(&list.response, words::WHICH);
-    if chosen != session.current {
-        session.select(chosen);
+    if chosen != session.document.current {
+        session.document.select(chosen);
     }
 }
 
@@ -166,10 +171,10 @@ fn fit(ui: &mut Ui, session: &mut Session) {
     thresholds(ui, session);
     part(ui, session);
     by_hand(ui, session);
-    let running = session.jobs.is_running(JobKind::Fit);
+    let running = session.jobs.is_running(FIT);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        let text = if session.analysis.is_some() { words::REFIT } else { words::FIT };
+        let text = if session.calibration.analysis.is_some() { words::REFIT } else { words::FIT };
         if primary_button(ui, !running, (Icon::Fit, text)).clicked() {
             let ctx = ui.ctx().clone();
             session.refit(&ctx);
@@ -177,47 +182,50 @@ fn fit(ui: &mut Ui, session: &mut Session) {
         if running {
             ui.add(egui::Spinner::new().size(18.0));
             ui.label(theme::caption(ui, words::FITTING));
-        } else if session.stale {
+        } else if session.calibration.stale {
             ui.label(egui::RichText::new(words::CHANGED).size(11.5).color(palette(ui).caution));
-        } else if let Some(took) = session.refits.took() {
+        } else if let Some(took) = session.calibration.refits.took() {
             let text = format!("took {}", format::short_time(took.as_secs_f64()));
             ui.label(theme::caption(ui, text));
         }
     });
-    let hint =
-        if session.analysis.is_some() && !session.refits.quick() { words::FOLLOW_SLOW } else { words::FOLLOW_MORE };
-    ui.checkbox(&mut session.refits.live, words::FOLLOW).on_hover_text(hint);
+    let hint = if session.calibration.analysis.is_some() && !session.calibration.refits.quick() {
+        words::FOLLOW_SLOW
+    } else {
+        words::FOLLOW_MORE
+    };
+    ui.checkbox(&mut session.calibration.refits.live, words::FOLLOW).on_hover_text(hint);
 }
 
 /// Draws the chooser of the fitted time range.
 fn part(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.prepared().filter(|p| !p.clockless()) else { return };
-    let (whole, shown) = (prepared.span(), session.view_s);
+    let Some(prepared) = session.document.prepared().filter(|p| !p.clockless()) else { return };
+    let (whole, shown) = (prepared.span(), session.document.view_s);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::caption(ui, words::FITTED));
-        let words = match session.choice.only_s {
+        let words = match session.calibration.choice.only_s {
             None => words::ALL.to_owned(),
             Some((from, to)) => format!("{} to {} s", format::number(from, 2), format::number(to, 2)),
         };
         ui.label(egui::RichText::new(words).size(12.0));
     });
-    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && session.choice.only_s != Some(shown);
-    if !zoomed && session.choice.only_s.is_none() {
+    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && session.calibration.choice.only_s != Some(shown);
+    if !zoomed && session.calibration.choice.only_s.is_none() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
         if zoomed && ui.link(words::ONLY_SHOWN).on_hover_text(words::ONLY_SHOWN_MORE).clicked() {
-            session.choice.only_s = Some(shown);
+            session.calibration.choice.only_s = Some(shown);
         }
-        if session.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
-            session.choice.only_s = None;
+        if session.calibration.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
+            session.calibration.choice.only_s = None;
         }
     });
 }
 
 /// Draws the manually set states and parameter values, with a button to clear them.
 fn by_hand(ui: &mut Ui, session: &mut Session) {
-    if session.choice.segments.contains_key(&session.current) {
+    if session.calibration.choice.segments.contains_key(&session.document.current) {
         ui.horizontal_wrapped(|ui| {
             ui.label(theme::caption(ui, words::BY_HAND));
             if ui.link(words::FIND_AGAIN).clicked() {
@@ -226,13 +234,13 @@ fn by_hand(ui: &mut Ui, session: &mut Session) {
             }
         });
     }
-    let stated = session.choice.stated.len();
+    let stated = session.calibration.choice.stated.len();
     if stated > 0 {
         ui.horizontal_wrapped(|ui| {
             let s = if stated == 1 { "" } else { "s" };
             ui.label(theme::caption(ui, format!("{stated} statement{s} about parameters")));
             if ui.link(words::FORGET).clicked() {
-                session.choice.stated = Stated::default();
+                session.calibration.choice.stated = Stated::default();
             }
         });
     }
@@ -245,7 +253,7 @@ fn method(ui: &mut Ui, session: &mut Session) {
             Method::Threshold => words::RULES,
             Method::Hmm => words::HMM,
         };
-        let choice = &mut session.choice.method;
+        let choice = &mut session.calibration.choice.method;
         let list = ComboBox::from_id_salt("method")
             .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
             .selected_text(name(*choice))
@@ -262,11 +270,11 @@ fn method(ui: &mut Ui, session: &mut Session) {
 fn thresholds(ui: &mut Ui, session: &mut Session) {
     let used = session.segmentation().map(|s| s.thresholds);
     let default = used.unwrap_or(Thresholds { velocity_m_s: 0.05, force_n: 0.05 });
-    let mut given = session.choice.thresholds.is_some();
+    let mut given = session.calibration.choice.thresholds.is_some();
     let response = ui.checkbox(&mut given, words::THRESHOLDS);
     response.on_hover_text(words::THRESHOLDS_MORE);
-    session.choice.thresholds = given.then(|| session.choice.thresholds.unwrap_or(default));
-    if let Some(thresholds) = &mut session.choice.thresholds {
+    session.calibration.choice.thresholds = given.then(|| session.calibration.choice.thresholds.unwrap_or(default));
+    if let Some(thresholds) = &mut session.calibration.choice.thresholds {
         ui.horizontal(|ui| {
             ui.label(theme::caption(ui, words::FORCE));
             ui.add(
@@ -297,35 +305,43 @@ impl RecordingPanel {
             "report.html".clone_into(&mut self.report);
         }
         ui.label(theme::caption(ui, words::SAVE_LOG));
-        if save_line(ui, session, &mut self.log, Purpose::SaveLog, true) {
+        if save_line(ui, session, &mut self.log, (files::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
             files::save_log(ui.ctx(), session, &self.log);
         }
         ui.label(theme::caption(ui, words::SAVE_WORLD));
-        let fitted = session.analysis.is_some();
-        if save_line(ui, session, &mut self.world, Purpose::SaveWorld, fitted) {
+        let fitted = session.calibration.analysis.is_some();
+        if save_line(ui, session, &mut self.world, (files::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted)
+        {
             files::save_world(ui.ctx(), session, &self.world);
         }
         ui.label(theme::caption(ui, words::SAVE_REPORT));
-        let is_file = !session.sources.is_empty();
-        if save_line(ui, session, &mut self.report, Purpose::SaveReport, is_file) {
+        let is_file = !session.document.sources.is_empty();
+        if save_line(
+            ui,
+            session,
+            &mut self.report,
+            (files::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
+            is_file,
+        ) {
             files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
         }
     }
 }
 
 /// Draws a path field with `…` and `Save`; true if it should be saved there.
-fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
-    let (place, does) = match purpose {
-        Purpose::SaveReport => (words::WHERE_REPORT, words::WRITE_REPORT),
-        Purpose::SaveWorld => (words::WHERE_WORLD, words::WRITE_WORLD),
-        _ => (words::WHERE_LOG, words::WRITE_LOG),
-    };
+fn save_line(
+    ui: &mut Ui,
+    session: &mut Session,
+    field: &mut String,
+    (dialog, place, does): (Dialog, &str, &str),
+    enabled: bool,
+) -> bool {
     ui.add_enabled_ui(enabled, |ui| {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let save = icon_button(ui, Icon::Save, enabled, does).on_hover_text(does);
             if icon_button(ui, Icon::More, enabled, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, purpose);
+                files::ask(ui.ctx(), &mut session.jobs, dialog);
             }
             let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
             edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, enabled, place));

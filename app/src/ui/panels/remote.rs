@@ -4,7 +4,9 @@ use super::devices::{Choice, row};
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, space};
-use crate::ui::trainer::{HandDevice, Operator, Remote};
+use crate::ui::trainer::hand::HandDevice;
+use crate::ui::trainer::live::Operator;
+use crate::ui::trainer::remote::Remote;
 use crate::ui::widgets::{plain_card, remark};
 use egui::{TextEdit, Ui, vec2};
 use haptics::device::udp::{Key, PORT};
@@ -51,10 +53,10 @@ impl RemoteCard {
     pub(super) fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<Choice> {
         let mut chosen = None;
         plain_card(ui, words::OVER_THE_NETWORK, |ui| {
-            fields(ui, &mut session.trainer.settings.remote);
-            ui.checkbox(&mut session.trainer.settings.remote.waves, words::WAVE_VARIABLES)
+            fields(ui, &mut session.training.trainer.settings.remote);
+            ui.checkbox(&mut session.training.trainer.settings.remote.waves, words::WAVE_VARIABLES)
                 .on_hover_text(words::WAVE_VARIABLES_MORE);
-            let remote = session.trainer.settings.remote.clone();
+            let remote = session.training.trainer.settings.remote.clone();
             self.doubt(&remote.key);
             for doubt in &self.doubts {
                 remark(ui, Icon::Doubt, doubt);
@@ -71,7 +73,7 @@ impl RemoteCard {
             };
             let choice = Choice::Hand(HandDevice::Udp);
             chosen = row(ui, session, choice.clone(), ready);
-            let trainer = &session.trainer;
+            let trainer = &session.training.trainer;
             let runs = trainer.operator == Operator::You && trainer.hand == HandDevice::Udp;
             if runs && self.in_use.as_ref().is_some_and(|used| *used != remote) {
                 let again = egui::Button::new(words::OPEN_AGAIN_WITH_THESE);

@@ -1,19 +1,24 @@
 //! All results: parameters, constraints, warnings, and the actions on them.
 
-use super::Panel;
-use super::parameters::ParametersPanel;
-use crate::ui::format;
+use super::parameters::{self, ParametersPanel};
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
-use crate::ui::plots::places;
-use crate::ui::session::{Session, Workspace, sentence};
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::plots::doubts::places;
+use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, plain_card, primary_button, remark};
+use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Ui};
+use egui_tiles::ContainerKind;
 use estimator::estimate::{Constraint, ConstraintKind};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const RESULTS: &str = "Results";
     pub const CONSTRAINTS: &str = "Constraints";
     pub const TURNS_ABOUT_A_CENTRE: &str = "Turns about a centre";
     pub const SLIDES_ALONG_A_LINE: &str = "Slides along a line";
@@ -40,6 +45,26 @@ mod words {
     pub const PRACTISE_ON_THIS: &str = "Practise on this";
 }
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 3), (Workspace::Diagnose, 5)],
+    neighbours: &[(PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
+    pictures: &[&parameters::PARAMETERS, &RESULTS],
+    ..Registration::new(PanelId::RESULTS, "Results", Icon::Panel, || Box::new(ResultsPanel::default()))
+};
+
+/// Parameters, constraints and warnings.
+pub static RESULTS: Picture = Picture {
+    name: "results",
+    place: 60,
+    help: "Parameters, constraints and warnings",
+    line: "Results: constraints, warnings, what is still missing",
+    size: COLUMN,
+    sample: Sample::Crank,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ResultsPanel::default())),
+};
+
 /// The right column of the calibration.
 #[derive(Default)]
 pub struct ResultsPanel {
@@ -47,10 +72,6 @@ pub struct ResultsPanel {
 }
 
 impl Panel for ResultsPanel {
-    fn title(&self) -> &'static str {
-        words::RESULTS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -66,7 +87,9 @@ impl Panel for ResultsPanel {
 }
 
 fn constraints(ui: &mut Ui, session: &Session) {
-    let Some(analysis) = session.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else { return };
+    let Some(analysis) = session.calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
+        return;
+    };
     plain_card(ui, words::CONSTRAINTS, |ui| {
         for (index, constraint) in analysis.fit.constraints.iter().enumerate() {
             if index > 0 {
@@ -143,17 +166,17 @@ fn facts(constraint: &Constraint) -> Vec<String> {
         Some(false) => facts.push(words::GIVES_WAY_MEASURABLY.to_owned()),
         None => {}
     }
-    facts.extend(crate::constraint_words(constraint).iter().map(|w| sentence(w)));
+    facts.extend(crate::text::constraint_words::constraint_words(constraint).iter().map(|w| sentence(w)));
     facts
 }
 
 fn warnings(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.prepared().cloned() else { return };
+    let Some(prepared) = session.document.prepared().cloned() else { return };
     let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for warning in &prepared.recording.warnings {
         texts.push((sentence(&warning.text), places(&prepared, warning)));
     }
-    let analysis = session.analysis.clone();
+    let analysis = session.calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
     let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
@@ -178,12 +201,12 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             ui.scope(|ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 remark(ui, Icon::Doubt, text);
-                jump = jump.or(go_there(ui, &places, session.cursor_s, prepared.clockless()));
+                jump = jump.or(go_there(ui, &places, session.document.cursor_s, prepared.clockless()));
             });
         }
     });
     if let Some((from, to)) = jump {
-        session.look_at(from, to);
+        session.document.look_at(from, to);
     }
 }
 
@@ -205,7 +228,7 @@ fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) 
 }
 
 fn diagnose(ui: &mut Ui, session: &mut Session) {
-    if session.analysis.is_none() {
+    if session.calibration.analysis.is_none() {
         return;
     }
     plain_card(ui, words::WHAT_IT_GETS_WRONG, |ui| {
@@ -222,7 +245,7 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
 }
 
 fn train_with_it(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
     if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
         return;
     }
@@ -231,7 +254,7 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
             if primary_button(ui, true, (Icon::Touch, words::TRAIN_IN_THIS_WORLD)).clicked() {
-                session.train_calibrated = true;
+                session.training.train_calibrated = true;
                 session.workspace = Workspace::Train;
             }
             let hint = words::PRACTISE_ON_THIS_MORE;

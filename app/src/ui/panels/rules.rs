@@ -1,11 +1,12 @@
 //! The editor of a task's rules: its states, their conditions, the parameters that they identify, and the subtasks that
 //! they form. A change is applied at once to the recording below.
 
-use super::Panel;
 use super::rules_table::{states, subtasks};
-use crate::ui::format;
+use crate::text::format;
+use crate::ui::editing_rules;
 use crate::ui::icons::Icon;
-use crate::ui::rules::{self, Rules};
+use crate::ui::panel::Panel;
+use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, space};
 use crate::ui::widgets::{card_with_head, primary_button, remark};
@@ -16,7 +17,6 @@ use haptics::recording::Task;
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
     pub const ADD_A_STATE: &str = "Add a state";
-    pub const RULES: &str = "Rules";
     pub const CLOSE: &str = "Close";
     pub const CLOSE_MORE: &str = "The rules stay as they are for this recording";
     pub const RESET: &str = "Reset";
@@ -53,13 +53,9 @@ enum Asked {
 }
 
 impl Panel for RulesPanel {
-    fn title(&self) -> &'static str {
-        words::RULES
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        rules::follow(ui.ctx(), session);
-        let Some(mut open) = session.rules.take() else { return };
+        editing_rules::follow(ui.ctx(), session);
+        let Some(mut open) = session.calibration.rules.take() else { return };
         let (seen, before) = (open.draft.clone(), open.before.clone());
         let mut asked = Asked::Nothing;
         let heading = format!("Rules of the task “{}”", open.draft.title);
@@ -84,11 +80,11 @@ impl Panel for RulesPanel {
             open.add_state();
         }
         open.untried |= open.draft != seen;
-        session.rules = Some(open);
+        session.calibration.rules = Some(open);
         match asked {
-            Asked::Close => session.rules = None,
+            Asked::Close => session.calibration.rules = None,
             Asked::Reset => reset(session),
-            Asked::Nothing if save => rules::save(ui.ctx(), session),
+            Asked::Nothing if save => editing_rules::save(ui.ctx(), session),
             Asked::Nothing | Asked::Add => {}
         }
     }
@@ -117,7 +113,7 @@ fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
 }
 
 fn reset(session: &mut Session) {
-    let Some(open) = session.rules.as_mut() else { return };
+    let Some(open) = session.calibration.rules.as_mut() else { return };
     open.draft = open.before.clone();
     (open.fault, open.untried) = (None, true);
 }

@@ -1,15 +1,15 @@
 //! The two tables of the rules: states with their signs, and subtasks with their states.
 
 use super::rules::parameter;
+use crate::text::states::state_name;
 use crate::ui::icons::Icon;
 use crate::ui::rules::Rules;
-use crate::ui::theme::{self, palette, space, state_color, state_name};
+use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{call, quiet_icon_button, swatch};
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
-use estimator::segment::SystemState;
 use estimator::segment::definition::{Step, Subtasks, signals};
-use estimator::segment::shows;
+use estimator::segment::{SystemState, shows};
 use haptics::recording::Task;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

@@ -1,22 +1,31 @@
 //! The 3D view of the recording: the hand follows the cursor; path, forces and constraints are overlaid.
 
-use super::Panel;
+use super::rules::RulesPanel;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
+use crate::ui::panel::{Framing, Panel, Picture, Registration, SCENE};
+use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
-use crate::ui::scene::{
-    Legend, Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, options_for, scene_view, scene_world,
-};
+use crate::ui::scene::layers::SceneLayers;
+use crate::ui::scene::legend::Legend;
+use crate::ui::scene::likeness::Likeness;
+use crate::ui::scene::mechanism::Mechanism;
+use crate::ui::scene::overlay::{camera_for, options_for, scene_world};
+use crate::ui::scene::rig::Rig;
+use crate::ui::scene::view::{Wheel, scene_view};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{palette, space};
 use crate::ui::widgets::{empty_state, sheet};
+use crate::ui::workspace::Workspace;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui_tiles::ContainerKind;
 use render::Camera;
 use std::sync::Arc;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const SCENE: &str = "Scene";
     pub const THE_RECORDED_HAND: &str =
         "The recorded hand moves here, with its path, forces and the constraints that were found.";
     pub const THE_RECORDING_IN_SPACE: &str = "The recording in space";
@@ -31,6 +40,30 @@ const WIDE: f32 = 420.0;
 const HIGH: f32 = 180.0;
 /// Width of the button beside the switches, points.
 const RESET: f32 = 120.0;
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 1), (Workspace::Diagnose, 2)],
+    neighbours: &[
+        (PanelId::VIDEO, ContainerKind::Horizontal, true),
+        (PanelId::LOG, ContainerKind::Vertical, true),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&SCENE_PICTURE],
+    ..Registration::new(PanelId::SCENE, "In space", Icon::Scene, || Box::new(ScenePanel::default()))
+};
+
+/// The recording in space.
+pub static SCENE_PICTURE: Picture = Picture {
+    name: "scene",
+    place: 70,
+    help: "The recording in space",
+    line: "The recording in space, in the world that was measured",
+    size: SCENE,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(ScenePanel::default())),
+};
 
 /// Panel of the 3D view.
 pub struct ScenePanel {
@@ -48,14 +81,15 @@ impl Default for ScenePanel {
 }
 
 impl Panel for ScenePanel {
-    fn title(&self) -> &'static str {
-        words::SCENE
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if session.calibration.rules.is_some() {
+            // The rules replace the picture, so that the states below are seen to follow.
+            RulesPanel.ui(ui, session);
+            return;
+        }
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            let Some(prepared) = session.prepared().cloned() else {
+            let Some(prepared) = session.document.prepared().cloned() else {
                 let text = words::THE_RECORDED_HAND;
                 empty_state(ui, (Icon::Scene, words::THE_RECORDING_IN_SPACE), text, |_| {});
                 return;
@@ -85,7 +119,7 @@ impl Panel for ScenePanel {
 impl ScenePanel {
     /// Draws a recording without a position in space.
     fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
-        let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
+        let Some(mechanism) = Mechanism::of(prepared, session.document.cursor_s) else {
             let text = words::THIS_RECORDING_HAS;
             empty_state(ui, (Icon::Scene, words::NOTHING_TO_SHOW), text, |_| {});
             return;
@@ -108,7 +142,7 @@ impl ScenePanel {
 
     /// Compares the replay with the recording, once per replay.
     fn compare(&mut self, session: &Session, prepared: &Prepared) {
-        let found = session.replay().zip(session.analysis.as_ref()).filter(|_| session.layers.replay);
+        let found = session.replay().zip(session.calibration.analysis.as_ref()).filter(|_| session.layers.replay);
         let Some((replay, analysis)) = found else {
             self.likeness = None;
             return;

@@ -3,7 +3,7 @@
 use crate::operator;
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::trainer::Script;
+use crate::ui::trainer::script::Script;
 use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
@@ -24,8 +24,8 @@ mod words {
 
 /// Content of the operator's card while the script moves the fingers.
 pub fn script(ui: &mut Ui, session: &mut Session) {
-    let before = session.trainer.script.clone();
-    let possible = session.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
+    let before = session.training.trainer.script.clone();
+    let possible = session.training.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
     let mut wanted = before.clone();
     labelled(ui, words::SKILL, |ui| level(ui, &mut wanted));
     let none_here = possible.is_empty();
@@ -36,9 +36,9 @@ pub fn script(ui: &mut Ui, session: &mut Session) {
             mistake(ui, &mut wanted, &possible);
         }
     });
-    let over = session.trainer.performance_over();
+    let over = session.training.trainer.performance_over();
     let mut again = wanted != before;
-    session.trainer.script = wanted;
+    session.training.trainer.script = wanted;
     compact(ui, |ui| {
         let text = if over { words::DONE } else { words::WORKS_LIKE_A_PERSON };
         ui.label(theme::caption(ui, text));
@@ -46,8 +46,8 @@ pub fn script(ui: &mut Ui, session: &mut Session) {
             again |= ui.link(words::WATCH_AGAIN).on_hover_text(words::WATCH_AGAIN_MORE).clicked();
         });
     });
-    if again && let Err(problem) = session.trainer.restart() {
-        session.fail(problem);
+    if again && let Err(problem) = session.training.trainer.restart() {
+        session.messages.fail(problem);
     }
 }
 

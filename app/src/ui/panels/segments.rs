@@ -1,21 +1,28 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
+use super::boundaries;
 use super::rules::parameter;
-use super::{Panel, boundaries};
-use crate::ui::format;
+use crate::text::format;
+use crate::text::states::{state_of_task, state_short};
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::refits::FIT;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space, state_color, state_name};
+use crate::ui::stage;
+use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
+use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
+use egui_tiles::ContainerKind;
 use estimator::segment::agreement::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const SEGMENTS: &str = "Segments";
     pub const STATES_AND_SUBTASKS: &str = "States and subtasks";
     pub const NUMBERS_OF_STATES: &str = "1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none";
     pub const NO_STATES_YET: &str = "No states yet";
@@ -26,7 +33,6 @@ mod words {
     pub const NO_STATES_WERE: &str = "No states were told in this recording.";
     pub const NO_STATES_THE_FIT: &str = "No states: the fit did not succeed.";
     pub const SUBTASKS: &str = "Subtasks";
-    pub const MOVING: &str = "Moving";
     pub const MEAN_PROBABILITY: &str = "mean probability";
     pub const SAMPLES_SHOW_IT: &str = "of its samples show this state by themselves";
     pub const AGAINST_THE_LABELS: &str = "Against the labels of this recording";
@@ -47,15 +53,31 @@ const LINE: f32 = 21.0;
 /// Height of the subtasks' line, points.
 const SUBTASKS: f32 = 18.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 4), (Workspace::Diagnose, 4)],
+    neighbours: &[(PanelId::RESULTS, ContainerKind::Tabs, false), (PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
+    pictures: &[&SEGMENTS],
+    ..Registration::new(PanelId::SEGMENTS, "States", Icon::States, || Box::new(SegmentsPanel::default()))
+};
+
+/// States and subtasks.
+pub static SEGMENTS: Picture = Picture {
+    name: "segments",
+    place: 30,
+    help: "States and subtasks",
+    line: "Segments: what was done when, found in the recording",
+    size: PANEL,
+    sample: Sample::Stack,
+    session: stage::fitted,
+    framing: Framing::Panel(|| Box::new(SegmentsPanel::default())),
+};
+
 /// Panel of the segmentation alone.
 #[derive(Default)]
 pub struct SegmentsPanel;
 
 impl Panel for SegmentsPanel {
-    fn title(&self) -> &'static str {
-        words::SEGMENTS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
         card(
@@ -88,9 +110,9 @@ fn spaced(sequence: &str) -> String {
 
 /// Draws the band between the given edges, with its names to the left, and the legend below.
 pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
-    let busy = session.jobs.is_running(crate::ui::jobs::JobKind::Fit);
-    let analysis = session.analysis.clone();
-    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref());
+    let busy = session.jobs.is_running(FIT);
+    let analysis = session.calibration.analysis.clone();
+    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());
     let p = palette(ui);
     let label = |y: f32, text: &str| {
@@ -106,7 +128,7 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     label(band.center().y, words::STATES);
     ui.painter().rect_filled(band, 4, p.sunken);
     let Some(segmentation) = segmentation else {
-        let clockless = session.prepared().is_some_and(|p| p.clockless());
+        let clockless = session.document.prepared().is_some_and(|p| p.clockless());
         let text = match (busy, clockless, analysis.is_some()) {
             (true, ..) => words::FITTING,
             (_, true, _) => words::NO_STATES_THEY,
@@ -123,7 +145,7 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
 }
 
 fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
-    let (from, to) = session.view_s;
+    let (from, to) = session.document.view_s;
     let share = ((time - from) / (to - from).max(1e-12)).clamp(-1.0, 2.0);
     (area.min + share as f32 * area.span()).clamp(area.min, area.max)
 }
@@ -143,12 +165,13 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let color = state_color(dark, interval.state);
         ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
         let ink = theme::ink_on(color);
-        if rect.width() > LEAST_WORD && !caption(ui, rect, word(segmentation, interval.state), ink) {
-            caption(ui, rect, theme::state_short(interval.state), ink);
+        if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, interval.state), ink) {
+            caption(ui, rect, state_short(interval.state), ink);
         }
         let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
-        response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word(segmentation, interval.state)));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, interval.state))
+        });
         // Menus and tooltips of hundreds of states would take most of the frame time.
         if !response.hovered() && !response.clicked() && !some_menu_is_open {
             continue;
@@ -159,7 +182,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         if response.clicked() {
             seek = ui.input(|i| i.pointer.interact_pos()).map(|at| {
                 let share = f64::from((at.x - band.left()) / band.width());
-                session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
+                session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0)
             });
         }
         if can_be_set {
@@ -170,28 +193,23 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let by_model = segmentation.posterior.is_some();
         let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
         response.on_hover_ui(|ui| {
-            tooltip(ui, interval, word(segmentation, interval.state), shows, by_model);
+            tooltip(ui, interval, state_of_task(segmentation, interval.state), shows, by_model);
             if fits_without_states {
                 ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
             }
         });
     }
     if can_be_set {
-        change = change.or(boundaries::handles(ui, session.view_s, segmentation, band));
+        change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
     }
     if let Some(change) = change {
         session.set_states(&change);
     }
     if let Some(time) = seek {
-        session.seek(time);
+        session.document.seek(time);
     }
-    let x = x_of(session, band.x_range(), session.cursor_s);
+    let x = x_of(session, band.x_range(), session.document.cursor_s);
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
-}
-
-/// Name of a state in a recording of this task. It is neutral where turning and sliding cannot be distinguished.
-pub fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
-    if state == SystemState::Turning && segmentation.task != "crank" { words::MOVING } else { state_name(state) }
 }
 
 /// Draws text in a box if it fits.
@@ -270,7 +288,7 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
         for state in present {
             let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();
             swatch(ui, state_color(dark, state));
-            ui.label(theme::caption(ui, word(segmentation, state)))
+            ui.label(theme::caption(ui, state_of_task(segmentation, state)))
                 .on_hover_text(format!("{} s in all", format::number(total, 1)));
             ui.add_space(space::XS);
         }
@@ -304,8 +322,9 @@ fn agreement(ui: &mut Ui, score: &Score) {
 
 /// Draws all intervals as a list: for reading, and for the screenshot of this panel.
 fn intervals(ui: &mut Ui, session: &mut Session) {
-    let analysis = session.analysis.clone();
-    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref()) else {
+    let analysis = session.calibration.analysis.clone();
+    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref())
+    else {
         return;
     };
     let dark = ui.visuals().dark_mode;
@@ -338,12 +357,12 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
                     }
                 });
                 row.col(|ui| drop(ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)))));
-                row.col(|ui| elided(ui, RichText::new(word(segmentation, interval.state))));
+                row.col(|ui| elided(ui, RichText::new(state_of_task(segmentation, interval.state))));
                 let subtask = interval.subtask.as_deref().map(format::object).unwrap_or_default();
                 row.col(|ui| elided(ui, RichText::new(subtask).color(p.secondary)));
             });
         });
     if let Some(time) = seek {
-        session.seek(time);
+        session.document.seek(time);
     }
 }

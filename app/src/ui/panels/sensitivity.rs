@@ -1,18 +1,22 @@
 //! Sensitivity of the result to the parameters, and their correlations: bars, and a matrix.
 
-use super::Panel;
-use crate::ui::format;
+use crate::text::format;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::JobKind;
+use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::sensitivity::SENSITIVITY;
 use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
+use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+use egui_tiles::ContainerKind;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const SENSITIVITY: &str = "Sensitivity";
     pub const LOOKING_MORE: &str = "Every parameter is changed a little, and the motion replayed.";
     pub const NOTHING_FITTED_YET_MORE: &str =
         "Once there is a fit, this shows how much the force depends on each of its parameters.";
@@ -33,20 +37,39 @@ const CELL: (f32, f32) = (34.0, 16.0);
 /// Absolute correlation above which two parameters are hardly distinguishable.
 const ALIKE: f64 = 0.9;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 5)],
+    neighbours: &[(PanelId::RESULTS, ContainerKind::Tabs, false), (PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
+    pictures: &[&SENSITIVITY_PICTURE],
+    ..Registration::new(PanelId("sensitivity"), "Sensitivity", Icon::Sensitivity, || {
+        Box::new(SensitivityPanel::default())
+    })
+};
+
+/// What the force depends on, and which parameters go together.
+pub static SENSITIVITY_PICTURE: Picture = Picture {
+    name: "sensitivity",
+    place: 230,
+    help: "What the force depends on, and which parameters go together",
+    line: "Sensitivity: what the force depends on, and what goes together",
+    size: COLUMN,
+    sample: Sample::Crank,
+    session: stage::sensitivity,
+    framing: Framing::Panel(|| Box::new(SensitivityPanel::default())),
+};
+
 /// The sensitivity panel.
 #[derive(Default)]
 pub struct SensitivityPanel;
 
 impl Panel for SensitivityPanel {
-    fn title(&self) -> &'static str {
-        words::SENSITIVITY
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
         session.want_sensitivity(&ctx);
-        let Some(found) = session.sensitivity.clone().filter(|_| session.analysis.is_some()) else {
-            let busy = session.jobs.is_running(JobKind::Sensitivity);
+        let Some(found) = session.calibration.sensitivity.clone().filter(|_| session.calibration.analysis.is_some())
+        else {
+            let busy = session.jobs.is_running(SENSITIVITY);
             let text = if busy { words::LOOKING_MORE } else { words::NOTHING_FITTED_YET_MORE };
             empty_state(
                 ui,
@@ -88,7 +111,7 @@ fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
         });
         let hint = format!("{}{uncertain}\nClick to try another value.", words(&effect.name));
         if response.on_hover_text(hint).clicked() {
-            session.selected_parameter = Some(effect.name.clone());
+            session.calibration.selected_parameter = Some(effect.name.clone());
         }
     }
 }

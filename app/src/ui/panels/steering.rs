@@ -1,7 +1,8 @@
 //! Touches and held keys from the window to the devices that take them.
 
-use crate::ui::scene::SceneResponse;
-use crate::ui::trainer::{HandDevice, Steering, Trainer};
+use crate::ui::scene::view::SceneResponse;
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::Trainer;
 use egui::{Event, Key, TouchPhase, Ui};
 use haptics::device::{KeysHeld, TouchHandle};
 

@@ -1,10 +1,11 @@
 //! The drop-down of tasks: the built-in ones and those of the user.
 
 use crate::tasks::Chosen;
-use crate::ui::format;
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::ui::editing_rules;
 use crate::ui::icons::Icon;
-use crate::ui::rules::Rules;
-use crate::ui::session::{Session, sentence};
+use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::widgets::call;
 use egui::{ComboBox, Ui};
@@ -38,10 +39,10 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
     let mut picked = None;
     ui.horizontal(|ui| {
         ui.label(theme::caption(ui, words::TASK));
-        let prepared = session.prepared().cloned();
+        let prepared = session.document.prepared().cloned();
         let told = prepared.as_ref().map_or("unknown".to_owned(), |p| told(&p.recording, p.task));
         let automatic = format!("Automatic ({told})");
-        let choice = &session.choice;
+        let choice = &session.calibration.choice;
         let text = match (&choice.own, choice.task) {
             (Some(own), _) => own.name.clone(),
             (None, Some(task)) => format::object(task.name()),
@@ -81,7 +82,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
         Some(Picked::BuiltIn(task)) => set(session, Some(task), None),
         Some(Picked::Own(name)) => match Chosen::find(&name) {
             Ok(task) => set(session, Some(task.like()), task.own().cloned().map(Arc::new)),
-            Err(error) => session.fail(sentence(&error.to_string())),
+            Err(error) => session.messages.fail(sentence(&error.to_string())),
         },
         None => {}
     }
@@ -95,17 +96,17 @@ fn told(recording: &Recording, task: Option<Task>) -> String {
 }
 
 fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) {
-    (session.choice.task, session.choice.own) = (task, own);
-    if session.rules.take().is_some() {
-        session.rules = Rules::open(session);
+    (session.calibration.choice.task, session.calibration.choice.own) = (task, own);
+    if session.calibration.rules.take().is_some() {
+        session.calibration.rules = editing_rules::open(session);
     }
 }
 
 /// Opens and closes the rules.
 fn edit(ui: &mut Ui, session: &mut Session) {
-    let open = session.rules.is_some();
+    let open = session.calibration.rules.is_some();
     let hint = words::RULES_MORE;
     if ui.button((Icon::Rules, if open { words::CLOSE_RULES } else { words::RULES })).on_hover_text(hint).clicked() {
-        session.rules = if open { None } else { Rules::open(session) };
+        session.calibration.rules = if open { None } else { editing_rules::open(session) };
     }
 }

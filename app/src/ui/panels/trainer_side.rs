@@ -1,14 +1,19 @@
 //! The column beside the trainer's picture: world, operator, recording, forces, timing.
 
-use super::{Panel, legend};
-use crate::ui::files;
-use crate::ui::format;
-use crate::ui::jobs::Purpose;
-use crate::ui::recorder;
-use crate::ui::session::{Session, Workspace};
+use super::legend;
+use crate::text::format;
+use crate::ui::icons::Icon;
+use crate::ui::panel::{Panel, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, role, space};
-use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::hand::HandDevice;
+use crate::ui::trainer::history::History;
+use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, recorder};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
@@ -53,7 +58,6 @@ mod words {
     pub const STALE_MORE: &str = "No fresh sample from the device: the force is zero";
     pub const INVALID: &str = "Invalid";
     pub const INVALID_MORE: &str = "A value was not a number and was refused";
-    pub const TRAINER_CONTROLS: &str = "Trainer controls";
     pub const RECORDING: &str = "Recording";
     pub const WORLD: &str = "World";
     pub const OPERATOR: &str = "Operator";
@@ -67,23 +71,25 @@ mod words {
 /// Length of the live curve, s.
 const STRIP_S: f64 = 8.0;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 1)],
+    ..Registration::new(PanelId::TRAINER_SIDE, "Trainer", Icon::Panel, || Box::new(TrainerSide::default()))
+};
+
 /// The right column of the trainer.
 #[derive(Default)]
 pub struct TrainerSide;
 
 impl Panel for TrainerSide {
-    fn title(&self) -> &'static str {
-        words::TRAINER_CONTROLS
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // The command palette lists them in every workspace.
-        session.lessons.load();
+        session.training.lessons.load();
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             let choices = [(false, words::FREE, words::FREE_MORE), (true, words::LESSONS, words::LESSONS_MORE)];
-            ui.vertical_centered(|ui| segmented(ui, &mut session.lessons.shown, &choices));
-            if session.lessons.shown {
+            ui.vertical_centered(|ui| segmented(ui, &mut session.training.lessons.shown, &choices));
+            if session.training.lessons.shown {
                 super::lessons::side(ui, session);
             } else {
                 super::compare::compare(ui, session);
@@ -91,26 +97,28 @@ impl Panel for TrainerSide {
                 operator(ui, session);
                 plain_card(ui, words::RECORDING, |ui| recorder::controls(ui, session));
             }
-            forces(ui, &session.trainer);
+            forces(ui, &session.training.trainer);
             super::assistant::assistant(ui, session);
-            if !session.lessons.shown {
-                super::measured::beside(ui, &mut session.trainer);
+            if !session.training.lessons.shown {
+                super::measured::beside(ui, &mut session.training.trainer);
             }
             super::delay::delay(ui, session);
             super::comfort::card(ui, session);
-            if session.lessons.shown {
+            if session.training.lessons.shown {
                 return;
             }
             super::passivity::passivity(ui, session);
-            super::trainer_timing::timing(ui, &session.trainer);
+            super::trainer_timing::timing(ui, &session.training.trainer);
         });
     }
 }
 
 fn world(ui: &mut Ui, session: &mut Session) {
-    let calibrated = session.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
-    session.trainer.calibrated = calibrated.map(|a| a.world.clone());
-    let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
+    let calibrated =
+        session.calibration.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
+    session.training.trainer.calibrated = calibrated.map(|a| a.world.clone());
+    let (has_calibrated, has_file) =
+        (session.training.trainer.calibrated.is_some(), session.training.trainer.file.is_some());
     let (mut chosen, mut again) = (None, false);
     let start_over = |ui: &mut Ui| {
         again = ui.link(words::START_OVER).on_hover_text(words::START_OVER_MORE).clicked();
@@ -137,12 +145,12 @@ fn world(ui: &mut Ui, session: &mut Session) {
         }
     });
     if again {
-        chosen = Some(session.trainer.choice);
+        chosen = Some(session.training.trainer.choice);
     }
     if let Some(choice) = chosen
-        && let Err(problem) = session.trainer.choose(choice)
+        && let Err(problem) = session.training.trainer.choose(choice)
     {
-        session.fail(problem);
+        session.messages.fail(problem);
     }
 }
 
@@ -155,13 +163,13 @@ fn world_choice(
     missing: Option<&str>,
 ) -> Option<WorldChoice> {
     compact(ui, |ui| {
-        let on = session.trainer.choice == choice;
+        let on = session.training.trainer.choice == choice;
         let response = ui.add_enabled(missing.is_none(), egui::RadioButton::new(on, label));
         let response = response.on_hover_text(hint).on_disabled_hover_text(missing.unwrap_or(hint));
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link(words::OPEN).clicked() {
-                    files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
+                    files::ask(ui.ctx(), &mut session.jobs, files::OPEN_WORLD);
                 }
             });
         }
@@ -170,7 +178,7 @@ fn world_choice(
 }
 
 fn operator(ui: &mut Ui, session: &mut Session) {
-    let mut operator = session.trainer.operator;
+    let mut operator = session.training.trainer.operator;
     let choices =
         [(Operator::You, words::YOU, words::YOU_MORE), (Operator::Scripted, words::SCRIPTED, words::SCRIPTED_MORE)];
     let mut changed = false;
@@ -181,19 +189,22 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         |ui| changed = segmented(ui, &mut operator, &choices),
         |ui| operator_state(ui, session),
     );
-    if changed && let Err(problem) = session.trainer.hand_to(operator) {
-        session.fail(problem);
+    if changed && let Err(problem) = session.training.trainer.hand_to(operator) {
+        session.messages.fail(problem);
     }
 }
 
 fn operator_state(ui: &mut Ui, session: &mut Session) {
-    match session.trainer.operator {
+    match session.training.trainer.operator {
         Operator::You => {
-            let text = match session.trainer.hand {
+            let text = match session.training.trainer.hand {
                 HandDevice::Mouse => {
-                    format!("Mouse · pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1))
+                    format!(
+                        "Mouse · pinch strength {} N",
+                        format::number(session.training.trainer.pinch.strength_n(), 1)
+                    )
                 }
-                _ => session.trainer.hand.title(),
+                _ => session.training.trainer.hand.title(),
             };
             compact(ui, |ui| {
                 ui.label(theme::caption(ui, text));

@@ -1,8 +1,8 @@
 //! Timing of the servo, in numbers.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::Trainer;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};

@@ -1,20 +1,27 @@
 //! The virtual world, touched with the mouse.
 
-use super::{Panel, guide, lessons, marks, steering};
-use crate::ui::assistant;
+use super::{guide, lessons, marks, steering};
+use crate::ui::assistant::draw;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
+use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
+use crate::ui::scene::rig::Rig;
+use crate::ui::scene::view::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Clock, HandDevice, Operator, Steering, Trainer, task_hint};
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::trainer::task::task_hint;
 use crate::ui::widgets::{empty_state, key_hint, sheet};
+use crate::ui::workspace::Workspace;
 use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
-    pub const TRAINER: &str = "Trainer";
     pub const NO_SERVO: &str = "The servo is not running";
     pub const NO_SERVO_MORE: &str = "See the message above; then choose a world again.";
     pub const MOUSE: &str = "Mouse";
@@ -54,6 +61,62 @@ const KEY_SPEED_M_S: f64 = 0.04;
 /// Change of pinch force per point of scrolling, N.
 const WHEEL_N: f64 = 0.004;
 
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Train, 0)],
+    at_the_left: true,
+    pictures: &[&TRAINER, &DELAY, &ASSISTANT, &GUIDED],
+    ..Registration::new(PanelId::TRAINER, "Virtual world", Icon::World, || Box::new(TrainerView::default()))
+};
+
+/// The virtual world.
+pub static TRAINER: Picture = Picture {
+    name: "trainer",
+    place: 80,
+    help: "The virtual world",
+    line: "The virtual world, touched by the scripted operator",
+    size: PANEL,
+    sample: Sample::World("stack"),
+    session: stage::trainer,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// The virtual world over half a second, on a model.
+pub static DELAY: Picture = Picture {
+    name: "delay",
+    place: 90,
+    help: "The virtual world over half a second, on a model",
+    line: "Over half a second: the model under the hand solid, the far world a ghost",
+    size: PANEL,
+    sample: Sample::World("stack"),
+    session: stage::delay,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// The assistant over the virtual world.
+pub static ASSISTANT: Picture = Picture {
+    name: "assistant",
+    place: 100,
+    help: "The assistant over the virtual world",
+    line: "The assistant: what is held, what may be in it, and the cable that holds it",
+    size: PANEL,
+    sample: Sample::World("table"),
+    session: stage::assistant,
+    framing: Framing::Panel(|| Box::new(TrainerView::default())),
+};
+
+/// That experiment done by hand in the virtual world, half done.
+pub static GUIDED: Picture = Picture {
+    name: "guided",
+    place: 200,
+    help: "That experiment done by hand in the virtual world, half done",
+    line: "An experiment done by hand in Train: two rings to follow",
+    size: PANEL,
+    sample: Sample::Askew,
+    session: stage::guided,
+    framing: Framing::LargePanel(|| Box::new(TrainerView::default())),
+};
+
 /// Picture of the trainer, and its mouse control.
 pub struct TrainerView {
     rig: Rig,
@@ -80,39 +143,35 @@ fn home() -> Camera {
 }
 
 impl Panel for TrainerView {
-    fn title(&self) -> &'static str {
-        words::TRAINER
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         // The window's first frame comes before the servo, which occupies a processor.
-        if session.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
+        if session.training.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
             ui.ctx().request_repaint();
             sheet(ui).show(ui, |ui| ui.set_min_size(ui.available_size()));
             return;
         }
-        if let Err(problem) = session.trainer.ensure_running() {
-            session.fail(problem);
+        if let Err(problem) = session.training.trainer.ensure_running() {
+            session.messages.fail(problem);
         }
         super::compare::key(ui, session);
         let has_focus = ui.input(|i| i.focused);
         // Without a window manager nothing ever has the focus, so none can be lost.
-        if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.comfort.pauses {
-            session.trainer.lose_focus();
+        if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.training.comfort.pauses {
+            session.training.trainer.lose_focus();
         }
-        self.rig.turned_by = session.comfort.turns();
+        self.rig.turned_by = session.training.comfort.turns();
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
-        session.trainer.update(frame_s);
+        session.training.trainer.update(frame_s);
         #[cfg(feature = "sound")]
         self.knock(session);
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            let Some((snapshot, world)) = session.trainer.scene() else {
+            let Some((snapshot, world)) = session.training.trainer.scene() else {
                 empty_state(ui, (Icon::Doubt, words::NO_SERVO), words::NO_SERVO_MORE, |_| {});
                 return;
             };
-            let limit = session.trainer.config().limits.max_force_n;
-            let trainer = &session.trainer;
+            let limit = session.training.trainer.config().limits.max_force_n;
+            let trainer = &session.training.trainer;
             let state = trainer.seen().unwrap_or(&snapshot.state).clone();
             let saturated = state.tip_force_n.map(|f| f.norm() > limit);
             // The remote world is shown as a ghost behind the model; without a model only its delayed picture is shown.
@@ -121,39 +180,41 @@ impl Panel for TrainerView {
             let scene = (std::sync::Arc::clone(world), state, options);
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
-            session.trainer_place = Some(view.place(ui));
+            session.training.trainer_place = Some(view.place(ui));
             over(ui, &view, session);
-            let held = session.trainer.held().is_some();
+            let held = session.training.trainer.held().is_some();
             if held {
-                super::comfort::paused(ui, view.rect, &mut session.trainer);
-            } else if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
-                if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
-                    session.fail(problem);
+                super::comfort::paused(ui, view.rect, &mut session.training.trainer);
+            } else if session.training.trainer.operator == Operator::You
+                && session.training.trainer.hand != HandDevice::Replay
+            {
+                if let Err(problem) = steering::touches(ui, &view, &mut session.training.trainer) {
+                    session.messages.fail(problem);
                 }
-                steering::keys(ui, &mut session.trainer);
-                if matches!(session.trainer.steering, Steering::Mouse(_)) {
+                steering::keys(ui, &mut session.training.trainer);
+                if matches!(session.training.trainer.steering, Steering::Mouse(_)) {
                     steer(ui, &view, session, frame_s);
                 }
-                hints(ui, view.rect, &session.trainer.hand, session.comfort.left_handed);
+                hints(ui, view.rect, &session.training.trainer.hand, session.training.comfort.left_handed);
                 if let Some(hint) = lessons::hint(session) {
                     pill(ui, view.rect, &hint);
                 } else if let Some((_, world)) =
-                    session.trainer.scene().filter(|_| session.experiments.guided.is_none())
+                    session.training.trainer.scene().filter(|_| session.experiments.guided.is_none())
                 {
                     pill(ui, view.rect, task_hint(world));
                 }
             } else {
                 let hint = lessons::hint(session);
-                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.trainer)));
+                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.training.trainer)));
             }
             if !held {
                 guide::card(ui, &view, session);
             }
             if let Some(fault) = fault {
-                session.fail(fault);
+                session.messages.fail(fault);
             }
         });
-        if session.trainer.is_moving() {
+        if session.training.trainer.is_moving() {
             ui.ctx().request_repaint();
         } else {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(66));
@@ -163,11 +224,11 @@ impl Panel for TrainerView {
 
 /// Draws the overlays of the picture.
 fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
-    if let Some((snapshot, _)) = session.trainer.scene() {
+    if let Some((snapshot, _)) = session.training.trainer.scene() {
         marks::device(ui, view, snapshot);
     }
-    marks::flashes(ui, view, &session.trainer.impacts);
-    assistant::draw(ui, view, session);
+    marks::flashes(ui, view, &session.training.trainer.impacts);
+    draw::draw(ui, view, session);
     guide::ghost(ui, view, session);
     guide::expert(ui, view, session);
 }
@@ -180,7 +241,7 @@ impl TrainerView {
         let struck_m_s = session.trainer.struck_m_s.take();
         let limit_n = session.trainer.config().limits.max_force_n;
         let seen = session.trainer.seen().filter(|_| session.trainer.held().is_none());
-        let slip_m_s = seen.map_or(0.0, crate::ui::trainer::slip_m_s);
+        let slip_m_s = seen.map_or(0.0, crate::ui::trainer::heard::slip_m_s);
         let excess = seen.is_some_and(|state| state.tip_force_n.iter().any(|force| force.norm() > limit_n));
         if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
             return;
@@ -199,7 +260,7 @@ impl TrainerView {
 }
 
 fn steer(ui: &Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
-    let (pinches, trainer) = (session.comfort.pinches(), &mut session.trainer);
+    let (pinches, trainer) = (session.training.comfort.pinches(), &mut session.training.trainer);
     let response = &view.response;
     let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
     if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {

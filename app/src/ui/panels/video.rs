@@ -1,20 +1,23 @@
 //! The video of the hand: its frame at the time cursor, and its synchronization.
 
-use super::Panel;
-use crate::ui::files;
-use crate::ui::format;
+use crate::text::file_name::name_of;
+use crate::text::format;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
-use crate::ui::jobs::{JobKind, Purpose};
-use crate::ui::mapping::name_of;
+use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
+use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::video::State;
+use crate::ui::videos::{ALIGN_VIDEO, State};
 use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
-use crate::video::Video;
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, stage};
+use crate::video::reading::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
     vec2,
 };
+use egui_tiles::ContainerKind;
 use std::sync::Arc;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -43,21 +46,40 @@ mod words {
     pub const ALIGN_SPOKEN: &str = "Align video";
     pub const WHERE: &str = "Where in the video";
     pub const REMOVE: &str = "Take the video away";
-    pub const VIDEO: &str = "Video";
 }
 
 /// Space for the controls below the picture, points.
 const CONTROLS: f32 = 64.0;
+
+/// The registration of this panel.
+pub static REGISTRATION: Registration = Registration {
+    workspaces: &[(Workspace::Calibrate, 6), (Workspace::Diagnose, 6)],
+    neighbours: &[
+        (PanelId::SCENE, ContainerKind::Horizontal, false),
+        (PanelId::LOG, ContainerKind::Vertical, true),
+        (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
+    ],
+    pictures: &[&PICTURE],
+    ..Registration::new(PanelId::VIDEO, "Video of the hand", Icon::Video, || Box::new(VideoPanel::default()))
+};
+
+/// The Calibrate workspace with a video of the hand; the log's, or the one that is named.
+pub static PICTURE: Picture = Picture {
+    name: "video",
+    place: 250,
+    help: "The Calibrate workspace with a video of the hand; the log's, or the one that is named",
+    line: "A video of the hand (here of the virtual one) runs with the time cursor",
+    size: PAGE,
+    sample: Sample::Stack,
+    session: stage::video,
+    framing: Framing::Page,
+};
 
 /// The video panel.
 #[derive(Default)]
 pub struct VideoPanel;
 
 impl Panel for VideoPanel {
-    fn title(&self) -> &'static str {
-        words::VIDEO
-    }
-
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
         sheet(ui).show(ui, |ui| {
@@ -77,11 +99,11 @@ impl Panel for VideoPanel {
 }
 
 fn none(ui: &mut Ui, session: &mut Session) {
-    let loaded = session.prepared().is_some();
+    let loaded = session.document.prepared().is_some();
     let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
     empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
         if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
         }
     });
 }
@@ -95,7 +117,7 @@ fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
                 session.read_video_again();
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
                 session.forget_video();
@@ -160,17 +182,17 @@ fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
         return;
     }
     let step_s = f64::from(by / response.rect.width().max(1.0)) * video.duration_s().min(10.0);
-    session.playing = false;
-    match session.videos.loose_s {
-        Some(loose_s) => session.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
-        None => session.seek(session.cursor_s + step_s),
+    session.document.playing = false;
+    match session.document.videos.loose_s {
+        Some(loose_s) => session.document.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
+        None => session.document.seek(session.document.cursor_s + step_s),
     }
 }
 
 fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
     ui.spacing_mut().interact_size.y = 20.0;
     ui.spacing_mut().button_padding.y = 2.0;
-    let loose = session.videos.loose_s;
+    let loose = session.document.videos.loose_s;
     ui.horizontal(|ui| {
         let mut by_itself = loose.is_some();
         let hint = words::BY_ITSELF_MORE;
@@ -183,7 +205,7 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
             session.video_belongs_here();
         }
     });
-    ui.horizontal(|ui| match session.videos.loose_s {
+    ui.horizontal(|ui| match session.document.videos.loose_s {
         Some(at_s) => runner(ui, session, video, at_s),
         None => facts(ui, session, video),
     });
@@ -198,7 +220,7 @@ fn place(ui: &mut Ui, session: &mut Session) {
     if ui.add(drag).on_hover_text(hint).changed() {
         session.shift_video(begins_at_s);
     }
-    let free = !session.jobs.is_running(JobKind::AlignVideo);
+    let free = !session.jobs.is_running(ALIGN_VIDEO);
     let hint = words::ALIGN_MORE;
     let align = ui.add_enabled(free, egui::Button::new((Icon::Align, words::ALIGN))).on_hover_text(hint);
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));
@@ -214,7 +236,7 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
     ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);
     let slider = Slider::new(&mut at_s, 0.0..=(video.duration_s() - step_s).max(0.0));
     if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text(words::WHERE).changed() {
-        session.videos.loose_s = Some(at_s);
+        session.document.videos.loose_s = Some(at_s);
     }
 }
 

@@ -1,8 +1,9 @@
 //! *Why not …?*: any cause of the catalogue that was not named, and the evidence against it.
 
-use crate::diagnosis_words::{small, title};
-use crate::ui::format;
-use crate::ui::session::{Session, sentence};
+use crate::text::diagnosis_words::{small, title};
+use crate::text::format;
+use crate::text::sentence::sentence;
+use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, compact, plain_card};
 use egui::{Align, ComboBox, Layout, RichText, Ui};

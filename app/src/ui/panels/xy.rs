@@ -1,10 +1,16 @@
 //! The log as one signal against another: choice of both signals, colour, and the plot.
 
-use crate::ui::format;
+use crate::text::format;
+use crate::text::states::state_name;
+use crate::ui::plots::axes::AXIS_WIDTH;
 use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
-use crate::ui::plots::{AXIS_WIDTH, GUTTER, Levels, Recipe, Sources, XyCache, XyInput, xy_plot};
+use crate::ui::plots::curves::Sources;
+use crate::ui::plots::derived::Recipe;
+use crate::ui::plots::levels::Levels;
+use crate::ui::plots::row::GUTTER;
+use crate::ui::plots::xy::{XyCache, XyInput, xy_plot};
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, palette, space, state_name};
+use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{call, compact, segmented, swatch};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;

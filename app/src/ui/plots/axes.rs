@@ -1,6 +1,6 @@
 //! Axes with even ticks and quiet labels.
 
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::Palette;
 use egui::{FontId, Rangef, Vec2};
 use egui_plot::{AxisHints, GridMark, Plot};

@@ -2,12 +2,15 @@
 //! than a frame allows, and kept while it is shown.
 
 use super::levels::Levels;
-use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
+use crate::ui::jobs::{JobKind, Jobs, Started, Ticket, change, no_change};
 use crate::ui::prepare::Prepared;
 use estimator::signal::transform::{Transform, mean};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+
+/// Computing curves for plots.
+const CURVES: JobKind = JobKind::new("curves");
 
 /// Number of samples that may be computed within a frame, 3 to 6 ms; larger curves are computed by a job.
 const AT_ONCE: usize = 150_000;
@@ -78,6 +81,9 @@ struct Cooked {
     levels: Arc<Levels>,
 }
 
+/// A recipe and its curve.
+type Made = (Recipe, Arc<Levels>);
+
 /// Cache of derived curves, and the recipes still requested.
 #[derive(Debug, Default)]
 pub struct Derived {
@@ -119,20 +125,29 @@ impl Derived {
         self.cooked.get(&recipe.key()).map(|cooked| Arc::clone(&cooked.levels))
     }
 
-    /// Ends a frame: drops the curves that nobody used and starts a job for the missing ones.
-    pub fn settle(&mut self, ctx: &egui::Context, jobs: &mut Jobs) {
+    /// At the end of a picture: what nobody looked at is let go, what is missing is begun. The job brings it to `store`.
+    pub fn settle<'a, T: 'static>(
+        &mut self,
+        ctx: &egui::Context,
+        jobs: &'a mut Jobs<T>,
+        store: fn(&mut T) -> &mut Self,
+    ) -> Option<Started<'a, T>> {
         let used = std::mem::take(&mut self.used);
         self.cooked.retain(|key, _| used.contains(key));
         self.spent = 0;
         let wanted = std::mem::take(&mut self.wanted);
         // One job at a time: recipes that are still needed are requested again in the next frame.
-        if !wanted.is_empty() && !jobs.is_running(JobKind::Curves) {
-            jobs.start_watched(ctx, JobKind::Curves, "Computing curves".to_owned(), move |ticket| cook(wanted, ticket));
+        if wanted.is_empty() || jobs.is_running(CURVES) {
+            return None;
         }
+        Some(jobs.start(ctx, CURVES, "Computing curves", move |ticket| match cook(wanted, ticket) {
+            Some(made) => change(move |to: &mut T, _| store(to).take(made)),
+            None => no_change(),
+        }))
     }
 
     /// Stores the curves of a finished job.
-    pub fn take(&mut self, made: Vec<(Recipe, Arc<Levels>)>) {
+    fn take(&mut self, made: Vec<Made>) {
         for (recipe, levels) in made {
             let key = recipe.key();
             // Kept until the next frame shows that nobody uses it.
@@ -152,18 +167,18 @@ impl Derived {
     }
 }
 
-fn cook(wanted: Vec<Recipe>, ticket: &Ticket) -> Outcome {
+fn cook(wanted: Vec<Recipe>, ticket: &Ticket) -> Option<Vec<Made>> {
     let count = wanted.len();
     let mut made = Vec::with_capacity(count);
     for (k, recipe) in wanted.into_iter().enumerate() {
         if ticket.cancelled().load(Ordering::Relaxed) {
-            return Outcome::Cancelled;
+            return None;
         }
         let levels = Arc::new(recipe.cook());
         made.push((recipe, levels));
         ticket.tell((k + 1) as f64 / count as f64);
     }
-    Outcome::Curves(made)
+    Some(made)
 }
 
 #[cfg(test)]
@@ -185,20 +200,19 @@ mod tests {
 
     #[test]
     fn short_curves_are_there_at_once_long_ones_after_a_job() {
-        let (ctx, mut jobs, mut store) = (egui::Context::default(), Jobs::default(), Derived::default());
+        let (ctx, mut jobs, mut store) = (egui::Context::default(), Jobs::<Derived>::default(), Derived::default());
         let short = prepared(1_000);
         let slope = store.get(&recipe(&short, Transform::Derivative)).expect("at once");
         let expected = 10.0 * (0.01 * 500.0_f64).cos();
         assert!((slope.samples(&short.recording).value(500) - expected).abs() < 1e-3);
         let long = prepared(AT_ONCE + 1);
         assert!(store.get(&recipe(&long, Transform::Derivative)).is_none());
-        store.settle(&ctx, &mut jobs);
+        store.settle(&ctx, &mut jobs, |derived| derived);
         let begun = std::time::Instant::now();
         while store.peek(&recipe(&long, Transform::Derivative)).is_none() {
             assert!(begun.elapsed().as_secs() < 20, "the job brings it");
-            for outcome in jobs.poll() {
-                let Outcome::Curves(made) = outcome else { panic!("{outcome:?}") };
-                store.take(made);
+            for answer in jobs.poll() {
+                answer.expect("curves")(&mut store, &ctx);
             }
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
@@ -206,14 +220,14 @@ mod tests {
 
     #[test]
     fn what_nobody_looks_at_is_let_go() {
-        let (ctx, mut jobs, mut store) = (egui::Context::default(), Jobs::default(), Derived::default());
+        let (ctx, mut jobs, mut store) = (egui::Context::default(), Jobs::<Derived>::default(), Derived::default());
         let short = prepared(1_000);
         for cutoff_hz in [5.0, 6.0, 7.0] {
             assert!(store.get(&recipe(&short, Transform::LowPass(cutoff_hz))).is_some());
-            store.settle(&ctx, &mut jobs);
+            store.settle(&ctx, &mut jobs, |derived| derived);
             assert_eq!(store.len(), 1, "only the cut-off that is shown");
         }
-        store.settle(&ctx, &mut jobs);
+        store.settle(&ctx, &mut jobs, |derived| derived);
         assert!(store.is_empty());
     }
 

@@ -50,7 +50,7 @@ pub fn shade(ui: &Ui, transform: &PlotTransform, prepared: &Prepared, group: &Gr
             }
         }
     }
-    let sentences: Vec<String> = said.into_iter().map(crate::ui::session::sentence).collect();
+    let sentences: Vec<String> = said.into_iter().map(crate::text::sentence::sentence).collect();
     (!sentences.is_empty()).then(|| sentences.join("\n"))
 }
 

@@ -4,7 +4,7 @@ use super::choices::GroupChoice;
 use super::curves::{Curve, Layer, NOISE_SWITCH};
 use super::row::{RowInput, RowKind, curve_color};
 use super::title_menu::title_menu;
-use crate::ui::format;
+use crate::text::format;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
@@ -124,7 +124,7 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
 
 /// Entries of the models and of the noise band.
 fn layers<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
-    let inks = super::inks(ui);
+    let inks = crate::ui::plots::residual_plot::inks(ui);
     let entry = |label: &str, hint: &str, color, width, switch| Entry {
         label: label.to_owned(),
         brief: None,

@@ -1,6 +1,6 @@
 //! Curves of a diagnosis: measured and modelled force over time, and the residual against each candidate variable.
 
-use crate::ui::format;
+use crate::text::format;
 use egui_plot::PlotPoint;
 use estimator::diagnose::Findings;
 use estimator::diagnose::{Course, Instant};

@@ -123,7 +123,7 @@ fn usual_cutoff(rate: f64) -> f64 {
 }
 
 fn cutoff_text(cutoff: f64, clockless: bool) -> String {
-    format!("{} {}", crate::ui::format::significant(cutoff, 2), if clockless { "/ sample" } else { "Hz" })
+    format!("{} {}", crate::text::format::significant(cutoff, 2), if clockless { "/ sample" } else { "Hz" })
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! Legend of the marks in the picture, with their values: a strip below it.
 
+use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
-use super::{Likeness, SceneLayers};
-use crate::ui::format::{number, significant};
+use crate::text::format::{number, significant};
 use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
+use crate::ui::scene::likeness::Likeness;
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, role, space};
 use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
@@ -133,7 +134,7 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
     }
     if layers.constraints {
         for marked in markers::of(session, prepared) {
-            rows.extend(of_constraint(&marked, session.cursor_s));
+            rows.extend(of_constraint(&marked, session.document.cursor_s));
         }
     }
     if layers.contacts && prepared.tips.is_some() && session.replay().is_some_and(|r| r.film.is_some()) {

@@ -28,9 +28,9 @@ pub struct Marked<'a> {
 
 /// Constraints of the fit that belong to a recording.
 pub fn of<'a>(session: &'a Session, prepared: &Prepared) -> Vec<Marked<'a>> {
-    let Some(analysis) = &session.analysis else { return Vec::new() };
+    let Some(analysis) = &session.calibration.analysis else { return Vec::new() };
     let of_this = |c: &&Constraint| {
-        session.recordings.len() < 2 || c.recording.as_deref().is_none_or(|name| names(prepared, name))
+        session.document.recordings.len() < 2 || c.recording.as_deref().is_none_or(|name| names(prepared, name))
     };
     analysis.fit.constraints.iter().filter(of_this).map(|c| marked(c, prepared)).collect()
 }

@@ -1,8 +1,8 @@
 //! A recording of one coordinate without a position in space, shown as a carriage on a rail or as a crank on its shaft.
 //! The sizes are chosen for the picture, since the recording has none. The rail is as long as the recorded travel.
 
-use crate::ui::format;
-use crate::ui::plots::{decimals, marks};
+use crate::text::format;
+use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::prepare::Prepared;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align2, FontId, Pos2, Rect, Ui};

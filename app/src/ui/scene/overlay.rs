@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// World of a recording: the fitted one, or an empty table with the recording's hand.
 pub fn scene_world(session: &Session, prepared: &Prepared) -> Arc<World> {
-    if let Some(analysis) = &session.analysis
+    if let Some(analysis) = &session.calibration.analysis
         && prepared.tips.is_some()
     {
         return Arc::new(analysis.world.clone());
@@ -26,7 +26,7 @@ pub fn scene_world(session: &Session, prepared: &Prepared) -> Arc<World> {
 
 /// State and options at the cursor.
 pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (State, ViewOptions) {
-    let sample = prepared.sample_at(session.cursor_s);
+    let sample = prepared.sample_at(session.document.cursor_s);
     let mut state = State::resting(world);
     let mut options = ViewOptions::default();
     if let Some(tips) = &prepared.tips {
@@ -35,7 +35,7 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
             state.tip_force_n[finger] = tip.force.as_ref().map_or_else(Vec2::zeros, |f| f[sample]);
         }
         if let Some(film) = session.replay().and_then(|r| r.film.as_ref()) {
-            film.pose(session.cursor_s, &mut state);
+            film.pose(session.document.cursor_s, &mut state);
         }
         options.show_contacts = session.layers.contacts;
     } else if let Some(tool) = &prepared.tool {
@@ -122,14 +122,14 @@ pub fn force_scale(prepared: &Prepared) -> f32 {
 
 /// Samples of the path inside the plots' time window.
 pub fn window(session: &Session, prepared: &Prepared) -> Vec<usize> {
-    let (from, to) = session.view_s;
+    let (from, to) = session.document.view_s;
     let visible = |i: &&usize| prepared.times[**i] >= from && prepared.times[**i] <= to;
     prepared.path_samples.iter().filter(visible).copied().collect()
 }
 
 /// True if each finger has a path of its own; fingers on a crank share one.
 pub fn follows_fingers(session: &Session, prepared: &Prepared) -> bool {
-    let turns = session.analysis.as_ref().is_some_and(|a| a.world.crank.is_some());
+    let turns = session.calibration.analysis.as_ref().is_some_and(|a| a.world.crank.is_some());
     prepared.tips.is_some() && !turns
 }
 

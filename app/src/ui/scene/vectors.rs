@@ -21,7 +21,7 @@ pub fn net(session: &Session, prepared: &Prepared) -> Vec<ForceVector> {
 /// Residual of the net force after weight and friction. With a known constraint it is the part perpendicular to the
 /// motion, minus that of the weight (thesis, eq. 5.1); otherwise it is the residual of the replay in the fitted world.
 pub fn unexplained(session: &Session, prepared: &Prepared, marker: Option<&ConstraintMarker>) -> Vec<ForceVector> {
-    let weight_n = session.analysis.as_ref().and_then(|a| a.fit.value("crank", "weight_N")).unwrap_or(0.0);
+    let weight_n = session.calibration.analysis.as_ref().and_then(|a| a.fit.value("crank", "weight_N")).unwrap_or(0.0);
     let vector = |i: usize| {
         let (at_m, force) = (prepared.point_at(i)?, prepared.force_at(i)?);
         let force_n = match marker.and_then(|marker| normal_at(marker, at_m)) {

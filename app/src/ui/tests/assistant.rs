@@ -2,8 +2,10 @@
 
 use super::{empty, train_window};
 use crate::ui::app::App;
-use crate::ui::session::{Session, Workspace};
-use crate::ui::trainer::{Clock, Operator, WorldChoice};
+use crate::ui::session::Session;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator};
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haptics::Vec2;
@@ -12,9 +14,9 @@ use std::sync::Arc;
 fn in_train(operator: Operator, choice: WorldChoice) -> Session {
     let mut session = empty();
     session.workspace = Workspace::Train;
-    session.trainer.clock = Clock::Manual;
-    (session.trainer.operator, session.trainer.choice) = (operator, choice);
-    session.trainer.ensure_running().expect("runs");
+    session.training.trainer.clock = Clock::Manual;
+    (session.training.trainer.operator, session.training.trainer.choice) = (operator, choice);
+    session.training.trainer.ensure_running().expect("runs");
     session
 }
 
@@ -26,7 +28,7 @@ fn says(harness: &Harness<'_, App>, words: &str) -> bool {
 fn until_said(harness: &mut Harness<'_, App>, words: &str) {
     const AT_MOST_S: usize = 30;
     for _ in 0..4 * AT_MOST_S {
-        harness.state_mut().session.trainer.advance(0.25);
+        harness.state_mut().session.training.trainer.advance(0.25);
         harness.run_steps(1);
         if says(harness, words) {
             return;
@@ -45,11 +47,11 @@ fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
     assert!(says(&harness, "Inside: "));
     until_said(&mut harness, "Something holds it");
     assert!(says(&harness, "Weight") && says(&harness, " ± "));
-    harness.state_mut().session.assistant.constraint = false;
-    harness.state_mut().session.assistant.contents = false;
+    harness.state_mut().session.training.assistant.constraint = false;
+    harness.state_mut().session.training.assistant.contents = false;
     harness.run_steps(2);
     assert!(!says(&harness, "Something holds it") && !says(&harness, "Inside: ") && says(&harness, "Grip to spare"));
-    harness.state_mut().session.assistant.on = false;
+    harness.state_mut().session.training.assistant.on = false;
     harness.run_steps(2);
     assert!(!says(&harness, "Grip to spare") && says(&harness, "Switched off: nothing is said"));
 }
@@ -59,7 +61,7 @@ fn a_needle_is_no_block_and_its_sheet_does_not_pass_for_its_weight() {
     let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Needle));
     until_said(&mut harness, "Grip to spare");
     until_said(&mut harness, "Width");
-    let report = harness.state().session.trainer.watch.report().expect("measured");
+    let report = harness.state().session.training.trainer.watch.report().expect("measured");
     assert!(report.held.is_some() && report.parameters.iter().any(|p| p.name == "weight_N"));
     assert!(!says(&harness, "Block 1") && !says(&harness, "Weight"));
     assert_eq!(harness.query_all_by_label("Needle").count(), 3, "the world's button, the plate, the card");
@@ -69,20 +71,20 @@ fn a_needle_is_no_block_and_its_sheet_does_not_pass_for_its_weight() {
 fn a_crank_shows_the_circle_that_was_found() {
     let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Crank));
     until_said(&mut harness, "It turns on a circle: radius");
-    assert!(harness.state().session.trainer.watch.report().is_some());
+    assert!(harness.state().session.training.trainer.watch.report().is_some());
 }
 
 #[test]
 fn the_edge_of_the_reach_and_too_hard_a_grip_are_warned_of() {
     let session = in_train(Operator::You, WorldChoice::Blocks);
-    let (_, world) = session.trainer.scene().expect("a scene");
+    let (_, world) = session.training.trainer.scene().expect("a scene");
     let workspace = world.hand.workspace;
     let mut harness = train_window(session);
     harness.run_steps(2);
     assert!(!says(&harness, "the edge of its reach"));
-    harness.state_mut().session.trainer.pinch.move_to(workspace.center_m + Vec2::new(workspace.radius_m, 0.0));
+    harness.state_mut().session.training.trainer.pinch.move_to(workspace.center_m + Vec2::new(workspace.radius_m, 0.0));
     until_said(&mut harness, "the edge of its reach");
-    harness.state_mut().session.assistant.edge = false;
+    harness.state_mut().session.training.assistant.edge = false;
     harness.run_steps(2);
     assert!(!says(&harness, "the edge of its reach"));
     let mut harness = train_window(squeezing());
@@ -92,18 +94,18 @@ fn the_edge_of_the_reach_and_too_hard_a_grip_are_warned_of() {
 /// The lesson in which nothing may be crushed, with far too firm a hand.
 fn squeezing() -> Session {
     let mut session = in_train(Operator::You, WorldChoice::Blocks);
-    session.lessons.load();
-    let lesson = session.lessons.all.iter().find(|l| l.id == "pinch").map(Arc::clone).expect("a lesson");
+    session.training.lessons.load();
+    let lesson = session.training.lessons.all.iter().find(|l| l.id == "pinch").map(Arc::clone).expect("a lesson");
     session.open_lesson_now(&lesson);
     session.practise_lesson();
-    let (_, world) = session.trainer.scene().expect("a scene");
+    let (_, world) = session.training.trainer.scene().expect("a scene");
     let block_m = world.blocks[0].start.center_m;
     for above_m in [0.03, 0.0] {
-        session.trainer.pinch.move_to(block_m + Vec2::new(0.0, above_m));
-        session.trainer.advance(1.5);
+        session.training.trainer.pinch.move_to(block_m + Vec2::new(0.0, above_m));
+        session.training.trainer.advance(1.5);
     }
-    session.trainer.pinch.latched = true;
-    session.trainer.pinch.strengthen(50.0);
+    session.training.trainer.pinch.latched = true;
+    session.training.trainer.pinch.strengthen(50.0);
     session
 }
 
@@ -111,10 +113,11 @@ fn squeezing() -> Session {
 fn in_a_test_of_a_lesson_nobody_helps() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = in_train(Operator::You, WorldChoice::Blocks);
-    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    session.lessons.load();
-    session.lessons.shown = true;
-    let lesson = session.lessons.all.iter().find(|l| l.id == "lift-and-hold").map(Arc::clone).expect("a lesson");
+    session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.training.lessons.load();
+    session.training.lessons.shown = true;
+    let lesson =
+        session.training.lessons.all.iter().find(|l| l.id == "lift-and-hold").map(Arc::clone).expect("a lesson");
     session.open_lesson_now(&lesson);
     session.practise_lesson();
     session.follow_expert(6.0);
@@ -130,15 +133,15 @@ fn in_a_test_of_a_lesson_nobody_helps() {
 #[test]
 fn a_finger_that_pressed_on_a_block_did_not_spoil_the_zero_of_its_sensor() {
     let mut session = in_train(Operator::You, WorldChoice::Blocks);
-    session.lessons.load();
-    let lesson = session.lessons.all.iter().find(|l| l.id == "stack-two").map(Arc::clone).expect("a lesson");
+    session.training.lessons.load();
+    let lesson = session.training.lessons.all.iter().find(|l| l.id == "stack-two").map(Arc::clone).expect("a lesson");
     session.open_lesson_now(&lesson);
     session.practise_lesson();
     // The pointer comes down on the block first, and carries it then.
     session.follow_expert(7.5);
-    let report = session.trainer.watch.report().expect("watched");
+    let report = session.training.trainer.watch.report().expect("watched");
     let weight = report.parameters.iter().find(|p| p.name == "weight_N").expect("weighed");
-    let (_, world) = session.trainer.scene().expect("a scene");
+    let (_, world) = session.training.trainer.scene().expect("a scene");
     let truth_n = world.blocks[0].mass_kg * world.gravity_m_s2;
     assert!((weight.value.expect("known") - truth_n).abs() < 0.05 * truth_n, "{weight:?}");
 }

@@ -3,11 +3,11 @@
 use super::experiment::{asked_about, pair, quiet, settled};
 use super::until;
 use crate::ui::app::App;
+use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{leaking, leaking_world};
 use crate::ui::guided::Phase;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::Workspace;
-use crate::ui::trainer::WorldChoice;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -29,7 +29,7 @@ fn a_carry_is_rehearsed_with_a_leak_and_with_a_drift() {
     let mut harness = open(folder.path());
     harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
     harness.run_steps(2);
-    until(&mut harness, "the rehearsal's end", |app| !app.session.jobs.is_running(JobKind::Rehearse));
+    until(&mut harness, "the rehearsal's end", |app| !app.session.jobs.is_running(REHEARSE));
     let session = &harness.state().session;
     let rehearsal = session.diagnosing.rehearsal.clone().expect("rehearsed");
     let (right, all) = rehearsal.settled();
@@ -43,7 +43,7 @@ fn a_carry_is_rehearsed_with_a_leak_and_with_a_drift() {
 fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = open(folder.path());
-    let trainer = &mut harness.state_mut().session.trainer;
+    let trainer = &mut harness.state_mut().session.training.trainer;
     trainer.file = Some(leaking_world());
     trainer.choose(WorldChoice::File).expect("it can be touched");
     harness.get_by_role_and_label(Role::Button, "Do it in Train …").click();
@@ -62,7 +62,11 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     let middle_s = 0.5 * (table.steps[carried - 1].until_s + table.steps[carried].until_s);
     session.follow_rings(middle_s);
     let lifted_m = |session: &crate::ui::session::Session| {
-        session.trainer.scene().map_or(0.0, |(s, w)| s.state.bodies[0].center_m.y - w.blocks[0].start.center_m.y)
+        session
+            .training
+            .trainer
+            .scene()
+            .map_or(0.0, |(s, w)| s.state.bodies[0].center_m.y - w.blocks[0].start.center_m.y)
     };
     assert!(lifted_m(session) > 2e-3, "lifted by {} m", lifted_m(session));
     session.follow_rings(table.duration_s());
@@ -75,7 +79,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     harness.run_steps(2);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
     });
     let session = &harness.state().session;
     assert_eq!((session.workspace, settled(&harness)), (Workspace::Diagnose, pair("mass-change", "force-drift")));

@@ -3,12 +3,11 @@
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
 use crate::ui::app::App;
-use crate::ui::checking::{Checked, Holds, On, check_now, holds};
-use crate::ui::jobs::JobKind;
+use crate::ui::checked::{CHECK, Checked, Holds, On, check_now, holds};
 use crate::ui::prepare::Prepared;
-use crate::ui::screenshot::{self, Panel};
 use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::tests::picture;
+use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect};
 use egui::Role;
 use egui_kittest::Harness;
@@ -38,7 +37,7 @@ fn type_path(harness: &mut Harness<'_, App>, path: &str) {
     harness.run_steps(2);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(2);
-    until_done(harness, JobKind::Check);
+    until_done(harness, CHECK);
 }
 
 #[test]
@@ -74,21 +73,25 @@ fn an_open_recording_is_left_out_and_the_others_answer_for_it() {
     second.name = "again".to_owned();
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    session.recordings.push(Arc::new(Prepared::new(second)));
+    session.document.recordings.push(Arc::new(Prepared::new(second)));
     let mut harness = window(session);
     harness.get_by_role_and_label(Role::Button, "Leave an open one out …").click();
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "again").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Check);
+    until_done(&mut harness, CHECK);
     let session = &harness.state().session;
     let checked = session.diagnosing.checked.first().expect("checked");
     assert_eq!((checked.name.as_str(), checked.found.as_ref().map(holds)), ("again", Ok(Holds::Yes)));
     // The first one alone was asked: its answer is the one that is there.
     let again =
-        check_now(&session.recordings, &session.choice, &answer, &On::LeftOut(1), &|_| true).expect("not ended");
+        check_now(&session.document.recordings, &session.calibration.choice, &answer, &On::LeftOut(1), &|_| true)
+            .expect("not ended");
     assert_eq!(again[0].found, checked.found);
-    assert!(check_now(&session.recordings, &session.choice, &answer, &On::LeftOut(1), &|_| false).is_none());
+    assert!(
+        check_now(&session.document.recordings, &session.calibration.choice, &answer, &On::LeftOut(1), &|_| false)
+            .is_none()
+    );
 }
 
 #[test]
@@ -158,15 +161,15 @@ fn a_large_suspect_and_the_checks_are_drawn_in_both_themes() {
     for dark in [false, true] {
         let p = theme::Palette::of(dark);
         let named =
-            screenshot::draw(pictured(Some("position-ripple")), Panel::Atlas, [1280, 720], dark).expect("drawn");
-        let other = screenshot::draw(pictured(Some("force-bias")), Panel::Atlas, [1280, 720], dark).expect("drawn");
+            screenshot::draw(pictured(Some("position-ripple")), picture("atlas"), [1280, 720], dark).expect("drawn");
+        let other = screenshot::draw(pictured(Some("force-bias")), picture("atlas"), [1280, 720], dark).expect("drawn");
         keep(&format!("atlas-large-{dark}"), &named);
         // What was named is green, what was not has the colour of suspects; the cloud and its means that of the model.
         let simulated = theme::role(dark, render::ColorRole::Simulated);
         assert!(count_near(&named, p.good) > count_near(&other, p.good) + 300, "dark {dark}");
         assert!(count_near(&other, p.accent) > count_near(&named, p.accent) + 200, "dark {dark}");
         assert!(count_near(&named, simulated) > 300, "dark {dark}");
-        let card = screenshot::draw(pictured(None), Panel::Experiment, [440, 1300], dark).expect("drawn");
+        let card = screenshot::draw(pictured(None), picture("experiment"), [440, 1300], dark).expect("drawn");
         keep(&format!("checks-{dark}"), &card);
         let green = count_near(&card, p.good);
         assert!(green > 2_000, "the bar of what is left and that of the check that holds, dark {dark}: {green}");

@@ -2,9 +2,12 @@
 
 use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
-use crate::ui::lessons::Phase;
-use crate::ui::screenshot::{self, Panel};
-use crate::ui::trainer::{HoldCause, Operator, PAUSED, Trainer, WorldChoice};
+use crate::ui::lessons::state::Phase;
+use crate::ui::screenshot;
+use crate::ui::tests::picture;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::hold::{Cause as HoldCause, PAUSED};
+use crate::ui::trainer::live::{Operator, Trainer};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::Harness;
@@ -18,11 +21,11 @@ fn focus(harness: &mut Harness<'_, App>, has: bool) {
 }
 
 fn time_s(harness: &Harness<'_, App>) -> f64 {
-    harness.state().session.trainer.scene().expect("running").0.state.time_s
+    harness.state().session.training.trainer.scene().expect("running").0.state.time_s
 }
 
 fn trainer<'a>(harness: &'a mut Harness<'_, App>) -> &'a mut Trainer {
-    &mut harness.state_mut().session.trainer
+    &mut harness.state_mut().session.training.trainer
 }
 
 #[test]
@@ -33,24 +36,24 @@ fn a_window_without_focus_holds_the_world_until_one_goes_on_and_the_recording_sa
     trainer(&mut harness).start_recording().expect("begins");
     trainer(&mut harness).advance(0.5);
     focus(&mut harness, false);
-    assert_eq!(harness.state().session.trainer.held(), Some(HoldCause::Focus));
+    assert_eq!(harness.state().session.training.trainer.held(), Some(HoldCause::Focus));
     assert!(harness.query_by_role_and_label(Role::Button, LOST).is_some());
     let before_s = time_s(&harness);
     trainer(&mut harness).advance(1.0);
     assert!((time_s(&harness) - before_s).abs() < 1e-12, "no time passes");
     // The focus alone does not go on: whoever comes back takes hold first.
     focus(&mut harness, true);
-    assert!(harness.state().session.trainer.held().is_some());
+    assert!(harness.state().session.training.trainer.held().is_some());
     harness.key_press(Key::Space);
     harness.run_steps(3);
-    assert_eq!(harness.state().session.trainer.held(), None);
-    assert!(!harness.state().session.trainer.pinch.latched, "the key went on, it did not pinch");
+    assert_eq!(harness.state().session.training.trainer.held(), None);
+    assert!(!harness.state().session.training.trainer.pinch.latched, "the key went on, it did not pinch");
     assert!(harness.query_by_role_and_label(Role::Button, LOST).is_none());
     trainer(&mut harness).advance(0.5);
     assert!(time_s(&harness) > before_s + 0.4);
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(harness.state().session.trainer.pinch.latched, "now it pinches");
+    assert!(harness.state().session.training.trainer.pinch.latched, "now it pinches");
     let finished = trainer(&mut harness).stop_recording().expect("recorded").wait().expect("written");
     let recording = estimator::log::load(&finished.path, None).expect("opens").remove(0);
     assert_eq!(recording.meta.other[PAUSED]["times"], 1, "{:?}", recording.meta.other.get(PAUSED));
@@ -66,19 +69,19 @@ fn nothing_is_held_for_the_scripted_operator_nor_where_it_is_not_wanted() {
     focus(&mut harness, true);
     trainer(&mut harness).hand_to(Operator::Scripted).expect("works");
     focus(&mut harness, false);
-    assert_eq!(harness.state().session.trainer.held(), None, "nobody's hand is gone");
+    assert_eq!(harness.state().session.training.trainer.held(), None, "nobody's hand is gone");
     trainer(&mut harness).hand_to(Operator::You).expect("works");
     focus(&mut harness, true);
-    harness.state_mut().session.comfort.pauses = false;
+    harness.state_mut().session.training.comfort.pauses = false;
     focus(&mut harness, false);
-    assert_eq!(harness.state().session.trainer.held(), None);
+    assert_eq!(harness.state().session.training.trainer.held(), None);
     // Another world ends a pause with the servo that was held.
-    harness.state_mut().session.comfort.pauses = true;
+    harness.state_mut().session.training.comfort.pauses = true;
     focus(&mut harness, true);
     focus(&mut harness, false);
-    assert!(harness.state().session.trainer.held().is_some());
+    assert!(harness.state().session.training.trainer.held().is_some());
     trainer(&mut harness).restart().expect("works");
-    assert_eq!(harness.state().session.trainer.held(), None);
+    assert_eq!(harness.state().session.training.trainer.held(), None);
 }
 
 #[test]
@@ -94,8 +97,8 @@ fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
     trainer(&mut harness).advance(0.02);
     assert!(time_s(&harness) < 0.5, "everything is where it started");
     // A lesson: a try begins anew, an attempt that counts too, and that is said.
-    harness.state_mut().session.lessons.load();
-    let lesson = harness.state().session.lessons.all[0].clone();
+    harness.state_mut().session.training.lessons.load();
+    let lesson = harness.state().session.training.lessons.all[0].clone();
     harness.state_mut().session.open_lesson_now(&lesson);
     harness.state_mut().session.test_lesson();
     trainer(&mut harness).advance(1.0);
@@ -103,9 +106,9 @@ fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
     harness.key_press(Key::N);
     harness.run_steps(3);
     let session = &harness.state().session;
-    assert_eq!(session.lessons.open.as_ref().map(|open| open.phase.clone()), Some(Phase::Testing));
-    assert!(session.trainer.is_recording() && time_s(&harness) < 0.5);
-    assert!(session.banners.iter().any(|b| b.text.contains("begins anew")));
+    assert_eq!(session.training.lessons.open.as_ref().map(|open| open.phase.clone()), Some(Phase::Testing));
+    assert!(session.training.trainer.is_recording() && time_s(&harness) < 0.5);
+    assert!(session.messages.banners.iter().any(|b| b.text.contains("begins anew")));
 }
 
 #[test]
@@ -118,7 +121,7 @@ fn a_left_hand_has_the_controls_on_its_side_and_pinches_with_the_other_button() 
     harness.run_steps(4);
     harness.get_by_role_and_label(Role::CheckBox, "Left-handed").click();
     harness.run_steps(4);
-    assert!(harness.state().session.comfort.left_handed);
+    assert!(harness.state().session.training.comfort.left_handed);
     let left = harness.get_by_label("Comfort").rect().left();
     assert!(left < 340.0 && right > 900.0, "controls went from {right} to {left}");
     assert!(harness.query_by_label("Left drag").is_some() || harness.query_by_label_contains("Right button").is_some());
@@ -133,10 +136,10 @@ fn a_left_hand_has_the_controls_on_its_side_and_pinches_with_the_other_button() 
     harness.run_steps(2);
     harness.event(press(true));
     harness.run_steps(2);
-    assert!(harness.state().session.trainer.pinch.button, "the right button pinches");
+    assert!(harness.state().session.training.trainer.pinch.button, "the right button pinches");
     harness.event(press(false));
     harness.run_steps(2);
-    assert!(!harness.state().session.trainer.pinch.button);
+    assert!(!harness.state().session.training.trainer.pinch.button);
 }
 
 #[test]
@@ -147,13 +150,13 @@ fn the_pause_and_the_left_handed_page_are_drawn_in_both_themes() {
     let folder = tempfile::tempdir().expect("a folder");
     for dark in [false, true] {
         let mut session = in_train(folder.path());
-        session.trainer.ensure_running().expect("a loop");
-        let usual = screenshot::draw(in_train(folder.path()), Panel::Train, [1280, 720], dark).expect("drawn");
-        let tall = screenshot::draw(in_train(folder.path()), Panel::Train, [1280, 1500], dark).expect("drawn");
+        session.training.trainer.ensure_running().expect("a loop");
+        let usual = screenshot::draw(in_train(folder.path()), picture("train"), [1280, 720], dark).expect("drawn");
+        let tall = screenshot::draw(in_train(folder.path()), picture("train"), [1280, 1500], dark).expect("drawn");
         keep(&format!("comfort-{dark}"), &tall);
-        session.comfort.left_handed = true;
-        session.trainer.lose_focus();
-        let picture = screenshot::draw(session, Panel::Train, [1280, 720], dark).expect("drawn");
+        session.training.comfort.left_handed = true;
+        session.training.trainer.lose_focus();
+        let picture = screenshot::draw(session, picture("train"), [1280, 720], dark).expect("drawn");
         keep(&format!("paused-{dark}"), &picture);
         assert_ne!(picture, usual);
         let caution = super::theme::Palette::of(dark).caution;
@@ -166,14 +169,14 @@ fn what_was_chosen_is_remembered() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = App::new(empty());
     app.keep(folder.path(), false);
-    app.session.comfort.left_handed = true;
-    app.session.comfort.muted = true;
+    app.session.training.comfort.left_handed = true;
+    app.session.training.comfort.muted = true;
     app.autosave.as_mut().expect("kept").end(&app.session, &app.dock, true);
-    let chosen = app.session.comfort;
+    let chosen = app.session.training.comfort;
     drop(app);
     let mut again = App::new(empty());
     again.keep(folder.path(), false);
-    assert_eq!(again.session.comfort, chosen);
+    assert_eq!(again.session.training.comfort, chosen);
 }
 
 /// Where pictures are rare, several presses come with one of them.

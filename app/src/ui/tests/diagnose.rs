@@ -2,10 +2,14 @@
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
-use crate::ui::diagnosing;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::{Session, Workspace};
-use crate::ui::trainer::{Operator, WorldChoice};
+use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::StartFrom;
+use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Operator;
+use crate::ui::workspace::Workspace;
 use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
@@ -38,7 +42,8 @@ fn loaded(recording: Recording) -> Session {
 pub fn diagnosed(recording: Recording) -> Session {
     let mut session = loaded(recording);
     let from = session.diagnosing.from;
-    let answer = diagnosing::ask(&session.recordings, &session.choice, from, Progress::default());
+    let answer =
+        diagnosis_state::ask(&session.document.recordings, &session.calibration.choice, from, Progress::default());
     match answer {
         Ok(answer) => session.diagnosing.answer = Some(Arc::new(answer)),
         Err(problem) => session.diagnosing.problem = Some(problem),
@@ -75,7 +80,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     let mut harness = window(loaded(RIPPLED.clone()));
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let answer = harness.state().session.diagnosing.answer.clone().expect("an answer");
     assert_eq!(answer.diagnosis.causes[0].id, "position-ripple");
     for label in [
@@ -88,9 +93,9 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     }
     harness.get_by_role_and_label(egui::Role::Button, "Extend the model").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Extend);
+    until_done(&mut harness, EXTEND);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
-    until_done(&mut harness, JobKind::SimulateExtended);
+    until_done(&mut harness, SIMULATE_EXTENDED);
     let replayed = harness.state().session.extended_replay().expect("played through the extended world");
     assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
@@ -100,29 +105,34 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     harness.get_by_role_and_label(egui::Role::Button, "Feel it in Train").click();
     harness.run_steps(4);
     let session = &harness.state().session;
-    assert_eq!((session.workspace, session.trainer.choice), (Workspace::Train, WorldChoice::After));
-    assert!(session.banners.is_empty(), "{:?}", session.banners);
+    assert_eq!((session.workspace, session.training.trainer.choice), (Workspace::Train, WorldChoice::After));
+    assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
 }
 
 #[test]
 fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() {
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        &answer,
+    );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
-    session.trainer.operator = Operator::Scripted;
-    session.trainer.choose(WorldChoice::After).expect("the extended world");
+    session.training.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
+    session.training.trainer.operator = Operator::Scripted;
+    session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
     let mut harness = window(session);
     assert!(harness.query_by_label("Feel it").is_some());
     let mut last_n = 0.0;
     for switch in 0..12 {
-        harness.state_mut().session.trainer.advance(0.45);
-        let before = harness.state().session.trainer.scene().expect("running").0.clone();
+        harness.state_mut().session.training.trainer.advance(0.45);
+        let before = harness.state().session.training.trainer.scene().expect("running").0.clone();
         harness.key_press(egui::Key::B);
         harness.step();
-        let trainer = &mut harness.state_mut().session.trainer;
+        let trainer = &mut harness.state_mut().session.training.trainer;
         let wanted = if switch % 2 == 0 { WorldChoice::Before } else { WorldChoice::After };
         assert_eq!(trainer.choice, wanted);
         trainer.advance(1e-3);
@@ -141,7 +151,7 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
         last_n = f64::max(last_n, after.tick.sent_force_n[0].norm());
     }
     assert!(last_n > 0.2, "the handle was held: {last_n} N");
-    assert!(harness.state().session.banners.is_empty());
+    assert!(harness.state().session.messages.banners.is_empty());
 }
 
 #[test]
@@ -151,7 +161,7 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
-        crate::ui::panels::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
+        crate::ui::panel::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
     });
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);
@@ -167,7 +177,12 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     second.name = "again".to_owned();
     let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
     session.show(recordings.to_vec());
-    let answer = diagnosing::ask(&session.recordings, &session.choice, session.diagnosing.from, Progress::default());
+    let answer = diagnosis_state::ask(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        Progress::default(),
+    );
     let answer = answer.expect("an answer");
     assert_eq!(answer.residuals.len(), 2);
     assert!(answer.residuals.iter().all(|r| !r.is_empty()));
@@ -177,7 +192,7 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     harness.run_steps(3);
     harness.get_by_role_and_label(egui::Role::Button, "again").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().session.current, 1);
+    assert_eq!(harness.state().session.document.current, 1);
 }
 
 #[test]
@@ -197,24 +212,29 @@ fn what_cannot_be_told_apart_is_shown_with_the_recording_that_would() {
 #[test]
 fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     let mut session = loaded(cart());
-    session.diagnosing.from = diagnosing::StartFrom::Mass;
+    session.diagnosing.from = StartFrom::Mass;
     let mut harness = window(session);
     assert!(harness.query_by_role_and_label(egui::Role::RadioButton, "Inertia").is_some());
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let session = &mut harness.state_mut().session;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
     assert!(ids.contains(&"viscous-friction") && ids.contains(&"coulomb-friction"), "{ids:?}");
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, session.diagnosing.from, &answer);
+    let worlds = diagnosis_state::extend(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        &answer,
+    );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
     let why = session.comparison().expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
     harness.run_steps(2);
-    until_done(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, DIAGNOSE);
     let answer = harness.state().session.diagnosing.answer.clone().expect("another answer");
     assert!(answer.diagnosis.baseline.model.contains("coulomb-friction"), "{}", answer.diagnosis.baseline.model);
 }
@@ -224,25 +244,30 @@ fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
     session.diagnose(&ctx);
-    session.give_up(JobKind::Diagnose);
-    assert!(!session.jobs.is_running(JobKind::Diagnose));
+    session.give_up(&ctx, DIAGNOSE);
+    assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);
     assert!(harness.query_by_label("Try again").is_some());
     assert!(harness.state().session.diagnosing.problem.as_ref().is_some_and(|p| p.contains("cancelled")));
     // And the engine itself ends when nobody wants its answer.
     let session = loaded(RIPPLED.clone());
     let unwanted = Progress::new(|share| share < 0.3);
-    let ended = diagnosing::ask(&session.recordings, &session.choice, session.diagnosing.from, unwanted);
+    let ended = diagnosis_state::ask(
+        &session.document.recordings,
+        &session.calibration.choice,
+        session.diagnosing.from,
+        unwanted,
+    );
     assert!(ended.is_err_and(|problem| problem.contains("cancelled")));
 }
 
 #[test]
 fn another_log_forgets_the_answer() {
     let mut session = diagnosed(RIPPLED.clone());
-    let recordings = loaded(cart()).recordings;
+    let recordings = loaded(cart()).document.recordings;
     session.show(recordings);
     assert!(session.diagnosing.answer.is_none() && session.diagnosing.worlds.is_none());
-    assert_eq!(session.prepared().map(|p| p.task), Some(Some(Task::Mechanism)));
+    assert_eq!(session.document.prepared().map(|p| p.task), Some(Some(Task::Mechanism)));
 }
 
 #[test]
@@ -271,8 +296,8 @@ fn the_picture_has_curves_of_all_three_kinds_in_both_themes() {
         return;
     }
     for dark in [false, true] {
-        let picture = screenshot::draw(diagnosed(RIPPLED.clone()), screenshot::Panel::Diagnose, [1280, 720], dark)
-            .expect("drawn");
+        let picture =
+            screenshot::draw(diagnosed(RIPPLED.clone()), picture("diagnose"), [1280, 720], dark).expect("drawn");
         let simulated = theme::role(dark, render::ColorRole::Simulated);
         for (what, color) in [("model", simulated), ("extended", theme::Palette::of(dark).good)] {
             let found = count_near(&picture, color);

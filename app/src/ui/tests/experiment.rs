@@ -1,13 +1,15 @@
 //! The experiment that a diagnosis asks for: rehearsed, done by hand, loaded; and what it settles.
 
 use super::{harness, until};
-use crate::experiment::simulated_object;
+use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
+use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::{Session, Workspace};
-use crate::ui::trainer::{Clock, WorldChoice};
+use crate::ui::session::Session;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Clock;
+use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -38,15 +40,15 @@ fn asked<'a>(folder: &Path) -> Harness<'a, App> {
 /// Any that leaves something open.
 pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'a, App> {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
-    session.trainer.recordings_folder = Some(folder.join("recordings"));
+    session.training.trainer.clock = Clock::Manual;
+    session.training.trainer.recordings_folder = Some(folder.join("recordings"));
     let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     let path = saved(recording, folder);
     harness.state_mut().session.open(&ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.analysis.is_some() && quiet(s)
+        s.calibration.analysis.is_some() && quiet(s)
     });
     harness.state_mut().session.workspace = Workspace::Diagnose;
     harness.run_steps(2);
@@ -88,7 +90,7 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        !s.jobs.is_running(JobKind::Rehearse)
+        !s.jobs.is_running(REHEARSE)
     });
     let rehearsal = harness.state().session.diagnosing.rehearsal.clone().expect("rehearsed");
     let ids: Vec<&str> = rehearsal.outcomes.iter().map(|o| o.id.as_str()).collect();
@@ -101,16 +103,16 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label_contains("SIMULATED").is_some());
-    assert_eq!(harness.state().session.recordings.len(), 1, "a rehearsal adds nothing by itself");
+    assert_eq!(harness.state().session.document.recordings.len(), 1, "a rehearsal adds nothing by itself");
     // One of them can be added, as what it is.
     harness.get_by_role_and_label(Role::Link, "Add simulated gravity-tilt").click();
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
     });
     let session = &harness.state().session;
-    assert_eq!(simulated_object(&session.recordings[1].recording), Some("as if gravity tilt"));
+    assert_eq!(simulated_object(&session.document.recordings[1].recording), Some("as if gravity tilt"));
     assert!(harness.query_by_label("Not measured").is_some());
     assert_eq!(settled_beside_friction(&harness), pair("gravity-tilt", "eccentric-mass"), "that is what was simulated");
 }
@@ -124,7 +126,7 @@ fn a_cancelled_rehearsal_leaves_nothing() {
     harness.get_by_role_and_label(Role::Link, "Cancel").click();
     harness.run_steps(3);
     let session = &harness.state().session;
-    assert!(!session.jobs.is_running(JobKind::Rehearse) && session.diagnosing.rehearsal.is_none());
+    assert!(!session.jobs.is_running(REHEARSE) && session.diagnosing.rehearsal.is_none());
     assert!(harness.query_by_label("Rehearse it").is_some());
 }
 
@@ -145,7 +147,7 @@ fn a_loaded_recording_of_the_experiment_settles_the_question() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
     });
     assert_eq!(
         (settled_beside_friction(&harness), verdict(&harness)),
@@ -162,7 +164,7 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = asked(folder.path());
     // The object of the recording stands in Train.
-    let trainer = &mut harness.state_mut().session.trainer;
+    let trainer = &mut harness.state_mut().session.training.trainer;
     trainer.file = Some(askew_world());
     trainer.choose(WorldChoice::File).expect("it can be touched");
     harness.get_by_role_and_label(Role::Button, "Do it in Train …").click();
@@ -176,7 +178,7 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     assert_eq!(harness.state().session.workspace, Workspace::Train);
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
-    assert!(harness.state().session.trainer.is_recording());
+    assert!(harness.state().session.training.trainer.is_recording());
     assert!(harness.query_by_label("Touch nothing.").is_some());
     let session = &mut harness.state_mut().session;
     let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
@@ -194,10 +196,10 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
     });
     let session = &harness.state().session;
-    let known = &session.recordings[1].recording.meta.known;
+    let known = &session.document.recordings[1].recording.meta.known;
     assert!(known.get("added_weight_N").is_some_and(|w| *w > 0.05), "{known:?}");
     assert_eq!(
         (session.workspace, settled_beside_friction(&harness)),
@@ -224,7 +226,7 @@ fn an_experiment_that_is_left_keeps_no_file() {
     harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
     harness.run_steps(3);
     let session = &harness.state().session;
-    assert!(session.experiments.guided.is_none() && !session.trainer.is_recording());
+    assert!(session.experiments.guided.is_none() && !session.training.trainer.is_recording());
 }
 
 #[test]
@@ -235,7 +237,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     assert!(harness.query_by_label("Do it in Train …").is_none(), "there is no handle to hold");
     harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
     harness.run_steps(2);
-    until(&mut harness, "the rehearsal", |app| !app.session.jobs.is_running(JobKind::Rehearse));
+    until(&mut harness, "the rehearsal", |app| !app.session.jobs.is_running(REHEARSE));
     let session = &harness.state().session;
     assert_eq!(session.diagnosing.rehearsal_problem, None);
     let rehearsal = session.diagnosing.rehearsal.clone().expect("rehearsed");
@@ -261,7 +263,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     harness.state_mut().session.add_experiment(&ctx, &path);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
     });
     assert_eq!(settled(&harness), pair("eccentric-mass", "gravity-tilt"));
 }

@@ -3,8 +3,8 @@
 use super::{STACK, harness, session};
 use crate::ui::app::App;
 use crate::ui::autosave::Autosave;
-use crate::ui::dock::Pane;
-use crate::ui::session::Workspace;
+use crate::ui::panel_id::PanelId;
+use crate::ui::workspace::Workspace;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -36,27 +36,27 @@ fn name_it(harness: &mut Harness<'_, App>, name: &str) {
 fn an_arrangement_is_saved_renamed_chosen_and_deleted_by_palette_and_menu() {
     let mut harness = window();
     find(&mut harness, "panel: states");
-    assert!(harness.state_mut().dock.has(AT, Pane::Segments));
+    assert!(harness.state_mut().dock.has(AT, PanelId::SEGMENTS));
     find(&mut harness, "save arrangement");
     assert!(harness.query_by_label("Save the arrangement").is_some());
     name_it(&mut harness, "with R and space");
     assert_eq!(harness.state().dock.names(AT).collect::<Vec<_>>(), ["with R and space"]);
-    assert!(!harness.state().session.playing, "letters of a name are no commands");
+    assert!(!harness.state().session.document.playing, "letters of a name are no commands");
     find(&mut harness, "rename arrangement");
     name_it(&mut harness, "states");
     find(&mut harness, "standard arrangement");
-    assert!(!harness.state_mut().dock.has(AT, Pane::Segments));
+    assert!(!harness.state_mut().dock.has(AT, PanelId::SEGMENTS));
     harness.get_by_label("Menu").click();
     harness.run_steps(3);
     harness.query_all_by_label_contains("View").last().expect("a menu").click();
     harness.run_steps(4);
     harness.get_by_label_contains("Arrangement: states").click();
     harness.run_steps(4);
-    assert!(harness.state_mut().dock.has(AT, Pane::Segments));
+    assert!(harness.state_mut().dock.has(AT, PanelId::SEGMENTS));
     assert_eq!(harness.state().dock.chosen(AT), Some("states"));
     find(&mut harness, "delete arrangement");
     assert_eq!(harness.state().dock.names(AT).count(), 0);
-    assert!(harness.state_mut().dock.has(AT, Pane::Segments), "panels stay");
+    assert!(harness.state_mut().dock.has(AT, PanelId::SEGMENTS), "panels stay");
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn they_are_kept_for_the_next_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = App::new(session(STACK.clone()));
     app.keep(folder.path(), false);
-    app.dock.toggle(AT, Pane::Scene);
+    app.dock.toggle(AT, PanelId::SCENE);
     assert!(app.dock.save_as(AT, "curves only"));
     let mut kept: Autosave = app.autosave.take().expect("kept");
     kept.end(&app.session, &app.dock, true);
@@ -87,6 +87,6 @@ fn they_are_kept_for_the_next_start() {
     let mut next = App::new(super::empty());
     next.keep(folder.path(), false);
     next.dock.reset(AT);
-    assert!(next.dock.has(AT, Pane::Scene));
-    assert!(next.dock.choose(AT, "curves only") && !next.dock.has(AT, Pane::Scene));
+    assert!(next.dock.has(AT, PanelId::SCENE));
+    assert!(next.dock.choose(AT, "curves only") && !next.dock.has(AT, PanelId::SCENE));
 }

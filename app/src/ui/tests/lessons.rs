@@ -2,16 +2,17 @@
 
 use super::{in_train, train_window, until};
 use crate::ui::app::App;
-use crate::ui::lessons::{Debrief, Phase};
-use crate::ui::session::{Session, Workspace};
-use crate::ui::trainer::Operator;
+use crate::ui::lessons::state::{Debrief, Phase};
+use crate::ui::session::Session;
+use crate::ui::trainer::live::Operator;
+use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use std::sync::Arc;
 
 fn phase(harness: &Harness<'_, App>) -> Option<Phase> {
-    harness.state().session.lessons.open.as_ref().map(|open| open.phase.clone())
+    harness.state().session.training.lessons.open.as_ref().map(|open| open.phase.clone())
 }
 
 fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
@@ -23,12 +24,12 @@ fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
 fn attempted(session: &mut Session) -> Debrief {
     session.test_lesson();
     session.follow_expert(120.0);
-    let open = session.lessons.open.as_ref().expect("open");
+    let open = session.training.lessons.open.as_ref().expect("open");
     let answer = open.lesson.question.as_ref().map(|_| open.variant);
     session.end_lesson_now(answer);
-    match session.lessons.open.as_ref().map(|open| &open.phase) {
+    match session.training.lessons.open.as_ref().map(|open| &open.phase) {
         Some(Phase::Debrief(debrief)) => (**debrief).clone(),
-        other => panic!("{other:?}: {:?}", session.banners),
+        other => panic!("{other:?}: {:?}", session.messages.banners),
     }
 }
 
@@ -36,16 +37,17 @@ fn attempted(session: &mut Session) -> Debrief {
 fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = in_train(folder.path());
-    session.lessons.load();
-    assert_eq!((session.lessons.all.len(), session.lessons.problems.len()), (11, 0));
+    session.training.lessons.load();
+    assert_eq!((session.training.lessons.all.len(), session.training.lessons.problems.len()), (11, 0));
     let mut missed = Vec::new();
-    for lesson in session.lessons.all.clone() {
+    for lesson in session.training.lessons.all.clone() {
         session.open_lesson_now(&lesson);
         let debrief = attempted(&mut session);
         if !debrief.grade.completed {
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
         }
-        let (again, _) = crate::ui::lessons::graded_from(&debrief.path, None).expect("graded from its file alone");
+        let (again, _) =
+            crate::ui::lessons::state::graded_from(&debrief.path, None).expect("graded from its file alone");
         assert_eq!(again, debrief.grade, "{}", lesson.id);
         assert!(debrief.trace.duration_s() > 2.0, "{}", lesson.id);
     }
@@ -58,38 +60,38 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     let mut harness = train_window(in_train(folder.path()));
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_history(&ctx, folder.path().join("history.sqlite"));
-    let learning = &mut harness.state_mut().session.learning;
+    let learning = &mut harness.state_mut().session.training.learning;
     "Ada".clone_into(&mut learning.name_field);
     learning.add_trainee();
     click(&mut harness, Role::RadioButton, "Lessons");
     click(&mut harness, Role::Link, "Lift and hold");
     assert_eq!(phase(&harness), Some(Phase::Brief));
     until(&mut harness, "the expert", |app| {
-        app.session.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
+        app.session.training.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
     });
     click(&mut harness, Role::Button, "Watch");
     assert!(harness.query_by_label_contains("An expert shows it").is_some());
-    harness.state_mut().session.trainer.advance(30.0);
+    harness.state_mut().session.training.trainer.advance(30.0);
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("That was all").is_some());
     click(&mut harness, Role::Button, "Practise");
     assert_eq!(phase(&harness), Some(Phase::Practising));
-    assert!(!harness.state().session.trainer.is_recording(), "practice is not recorded");
+    assert!(!harness.state().session.training.trainer.is_recording(), "practice is not recorded");
     harness.state_mut().session.follow_expert(60.0);
     harness.run_steps(3);
     assert!(harness.query_all_by_label_contains("All goals reached").next().is_some());
     click(&mut harness, Role::Button, "Take the test");
-    assert!(harness.state().session.trainer.is_recording());
+    assert!(harness.state().session.training.trainer.is_recording());
     harness.state_mut().session.follow_expert(60.0);
     until(&mut harness, "the debrief", |app| {
-        app.session.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Debrief(_)))
+        app.session.training.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Debrief(_)))
     });
     let Some(Phase::Debrief(debrief)) = phase(&harness) else { panic!("no debrief") };
     assert!(debrief.grade.completed && debrief.path.is_file(), "{:?}", debrief.grade);
     assert!(harness.query_by_label(&debrief.grade.advice).is_some(), "{}", debrief.grade.advice);
     assert!(harness.query_by_label("Time to complete").is_some());
-    until(&mut harness, "the history", |app| !app.session.learning.attempts.is_empty());
-    let kept = harness.state().session.learning.attempts[0].clone();
+    until(&mut harness, "the history", |app| !app.session.training.learning.attempts.is_empty());
+    let kept = harness.state().session.training.learning.attempts[0].clone();
     assert_eq!((kept.trainee.as_str(), kept.lesson.as_str()), ("Ada", "lift-and-hold"));
     assert_eq!((kept.score, kept.completed, kept.proficient), (debrief.grade.score, true, false));
     click(&mut harness, Role::Link, "All lessons");
@@ -101,24 +103,24 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
 fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = in_train(folder.path());
-    session.lessons.load();
-    let barrel = session.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
+    session.training.lessons.load();
+    let barrel = session.training.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
     session.open_lesson_now(&barrel);
     session.watch_lesson();
     session.close_lesson();
-    assert_eq!(session.trainer.operator, Operator::You, "the expert stops");
+    assert_eq!(session.training.trainer.operator, Operator::You, "the expert stops");
     session.open_lesson_now(&barrel);
     session.test_lesson();
     session.follow_expert(3.0);
     session.close_lesson();
-    assert!(!session.trainer.is_recording() && session.lessons.open.is_none());
+    assert!(!session.training.trainer.is_recording() && session.training.lessons.open.is_none());
     session.open_lesson_now(&barrel);
     session.test_lesson();
     session.follow_expert(120.0);
-    let right = session.lessons.open.as_ref().expect("open").variant;
+    let right = session.training.lessons.open.as_ref().expect("open").variant;
     session.end_lesson_now(Some((right + 1) % 4));
-    let Some(Phase::Debrief(debrief)) = session.lessons.open.as_ref().map(|open| open.phase.clone()) else {
-        panic!("no debrief: {:?}", session.banners)
+    let Some(Phase::Debrief(debrief)) = session.training.lessons.open.as_ref().map(|open| open.phase.clone()) else {
+        panic!("no debrief: {:?}", session.messages.banners)
     };
     assert_eq!((debrief.grade.completed, debrief.grade.answered_rightly), (false, Some(false)));
     assert!(debrief.grade.advice.contains("answer was wrong"), "{}", debrief.grade.advice);
@@ -128,19 +130,19 @@ fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
 fn a_calibrated_world_becomes_a_lesson() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = super::session(super::STACK.clone());
-    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    session.lessons.folder = Some(folder.path().join("lessons"));
+    session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.training.lessons.folder = Some(folder.path().join("lessons"));
     let mut harness = train_window(session);
     let ctx = harness.ctx.clone();
     harness.state_mut().session.practise_on_this(&ctx);
     until(&mut harness, "the lesson", |app| {
-        app.session.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
+        app.session.training.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
     });
     let session = &mut harness.state_mut().session;
     assert_eq!(session.workspace, Workspace::Train);
     let debrief = attempted(session);
     assert!(debrief.grade.completed, "{:?}", debrief.grade);
-    let measured = session.analysis.as_ref().map(|a| a.world.blocks[0].mass_kg);
-    let touched = session.trainer.standing_world().blocks.first().map(|b| b.mass_kg);
+    let measured = session.calibration.analysis.as_ref().map(|a| a.world.blocks[0].mass_kg);
+    let touched = session.training.trainer.standing_world().blocks.first().map(|b| b.mass_kg);
     assert_eq!(measured, touched, "it is the measured block");
 }

@@ -27,11 +27,13 @@ mod workbench;
 
 use super::app::App;
 use super::jobs::JobKind;
+use super::panel::Picture;
 use super::prepare::Prepared;
-use super::screenshot::{self, Panel};
-use super::session::{self, Session, Workspace};
-use super::theme;
-use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use super::session::{self, Session};
+use super::{screenshot, theme};
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use haptics::recording::{Channel, Recording};
 use std::io::Write;
@@ -87,17 +89,17 @@ pub fn clockless_path() -> Recording {
 /// A session with a recording, fitted and replayed as far as that goes.
 pub fn session(recording: Recording) -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match crate::ui::fitting::analyse(&session.recordings, &session.choice) {
+    match crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice) {
         Ok(analysis) => {
-            session.replays = crate::ui::fitting::replay_all(&analysis.world, &session.recordings);
-            session.enough = crate::ui::fitting::judge(&analysis, &session.recordings);
-            session.analysis = Some(Arc::new(analysis));
-            session.refits.answered(&session.choice.clone());
+            session.calibration.replays = crate::ui::refits::replay_all(&analysis.world, &session.document.recordings);
+            session.calibration.enough = crate::ui::refits::judge(&analysis, &session.document.recordings);
+            session.calibration.analysis = Some(Arc::new(analysis));
+            session.calibration.refits.answered(&session.calibration.choice.clone());
         }
-        Err(problem) => session.fit_problem = Some(problem),
+        Err(problem) => session.calibration.fit_problem = Some(problem),
     }
     session
 }
@@ -107,7 +109,7 @@ pub static CRANK: LazyLock<Recording> = LazyLock::new(|| performed(WorldChoice::
 
 pub fn empty() -> Session {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session
 }
 
@@ -115,14 +117,19 @@ pub fn empty() -> Session {
 pub fn in_train(folder: &Path) -> Session {
     let mut session = empty();
     session.workspace = Workspace::Train;
-    session.trainer.recordings_folder = Some(folder.to_path_buf());
-    session.lessons.folder = Some(folder.join("lessons"));
+    session.training.trainer.recordings_folder = Some(folder.to_path_buf());
+    session.training.lessons.folder = Some(folder.join("lessons"));
     session
+}
+
+/// A picture by its name.
+pub fn picture(name: &str) -> &'static Picture {
+    screenshot::pictures().find(|picture| picture.name == name).expect("a picture of this name")
 }
 
 /// A window that shows a session in Train.
 pub fn train_window(session: Session) -> Harness<'static, App> {
-    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
+    harness(screenshot::app_for(session, picture("train")), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
 }
 
 pub fn harness<'a, S: 'a>(

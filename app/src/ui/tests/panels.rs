@@ -1,51 +1,32 @@
 //! Every panel on an empty session, on blocks, on a crank, on a mechanism; what is shown and what buttons do.
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel;
-use crate::ui::panels::diagnose::DiagnosePanel;
-use crate::ui::panels::diagnosis::DiagnosisPanel;
-use crate::ui::panels::log::LogPanel;
+use crate::text::format;
+use crate::ui::panel::Panel;
+use crate::ui::panels::list::PANELS;
 use crate::ui::panels::parameters::ParametersPanel;
 use crate::ui::panels::recording::RecordingPanel;
 use crate::ui::panels::results::ResultsPanel;
-use crate::ui::panels::scene::ScenePanel;
-use crate::ui::panels::segments::SegmentsPanel;
-use crate::ui::panels::trainer_side::TrainerSide;
-use crate::ui::panels::trainer_view::TrainerView;
+use crate::ui::refits::FIT;
 use crate::ui::session::Session;
-use crate::ui::{format, screenshot, theme};
+use crate::ui::tests::picture;
+use crate::ui::{screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
 use haptics::recording::Recording;
-
-fn panels() -> Vec<Box<dyn Panel>> {
-    vec![
-        Box::new(LogPanel::default()),
-        Box::new(SegmentsPanel),
-        Box::new(ParametersPanel),
-        Box::new(ResultsPanel::default()),
-        Box::new(ScenePanel::default()),
-        Box::new(RecordingPanel::default()),
-        Box::new(TrainerView::default()),
-        Box::new(TrainerSide),
-        Box::new(DiagnosePanel),
-        Box::new(DiagnosisPanel),
-    ]
-}
 
 #[test]
 fn every_panel_draws_every_kind_of_session() {
     let sessions: [fn() -> Session; 5] =
         [empty, || session(STACK.clone()), || session(CRANK.clone()), || session(cart()), || session(clockless_path())];
     for make in sessions {
-        for mut panel in panels() {
-            let title = panel.title();
+        for registration in PANELS {
+            let (title, mut panel) = (registration.title, (registration.new)());
             let mut harness = harness(make(), [420.0, 700.0], move |ui, session: &mut Session| panel.ui(ui, session));
             // Tiny windows too.
             harness.set_size(egui::vec2(60.0, 40.0));
             harness.run_steps(2);
-            assert!(harness.state().banners.is_empty(), "{title}: {:?}", harness.state().banners);
+            assert!(harness.state().messages.banners.is_empty(), "{title}: {:?}", harness.state().messages.banners);
         }
     }
 }
@@ -53,7 +34,7 @@ fn every_panel_draws_every_kind_of_session() {
 #[test]
 fn the_table_shows_the_values_and_greys_what_is_unknown() {
     let session = session(STACK.clone());
-    let fit = session.analysis.as_ref().expect("fitted").fit.clone();
+    let fit = session.calibration.analysis.as_ref().expect("fitted").fit.clone();
     let harness = harness(session, [420.0, 800.0], |ui, session| ParametersPanel.ui(ui, session));
     let weight = fit.parameter("block-1", "weight_N").expect("carried");
     let (value, error) = format::with_error(weight.value.expect("a value"), weight.std_error);
@@ -66,7 +47,7 @@ fn the_table_shows_the_values_and_greys_what_is_unknown() {
 #[test]
 fn refit_starts_a_job_and_brings_a_fit() {
     let mut session = session(STACK.clone());
-    session.analysis = None;
+    session.calibration.analysis = None;
     let mut harness = harness(session, [300.0, 800.0], |ui, session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
@@ -74,8 +55,8 @@ fn refit_starts_a_job_and_brings_a_fit() {
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();
     harness.run_steps(1);
-    assert!(harness.state().jobs.is_running(JobKind::Fit) || harness.state().analysis.is_some());
-    until(&mut harness, "the fit", |session| session.analysis.is_some());
+    assert!(harness.state().jobs.is_running(FIT) || harness.state().calibration.analysis.is_some());
+    until(&mut harness, "the fit", |session| session.calibration.analysis.is_some());
 }
 
 #[test]
@@ -103,17 +84,17 @@ fn doubtful_spans_are_shaded_and_listed() {
         harness(session(recording.clone()), [420.0, 900.0], |ui, session| ResultsPanel::default().ui(ui, session));
     harness.get_by_label("Go to 2.00 s (1 of 2)").click();
     harness.run_steps(3);
-    let (from, to) = harness.state().view_s;
-    assert!(harness.state().cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
+    let (from, to) = harness.state().document.view_s;
+    assert!(harness.state().document.cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
     harness.get_by_label("Go to 8.00 s (2 of 2)").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().cursor_s, 8.0);
+    assert_eq!(harness.state().document.cursor_s, 8.0);
     if no_driver() {
         return;
     }
     for dark in [false, true] {
         let marks = |recording: &Recording| {
-            let picture = screenshot::draw(session(recording.clone()), screenshot::Panel::Log, [900, 560], dark);
+            let picture = screenshot::draw(session(recording.clone()), picture("log"), [900, 560], dark);
             count_near(&picture.expect("drawn"), theme::Palette::of(dark).caution)
         };
         let (with, without) = (marks(&recording), marks(&cart()));

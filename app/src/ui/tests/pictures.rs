@@ -2,7 +2,9 @@
 
 use super::thresholds::{COLORS, DARK, INK, LIGHT, MARGIN, SURFACE};
 use super::{STACK, count_near, empty, no_driver, session};
-use crate::ui::{gallery, screenshot, theme};
+use crate::ui::gallery::plates;
+use crate::ui::tests::picture;
+use crate::ui::{screenshot, theme};
 use crate::video::tests::no_reader;
 use estimator::segment::SystemState;
 use std::collections::HashSet;
@@ -13,8 +15,7 @@ fn the_picture_of_the_log_has_a_band_in_the_states_colours() {
         return;
     }
     for dark in [false, true] {
-        let picture =
-            screenshot::draw(session(STACK.clone()), screenshot::Panel::Log, [900, 560], dark).expect("drawn");
+        let picture = screenshot::draw(session(STACK.clone()), picture("log"), [900, 560], dark).expect("drawn");
         for state in [SystemState::FreeMotion, SystemState::HoldOnGround, SystemState::HoldAboveGround] {
             let found = count_near(&picture, theme::state_color(dark, state));
             assert!(found > 500, "{state:?}, dark {dark}: {found} pixels");
@@ -27,7 +28,7 @@ fn the_scene_stands_in_the_picture_of_the_workbench() {
     if no_driver() {
         return;
     }
-    let with = screenshot::draw(session(STACK.clone()), screenshot::Panel::Scene, [600, 400], true).expect("drawn");
+    let with = screenshot::draw(session(STACK.clone()), picture("scene"), [600, 400], true).expect("drawn");
     let block = theme::role(true, render::ColorRole::Block(0));
     let [r, g, b, _] = block.to_array().map(i32::from);
     let like_the_block = |p: &&image::Rgba<u8>| {
@@ -43,14 +44,14 @@ fn a_whole_workspace_is_drawn_without_anything() {
     if no_driver() {
         return;
     }
-    for panel in [screenshot::Panel::Workbench, screenshot::Panel::Train] {
+    for panel in [picture("workbench"), picture("train")] {
         let picture = screenshot::draw(empty(), panel, [1000, 700], false).expect("drawn");
         assert_eq!(picture.dimensions(), (1000, 700));
     }
 }
 
 /// Draws one plate of the gallery in both themes and looks at what every picture must have.
-fn look_at(plate: &gallery::Plate, studio: &mut gallery::Studio) {
+fn look_at(plate: &plates::Plate, studio: &mut plates::Studio) {
     for dark in [false, true] {
         let name = format!("{}, dark {dark}", plate.name);
         let picture = studio.draw(plate, dark).expect("drawn");
@@ -80,15 +81,15 @@ fn nothing_outside(picture: &image::RgbaImage, window: egui::Color32, name: &str
     assert!(stray.is_none(), "{name}: something is drawn outside, at {stray:?}");
 }
 
-fn look_at_all(wanted: impl Fn(&gallery::Plate) -> bool) {
+fn look_at_all(wanted: impl Fn(&plates::Plate) -> bool) {
     if no_driver() {
         return;
     }
-    let mut studio = gallery::Studio::default();
+    let mut studio = plates::Studio::default();
     // Without the program that reads videos there is no picture of one.
     let without = no_reader();
-    let there = |plate: &gallery::Plate| !without || plate.panel() != screenshot::Panel::Video;
-    let plates: Vec<_> = gallery::plates().into_iter().filter(wanted).filter(there).collect();
+    let there = |plate: &plates::Plate| !without || plate.picture.name != "video";
+    let plates: Vec<_> = plates::plates().into_iter().filter(wanted).filter(there).collect();
     assert!(!plates.is_empty());
     for plate in plates {
         look_at(&plate, &mut studio);
@@ -98,7 +99,7 @@ fn look_at_all(wanted: impl Fn(&gallery::Plate) -> bool) {
 // In parts, so that they run beside each other.
 #[test]
 fn every_panel_is_drawn_in_light_and_dark() {
-    look_at_all(|plate| plate.is_framed() && plate.panel() != screenshot::Panel::Trainer && !plate.is_view());
+    look_at_all(|plate| plate.is_framed() && plate.picture.name != "trainer" && !plate.is_view());
 }
 
 #[test]
@@ -108,10 +109,10 @@ fn every_page_is_drawn_in_light_and_dark() {
 
 #[test]
 fn every_view_of_a_recording_is_drawn_in_light_and_dark() {
-    look_at_all(gallery::Plate::is_view);
+    look_at_all(plates::Plate::is_view);
 }
 
 #[test]
 fn every_world_is_drawn_in_light_and_dark() {
-    look_at_all(|plate| plate.panel() == screenshot::Panel::Trainer);
+    look_at_all(|plate| plate.picture.name == "trainer");
 }

@@ -2,15 +2,16 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
-use crate::ui::diagnosing;
-use crate::ui::fitting::{analyse, replay_all, replay_forces};
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel as _;
+use crate::ui::diagnosis_state;
+use crate::ui::overlays::ALIGN;
+use crate::ui::panel::Panel as _;
 use crate::ui::panels::log::LogPanel;
-use crate::ui::plots::LogView;
-use crate::ui::plots::choices::{XyAxis, XyColor};
+use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::refits::{analyse, replay_all, replay_forces};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
+use crate::ui::workspace::Workspace;
 use crate::ui::{screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
@@ -40,8 +41,9 @@ fn extended() -> Session {
     session.workspace = Workspace::Calibrate;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let from = session.diagnosing.from;
-    let worlds = diagnosing::extend(&session.recordings, &session.choice, from, &answer).expect("extended");
-    session.diagnosing.replays = replay_forces(&worlds.after, &session.recordings);
+    let worlds = diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer)
+        .expect("extended");
+    session.diagnosing.replays = replay_forces(&worlds.after, &session.document.recordings);
     session.diagnosing.worlds = Some(Arc::new(worlds));
     session
 }
@@ -69,9 +71,9 @@ pub fn two(first: &Recording, second: Recording) -> Session {
     let mut session = Session::new();
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(first.clone())), Arc::new(Prepared::new(second))]);
-    let analysis = analyse(&session.recordings, &session.choice).expect("fitted");
-    session.replays = replay_all(&analysis.world, &session.recordings);
-    session.analysis = Some(Arc::new(analysis));
+    let analysis = analyse(&session.document.recordings, &session.calibration.choice).expect("fitted");
+    session.calibration.replays = replay_all(&analysis.world, &session.document.recordings);
+    session.calibration.analysis = Some(Arc::new(analysis));
     session
 }
 
@@ -84,10 +86,10 @@ fn a_transform_is_chosen_at_the_title_and_the_unit_follows() {
     assert_eq!(harness.state().plots.groups["Position/mm"].drawn, Transform::Derivative, "short: at once");
     assert!(harness.query_by_label("mm/s").is_some());
     // The value at the cursor is the speed that the motion was made with.
-    harness.state_mut().seek(2.0);
+    harness.state_mut().document.seek(2.0);
     harness.run_steps(2);
     let speed = 1e3 * (0.13 * 2.6_f64.cos() + 0.124 * 6.2_f64.cos());
-    let text = crate::ui::format::number(speed, 1);
+    let text = crate::text::format::number(speed, 1);
     assert!(harness.query_by_label(&text).is_some(), "{text} mm/s");
     press(&mut harness, Role::RadioButton, "Low-pass");
     let Transform::LowPass(cutoff_hz) = harness.state().plots.groups["Position/mm"].transform else {
@@ -165,8 +167,8 @@ fn the_extended_curve_and_what_is_left_stand_in_the_picture() {
             if !shown {
                 choice.toggle("layer: extended");
             }
-            session.seek(6.0);
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1100, 760], dark).expect("drawn");
+            session.document.seek(6.0);
+            let picture = screenshot::draw(session, picture("log"), [1100, 760], dark).expect("drawn");
             keep(&format!("left-over-{shown}-{dark}"), &picture);
             picture
         };
@@ -190,12 +192,12 @@ fn one_signal_is_drawn_against_another_and_a_click_moves_the_cursor() {
     let name = |axis: &Option<XyAxis>| axis.as_ref().map(|a| a.name.clone()).unwrap_or_default();
     assert_eq!((name(&chosen.x), name(&chosen.y)), ("q_m".to_owned(), "f_N".to_owned()));
     // To the far right of the plot lies the largest position.
-    let before = harness.state().cursor_s;
+    let before = harness.state().document.cursor_s;
     harness.drag_at(egui::pos2(980.0, 300.0));
     harness.run_steps(1);
     harness.drop_at(egui::pos2(980.0, 300.0));
     harness.run_steps(2);
-    let at = harness.state().cursor_s;
+    let at = harness.state().document.cursor_s;
     let recording = cart();
     let (q, times) = (recording.channel("q_m").expect("q"), recording.time_s.as_ref().expect("a clock"));
     let largest = q.iter().copied().fold(f64::MIN, f64::max);
@@ -220,8 +222,8 @@ fn xy_pictures_have_the_states_colours_or_those_of_time() {
             let mut session = session(STACK.clone());
             session.plots.view = LogView::Xy;
             session.plots.xy.color = color;
-            session.seek(6.0);
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1000, 640], dark).expect("drawn");
+            session.document.seek(6.0);
+            let picture = screenshot::draw(session, picture("log"), [1000, 640], dark).expect("drawn");
             keep(&format!("xy-{color:?}-{dark}"), &picture);
             // Without the band below.
             image::imageops::crop_imm(&picture, 260, 50, 730, 440).to_image()
@@ -247,7 +249,7 @@ fn another_recording_is_laid_over_and_aligned() {
     harness.run_steps(3);
     assert!(harness.query_by_label("stack again").is_some(), "in the legend");
     press(&mut harness, Role::Button, "Align");
-    until(&mut harness, "the place", |s| !s.jobs.is_running(JobKind::Align));
+    until(&mut harness, "the place", |s| !s.jobs.is_running(ALIGN));
     let offset_s = harness.state().plots.overlaid[0].offset_s;
     assert!((offset_s + later_s).abs() < 2e-3, "{offset_s} s");
     harness.state_mut().plots.overlaid[0].offset_s = 0.0;
@@ -287,7 +289,7 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
                 session.toggle_overlay(1);
                 session.shift_overlay(1, 0.4);
             }
-            let picture = screenshot::draw(session, screenshot::Panel::Log, [1100, 720], dark).expect("drawn");
+            let picture = screenshot::draw(session, picture("log"), [1100, 720], dark).expect("drawn");
             keep(&format!("overlay-{overlay}-{dark}"), &picture);
             picture
         };
@@ -316,7 +318,7 @@ fn nothing_of_the_log_is_cut_where_there_is_little_room() {
         }
     }
     if !no_driver() {
-        let picture = screenshot::draw(make(), screenshot::Panel::Log, [640, 520], false).expect("drawn");
+        let picture = screenshot::draw(make(), picture("log"), [640, 520], false).expect("drawn");
         keep("little-room", &picture);
     }
 }

@@ -2,16 +2,16 @@
 
 use super::thresholds::LAYER;
 use super::{harness, no_driver, until};
-use crate::history::{Attempt, Conditions};
+use crate::history::attempt::{Attempt, Conditions};
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
-use crate::ui::gallery::samples::practice;
-use crate::ui::jobs::Outcome;
+use crate::ui::gallery::practice::practice;
 use crate::ui::learning::Practised;
-use crate::ui::screenshot::{self, Panel};
-use crate::ui::session::{Session, Workspace};
-use crate::ui::theme;
-use crate::ui::trainer::Clock;
+use crate::ui::panel_id::PanelId;
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
+use crate::ui::trainer::live::Clock;
+use crate::ui::workspace::Workspace;
+use crate::ui::{files, screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -20,10 +20,10 @@ use std::path::Path;
 /// The window with the panel in front, over a history of its own.
 fn window<'a>(database: &Path) -> Harness<'a, App> {
     let mut session = Session::new();
-    session.trainer.clock = Clock::Manual;
+    session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Train;
     let mut app = App::new(session);
-    app.dock.bring(Workspace::Train, Pane::Progress);
+    app.dock.bring(Workspace::Train, PanelId::PROGRESS);
     let mut harness = harness(app, [1280.0, 1000.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_history(&ctx, database.to_path_buf());
@@ -47,16 +47,16 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     type_into(&mut harness, "Name of a new trainee", "Grace");
     harness.get_by_role_and_label(Role::Button, "Add").click();
     harness.run_steps(2);
-    until(&mut harness, "the trainee", |app| app.session.learning.trainees == ["Grace"]);
-    assert_eq!(harness.state().session.learning.trainee.as_deref(), Some("Grace"));
+    until(&mut harness, "the trainee", |app| app.session.training.learning.trainees == ["Grace"]);
+    assert_eq!(harness.state().session.training.learning.trainee.as_deref(), Some("Grace"));
     assert!(harness.query_by_label_contains("Grace has not attempted").is_some());
     for attempt in practice() {
         assert!(harness.state_mut().session.keep_attempt(Attempt { trainee: "Grace".to_owned(), ..attempt }));
     }
-    until(&mut harness, "the attempts", |app| app.session.learning.attempts.len() == 23);
+    until(&mut harness, "the attempts", |app| app.session.training.learning.attempts.len() == 23);
     assert!(harness.query_by_label("23 attempts.").is_some());
     assert!(harness.query_by_label_contains("Power law of practice").is_some());
-    let learned = harness.state().session.learning.learned.clone();
+    let learned = harness.state().session.training.learning.learned.clone();
     assert_eq!((learned.attempts.len(), learned.tries.len(), learned.sessions.len()), (23, 22, 4), "one has no score");
     let proficient = learned.proficient_at.expect("in the end");
     assert!(harness.query_by_label_contains(&format!("Proficient after attempt {proficient}:")).is_some());
@@ -69,10 +69,10 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
         ..practice().remove(3)
     };
     harness.state_mut().session.keep_attempt(other);
-    until(&mut harness, "the other lesson", |app| app.session.learning.attempts.len() == 24);
+    until(&mut harness, "the other lesson", |app| app.session.training.learning.attempts.len() == 24);
     let shown = Practised { lesson: "stack".to_owned(), conditions: delayed };
-    assert_eq!(harness.state().session.learning.practised()[1], shown);
-    harness.state_mut().session.learning.look_at(Some(shown));
+    assert_eq!(harness.state().session.training.learning.practised()[1], shown);
+    harness.state_mut().session.training.learning.look_at(Some(shown));
     harness.run_steps(2);
     assert!(
         harness.query_by_label("One attempt.").is_some() && harness.query_by_label_contains("Six scores").is_some()
@@ -80,15 +80,15 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     // A table of everything, where the dialog says.
     let table = folder.path().join("grace.csv");
     let ctx = harness.ctx.clone();
-    let answer = Outcome::Chosen(crate::ui::jobs::Purpose::SaveHistory, Some(table.clone()));
-    harness.state_mut().session.jobs.start(&ctx, crate::ui::jobs::JobKind::Dialog, move || answer);
-    until(&mut harness, "the table", |app| app.session.banners.iter().any(|b| b.text == "Saved grace.csv."));
+    let answer = files::answered(files::SAVE_HISTORY, table.clone());
+    harness.state_mut().session.jobs.start(&ctx, files::SAVE, "", move |_| answer);
+    until(&mut harness, "the table", |app| app.session.messages.banners.iter().any(|b| b.text == "Saved grace.csv."));
     assert_eq!(std::fs::read_to_string(&table).expect("written").lines().count(), 25);
     drop(harness);
     // The next start knows her, and shows what she has done.
     let mut harness = window(&database);
-    until(&mut harness, "what was kept", |app| app.session.learning.attempts.len() == 24);
-    assert_eq!(harness.state().session.learning.trainee.as_deref(), Some("Grace"));
+    until(&mut harness, "what was kept", |app| app.session.training.learning.attempts.len() == 24);
+    assert_eq!(harness.state().session.training.learning.trainee.as_deref(), Some("Grace"));
 }
 
 #[test]
@@ -96,19 +96,22 @@ fn an_attempt_of_another_trainee_does_not_get_among_those_that_are_shown() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = window(&folder.path().join("history.sqlite"));
     let session = &mut harness.state_mut().session;
-    session.learning.name_field = "Ada".to_owned();
-    session.learning.add_trainee();
+    session.training.learning.name_field = "Ada".to_owned();
+    session.training.learning.add_trainee();
     let mut mine = practice();
     mine.truncate(2);
     session.keep_attempt(Attempt { trainee: "Grace".to_owned(), ..mine[0].clone() });
     session.keep_attempt(mine[1].clone());
     until(&mut harness, "both", |app| {
-        app.session.learning.trainees.contains(&"Grace".to_owned()) && !app.session.learning.attempts.is_empty()
+        app.session.training.learning.trainees.contains(&"Grace".to_owned())
+            && !app.session.training.learning.attempts.is_empty()
     });
-    assert_eq!(harness.state().session.learning.attempts, mine[1..]);
-    harness.state_mut().session.learning.choose("Grace");
-    until(&mut harness, "hers", |app| app.session.learning.attempts.first().is_some_and(|a| a.trainee == "Grace"));
-    assert_eq!(harness.state().session.learning.attempts.len(), 1);
+    assert_eq!(harness.state().session.training.learning.attempts, mine[1..]);
+    harness.state_mut().session.training.learning.choose("Grace");
+    until(&mut harness, "hers", |app| {
+        app.session.training.learning.attempts.first().is_some_and(|a| a.trainee == "Grace")
+    });
+    assert_eq!(harness.state().session.training.learning.attempts.len(), 1);
 }
 
 #[test]
@@ -120,11 +123,11 @@ fn the_curve_has_its_band_its_sessions_and_the_experts_level_in_both_themes() {
         let p = theme::Palette::of(dark);
         let picture = |expert: bool| {
             let mut session = Session::new();
-            session.learning.take(practice());
+            session.training.learning.take(practice());
             if expert {
-                session.learning.experts.insert("pinch".to_owned(), 92.0);
+                session.training.learning.experts.insert("pinch".to_owned(), 92.0);
             }
-            screenshot::draw(session, Panel::Progress, [720, 760], dark).expect("drawn")
+            screenshot::draw(session, picture("progress"), [720, 760], dark).expect("drawn")
         };
         let (with, without) = (picture(true), picture(false));
         let count = |image, color| super::count_near(image, color);

@@ -1,17 +1,17 @@
 //! The editor of a task's rules: chips, faults, live states, saving.
 
 use super::{CRANK, STACK, harness, session, until};
-use crate::ui::jobs::JobKind;
-use crate::ui::panels::Panel as _;
+use crate::ui::editing_rules;
+use crate::ui::panel::Panel as _;
 use crate::ui::panels::rules::RulesPanel;
-use crate::ui::rules::Rules;
+use crate::ui::refits::SEGMENT;
 use crate::ui::session::Session;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
 
 fn open(mut session: Session) -> Harness<'static, Session> {
-    session.rules = Rules::open(&mut session);
+    session.calibration.rules = editing_rules::open(&mut session);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         session.poll(&ctx);
@@ -22,7 +22,7 @@ fn open(mut session: Session) -> Harness<'static, Session> {
 /// Until nothing is told anew any more.
 fn settle(harness: &mut Harness<'_, Session>) {
     harness.run_steps(2);
-    until(harness, "the states", |session| !session.jobs.is_running(JobKind::Segment));
+    until(harness, "the states", |session| !session.jobs.is_running(SEGMENT));
 }
 
 fn carried_s(session: &Session) -> f64 {
@@ -34,7 +34,7 @@ fn carried_s(session: &Session) -> f64 {
 fn a_changed_rule_is_tried_at_once_and_taken_back() {
     let mut harness = open(session(STACK.clone()));
     let before = carried_s(harness.state());
-    assert!(before > 1.0 && !harness.state().stale);
+    assert!(before > 1.0 && !harness.state().calibration.stale);
     // Carried where it is pressed down instead of lifted.
     for sign in ["Hold above ground Lift +", "Hold above ground Lift -"] {
         harness.get_by_label(sign).click();
@@ -43,7 +43,11 @@ fn a_changed_rule_is_tried_at_once_and_taken_back() {
     let changed = carried_s(harness.state());
     assert!((changed - before).abs() > 0.5, "{changed} s and {before} s");
     let state = harness.state();
-    assert!(state.stale && state.choice.own.is_some() && state.banners.is_empty(), "{:?}", state.banners);
+    assert!(
+        state.calibration.stale && state.calibration.choice.own.is_some() && state.messages.banners.is_empty(),
+        "{:?}",
+        state.messages.banners
+    );
     harness.get_by_label("Reset").click();
     settle(&mut harness);
     assert!((carried_s(harness.state()) - before).abs() < 1e-9);
@@ -53,34 +57,34 @@ fn a_changed_rule_is_tried_at_once_and_taken_back() {
 fn what_cannot_be_used_is_said_in_one_sentence_and_changes_nothing() {
     let mut harness = open(session(STACK.clone()));
     let before = carried_s(harness.state());
-    let rules = harness.state_mut().rules.as_mut().expect("open");
+    let rules = harness.state_mut().calibration.rules.as_mut().expect("open");
     rules.draft.states.retain(|rule| rule.state != SystemState::HoldAboveGround);
     rules.untried = true;
     settle(&mut harness);
-    let fault = harness.state().rules.as_ref().and_then(|rules| rules.fault.clone()).expect("a fault");
+    let fault = harness.state().calibration.rules.as_ref().and_then(|rules| rules.fault.clone()).expect("a fault");
     assert!(fault.contains("carry-block-{n}") && fault.ends_with('.'), "{fault}");
     assert!(harness.query_by_label(&fault).is_some());
     assert_eq!(carried_s(harness.state()), before);
-    assert!(harness.state().choice.own.is_none());
+    assert!(harness.state().calibration.choice.own.is_none());
 }
 
 #[test]
 fn a_built_in_name_is_not_taken_and_every_kind_of_task_is_drawn() {
     let mut harness = open(session(CRANK.clone()));
-    harness.state_mut().rules.as_mut().expect("open").name = "crank".to_owned();
+    harness.state_mut().calibration.rules.as_mut().expect("open").name = "crank".to_owned();
     harness.run_steps(2);
     harness.get_by_label("Save as my task").click();
     harness.run_steps(2);
-    let banners = &harness.state().banners;
+    let banners = &harness.state().messages.banners;
     assert!(banners.iter().any(|b| b.text.contains("built-in") || b.text.contains("folder")), "{banners:?}");
     harness.get_by_label("Close").click();
     harness.run_steps(2);
-    assert!(harness.state().rules.is_none());
+    assert!(harness.state().calibration.rules.is_none());
 }
 
 #[test]
 fn a_recording_of_unknown_task_has_no_rules_and_says_so() {
     let mut session = super::empty();
-    assert!(Rules::open(&mut session).is_none());
-    assert!(session.banners[0].text.contains("choose one"), "{:?}", session.banners);
+    assert!(editing_rules::open(&mut session).is_none());
+    assert!(session.messages.banners[0].text.contains("choose one"), "{:?}", session.messages.banners);
 }

@@ -2,11 +2,14 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
-use crate::ui::fitting::replay_all;
-use crate::ui::panels::Panel;
+use crate::ui::panel::Panel;
 use crate::ui::panels::scene::ScenePanel;
-use crate::ui::scene::{Likeness, options_for, scene_world};
-use crate::ui::session::{SceneLayers, Session};
+use crate::ui::refits::replay_all;
+use crate::ui::scene::layers::SceneLayers;
+use crate::ui::scene::likeness::Likeness;
+use crate::ui::scene::overlay::{options_for, scene_world};
+use crate::ui::session::Session;
+use crate::ui::tests::picture;
 use crate::ui::{screenshot, theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -22,14 +25,14 @@ fn panel(session: Session) -> Harness<'static, Session> {
 /// A fit in which the open path has this constraint.
 fn with_constraint(constraint: Constraint) -> Session {
     let mut session = session(clockless_path());
-    let mut analysis = (**session.analysis.as_ref().expect("fitted")).clone();
+    let mut analysis = (**session.calibration.analysis.as_ref().expect("fitted")).clone();
     analysis.fit.constraints = vec![constraint];
-    session.analysis = Some(Arc::new(analysis));
+    session.calibration.analysis = Some(Arc::new(analysis));
     session
 }
 
 fn markers(session: &Session) -> Vec<ConstraintMarker> {
-    let prepared = session.prepared().expect("shown").clone();
+    let prepared = session.document.prepared().expect("shown").clone();
     options_for(session, &prepared, &scene_world(session, &prepared)).1.constraints
 }
 
@@ -85,10 +88,10 @@ fn real_beside_virtual_is_measured() {
 #[test]
 fn a_wrong_world_is_less_like_the_recording() {
     let session = session(CRANK.clone());
-    let prepared = session.prepared().expect("shown").clone();
-    let analysis = session.analysis.clone().expect("fitted");
+    let prepared = session.document.prepared().expect("shown").clone();
+    let analysis = session.calibration.analysis.clone().expect("fitted");
     let like = |world: &haptics::world::World| {
-        let replay = replay_all(world, &session.recordings).remove(0).expect("played");
+        let replay = replay_all(world, &session.document.recordings).remove(0).expect("played");
         Likeness::of(&replay, world, &prepared)
     };
     let fitted = like(&analysis.world);
@@ -146,7 +149,7 @@ fn every_kind_of_constraint_has_its_mark_and_its_line() {
 fn the_force_that_a_crank_bears_points_along_its_radius() {
     let mut session = session(CRANK.clone());
     session.layers = SceneLayers { unexplained: true, ..session.layers };
-    let prepared = session.prepared().expect("shown").clone();
+    let prepared = session.document.prepared().expect("shown").clone();
     let world = scene_world(&session, &prepared);
     let options = options_for(&session, &prepared, &world).1;
     let center = world.crank.as_ref().expect("a crank").center_m;
@@ -176,9 +179,9 @@ fn every_layer_is_seen_in_its_colour() {
         let draw = |layers| {
             let mut session = session(CRANK.clone());
             session.layers = layers;
-            let (first, last) = session.view_s;
-            session.seek(0.5 * (first + last));
-            screenshot::draw(session, screenshot::Panel::Scene, [640, 420], dark).expect("drawn")
+            let (first, last) = session.document.view_s;
+            session.document.seek(0.5 * (first + last));
+            screenshot::draw(session, picture("scene"), [640, 420], dark).expect("drawn")
         };
         let bare = draw(none);
         let added = |layers, color| {

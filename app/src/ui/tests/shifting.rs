@@ -2,7 +2,7 @@
 
 use super::plots::{again, log, two};
 use super::{CRANK, session, until};
-use crate::ui::jobs::JobKind;
+use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
@@ -48,7 +48,7 @@ fn time_at(harness: &mut Harness<'_, Session>, at: Pos2) -> f64 {
             harness.run_steps(1);
             harness.drop_at(at);
             harness.run_steps(2);
-            return harness.state().cursor_s;
+            return harness.state().document.cursor_s;
         }
     }
     panic!("curves are everywhere");
@@ -72,14 +72,14 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     let (x, to_x) = (600.0, 690.0);
     let from = grip(&mut harness, x);
     let wished_s = time_at(&mut harness, pos2(to_x, from.y)) - time_at(&mut harness, from);
-    let cursor_s = harness.state().cursor_s;
+    let cursor_s = harness.state().document.cursor_s;
     drag(&mut harness, from, to_x);
     assert_eq!(icon(&harness), CursorIcon::Grabbing);
     harness.drop_at(pos2(to_x, from.y + 3.0));
     harness.run_steps(2);
     let shifted_s = offset_s(&harness);
     assert!((shifted_s - wished_s).abs() < 1e-6 && shifted_s > 0.3, "{shifted_s} of {wished_s} s");
-    assert_eq!(harness.state().cursor_s, cursor_s, "the time cursor stays");
+    assert_eq!(harness.state().document.cursor_s, cursor_s, "the time cursor stays");
     assert_ne!(icon(&harness), CursorIcon::Grabbing);
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
@@ -117,11 +117,12 @@ fn a_search_for_its_place_that_was_cancelled_is_begun_again_by_the_next_hand_on_
     let from = grip(&mut harness, 700.0);
     harness.drag_at(from);
     harness.run_steps(1);
-    assert!(harness.state().jobs.is_running(JobKind::Align), "the hand on the curve begins the search");
-    harness.state_mut().give_up(JobKind::Align);
+    assert!(harness.state().jobs.is_running(ALIGN), "the hand on the curve begins the search");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().give_up(&ctx, ALIGN);
     harness.drop_at(from);
     harness.run_steps(2);
-    assert!(harness.state().plots.likeliest.is_empty() && !harness.state().jobs.is_running(JobKind::Align));
+    assert!(harness.state().plots.likeliest.is_empty() && !harness.state().jobs.is_running(ALIGN));
     let from = grip(&mut harness, 700.0);
     drag(&mut harness, from, 690.0);
     until(&mut harness, "the likeliest place", |s| s.plots.likeliest.get(&(0, 1)).is_some_and(Option::is_some));
@@ -143,12 +144,12 @@ fn escape_takes_it_back_and_a_click_moves_the_time_cursor() {
     harness.run_steps(2);
     assert!(harness.state().plots.held.is_none());
     let expected_s = time_at(&mut harness, from);
-    harness.state_mut().seek(0.0);
+    harness.state_mut().document.seek(0.0);
     harness.drag_at(from);
     harness.run_steps(1);
     harness.drop_at(from);
     harness.run_steps(2);
-    assert!((harness.state().cursor_s - expected_s).abs() < 1e-6, "{} s", harness.state().cursor_s);
+    assert!((harness.state().document.cursor_s - expected_s).abs() < 1e-6, "{} s", harness.state().document.cursor_s);
     assert_eq!(offset_s(&harness), 0.0);
 }
 

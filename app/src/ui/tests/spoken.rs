@@ -3,10 +3,11 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
-use crate::ui::plots::LogView;
-use crate::ui::rules::Rules;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::editing_rules;
+use crate::ui::panels::list;
+use crate::ui::plots::choices::LogView;
+use crate::ui::session::Session;
+use crate::ui::workspace::Workspace;
 
 /// The widgets without a name in one state of the whole window, with where they are.
 fn unnamed(what: &str, session: Session, change: impl FnOnce(&mut App)) -> Vec<String> {
@@ -26,12 +27,12 @@ fn at(workspace: Workspace, mut session: Session) -> Session {
 #[test]
 fn every_widget_has_a_name_for_a_screen_reader() {
     let everywhere = |workspace: Workspace| {
-        move |app: &mut App| Pane::of(workspace).iter().for_each(|pane| app.dock.bring(workspace, *pane))
+        move |app: &mut App| list::of(workspace).into_iter().for_each(|pane| app.dock.bring(workspace, pane))
     };
     let mut crank = session(CRANK.clone());
-    crank.selected_parameter = Some("crank.radius_m".to_owned());
+    crank.calibration.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.rules = Rules::open(&mut rules);
+    rules.calibration.rules = editing_rules::open(&mut rules);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());

@@ -18,8 +18,10 @@ impl<'ast> Visit<'ast> for Texts {
         }
     }
 
-    /// A constant at the top is a table.
+    /// A constant or a registration at the top is a table.
     fn visit_item_const(&mut self, _: &'ast syn::ItemConst) {}
+
+    fn visit_item_static(&mut self, _: &'ast syn::ItemStatic) {}
 
     fn visit_attribute(&mut self, _: &'ast syn::Attribute) {}
 

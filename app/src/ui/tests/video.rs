@@ -2,10 +2,11 @@
 
 use super::{STACK, clockless_path, empty, harness, session, until};
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
+use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace};
-use crate::ui::video::State;
+use crate::ui::session::Session;
+use crate::ui::videos::State;
+use crate::ui::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
 use egui::Role;
 use egui_kittest::Harness;
@@ -45,26 +46,28 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("from above.mp4");
     let session = session(STACK.clone());
-    film_of_the_hand(&file, &session.recordings[0], 1.7);
+    film_of_the_hand(&file, &session.document.recordings[0], 1.7);
     let mut harness = window(session);
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_dropped(&ctx, std::slice::from_ref(&file));
     harness.run_steps(2);
-    assert!(harness.state_mut().dock.has(Workspace::Calibrate, Pane::Video), "its panel has come");
-    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
-    harness.state_mut().session.seek(4.0);
-    until(&mut harness, "the picture at the cursor", |app| app.session.videos.shown() == Some(100));
+    assert!(harness.state_mut().dock.has(Workspace::Calibrate, PanelId::VIDEO), "its panel has come");
+    until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
+    harness.state_mut().session.document.seek(4.0);
+    until(&mut harness, "the picture at the cursor", |app| app.session.document.videos.shown() == Some(100));
 
     press(&mut harness, Role::Button, "Align video");
     until(&mut harness, "its place", |app| app.session.video_source().is_some_and(|v| v.begins_at_s != 0.0));
-    let first = harness.state().session.recordings[0].span().0;
+    let first = harness.state().session.document.recordings[0].span().0;
     let begins_at_s = harness.state().session.video_source().expect("a video").begins_at_s;
     assert!((begins_at_s - (first - 1.7)).abs() < 0.06, "it begins at {begins_at_s} s");
-    until(&mut harness, "the picture that belongs to the cursor", |app| app.session.videos.shown() == Some(142));
+    until(&mut harness, "the picture that belongs to the cursor", |app| {
+        app.session.document.videos.shown() == Some(142)
+    });
 
     // It is kept with the project, and goes with another recording.
-    let project = crate::ui::project::Project::of(&harness.state().session);
-    assert_eq!(project.videos, harness.state().session.videos.sources);
+    let project = crate::ui::project_files::project_of(&harness.state().session);
+    assert_eq!(project.videos, harness.state().session.document.videos.sources);
     press(&mut harness, Role::Button, "Take the video away");
     assert!(harness.state().session.video_source().is_none());
     assert!(harness.query_by_label("Choose a video …").is_some());
@@ -81,19 +84,19 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     let mut session = session(STACK.clone());
     session.open_video(&file);
     let mut harness = window(session);
-    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
+    until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
     press(&mut harness, Role::CheckBox, "By itself");
-    harness.state_mut().session.videos.loose_s = Some(2.0);
-    harness.state_mut().session.seek(9.5);
-    until(&mut harness, "the picture that was looked for", |app| app.session.videos.shown() == Some(50));
+    harness.state_mut().session.document.videos.loose_s = Some(2.0);
+    harness.state_mut().session.document.seek(9.5);
+    until(&mut harness, "the picture that was looked for", |app| app.session.document.videos.shown() == Some(50));
     press(&mut harness, Role::Button, "They belong together");
     let session = &harness.state().session;
-    assert!(session.videos.loose_s.is_none());
+    assert!(session.document.videos.loose_s.is_none());
     assert!((session.video_source().expect("a video").begins_at_s - 7.5).abs() < 1e-9);
-    assert_eq!(session.videos.shown(), Some(50), "the picture stays");
+    assert_eq!(session.document.videos.shown(), Some(50), "the picture stays");
     // Before its beginning, the first picture stands there, with a word.
-    harness.state_mut().session.seek(5.0);
-    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
+    harness.state_mut().session.document.seek(5.0);
+    until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
 }
 
 #[test]
@@ -111,7 +114,7 @@ fn a_video_that_stands_beside_its_log_is_found_with_its_sidecar() {
         let mut harness = window(empty());
         let ctx = harness.ctx.clone();
         harness.state_mut().session.open(&ctx, log);
-        until(&mut harness, "the log", |app| !app.session.recordings.is_empty());
+        until(&mut harness, "the log", |app| !app.session.document.recordings.is_empty());
         harness.state().session.video_source().cloned().expect("a video")
     };
     let beside = opened(&log);
@@ -130,10 +133,10 @@ fn what_is_in_the_way_of_a_video_is_said() {
     let ctx = egui::Context::default();
     let mut without = empty();
     without.open_any(&ctx, &file);
-    assert!(without.banners[0].text.contains("open the log first"), "{:?}", without.banners);
+    assert!(without.messages.banners[0].text.contains("open the log first"), "{:?}", without.messages.banners);
     let mut clockless = session(clockless_path());
     clockless.open_any(&ctx, &file);
-    assert!(clockless.banners.iter().any(|b| b.text.contains("no clock")), "{:?}", clockless.banners);
+    assert!(clockless.messages.banners.iter().any(|b| b.text.contains("no clock")), "{:?}", clockless.messages.banners);
     if no_reader() {
         return;
     }

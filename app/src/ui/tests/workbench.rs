@@ -1,11 +1,11 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
-use crate::ui::actions::Action;
+use crate::ui::actions::list::Action;
 use crate::ui::app::App;
-use crate::ui::dock::Pane;
-use crate::ui::jobs::JobKind;
-use crate::ui::session::Workspace;
+use crate::ui::diagnosis_state::DIAGNOSE;
+use crate::ui::panel_id::PanelId;
+use crate::ui::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -15,7 +15,7 @@ use std::time::Duration;
 fn window(recording: Recording) -> Harness<'static, App> {
     let mut session = session(recording);
     // However busy the machine is: what follows a change must not hang on how long a fit took.
-    session.refits.at_once = Duration::MAX;
+    session.calibration.refits.at_once = Duration::MAX;
     harness(App::new(session), [1480.0, 920.0], |ui, app: &mut App| app.show(ui))
 }
 
@@ -28,7 +28,7 @@ fn settle(harness: &mut Harness<'_, App>) {
 }
 
 fn weight(harness: &Harness<'_, App>, object: &str) -> (f64, usize) {
-    let analysis = harness.state().session.analysis.as_ref().expect("fitted");
+    let analysis = harness.state().session.calibration.analysis.as_ref().expect("fitted");
     let parameter = analysis.fit.parameter(object, "weight_N").expect("weighed");
     (parameter.value.expect("a value"), parameter.samples)
 }
@@ -43,7 +43,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     let before = weight(&harness, "block-1");
     let states = harness.state().session.segmentation().expect("segmented").states.clone();
     let carry = states.iter().position(|i| i.subtask.as_deref() == Some("carry-block-1")).expect("carried");
-    let label = format!("Boundary at {} s", crate::ui::format::number(states[carry].t1, 2));
+    let label = format!("Boundary at {} s", crate::text::format::number(states[carry].t1, 2));
     let grip = harness.get_by_label(&label).rect().center();
     let shift = 60.0;
     harness.drag_at(grip);
@@ -58,11 +58,13 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     assert!(moved < states[carry].t1 - 0.3, "{moved} from {}", states[carry].t1);
     let after = weight(&harness, "block-1");
     assert!(after.1 < before.1, "fewer samples: {} of {}", after.1, before.1);
-    assert!(harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.stale);
+    assert!(
+        harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.calibration.stale
+    );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
-    assert_eq!(weight(&harness, "block-1"), before, "{:?}", harness.state().session.banners);
-    assert!(harness.state().session.choice.segments.is_empty());
+    assert_eq!(weight(&harness, "block-1"), before, "{:?}", harness.state().session.messages.banners);
+    assert!(harness.state().session.calibration.choice.segments.is_empty());
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     settle(&mut harness);
     assert_eq!(weight(&harness, "block-1"), after);
@@ -72,7 +74,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
 fn a_stretch_of_a_mechanism_is_fitted_alone() {
     let mut harness = window(cart());
     let samples = |harness: &Harness<'_, App>| {
-        let fit = &harness.state().session.analysis.as_ref().expect("fitted").fit;
+        let fit = &harness.state().session.calibration.analysis.as_ref().expect("fitted").fit;
         fit.parameter("mechanism", "mass_kg").expect("told").samples
     };
     let ctx = harness.ctx.clone();
@@ -82,13 +84,13 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
     let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
     let place = states.iter().filter(|s| s.state == longest.state).position(|s| s.t0 == longest.t0).expect("it is one");
     let word =
-        crate::ui::panels::segments::word(harness.state().session.segmentation().expect("segmented"), longest.state);
+        crate::text::states::state_of_task(harness.state().session.segmentation().expect("segmented"), longest.state);
     let shown: Vec<_> = harness.get_all_by_role_and_label(egui::Role::Button, word).collect();
     shown[place].click_secondary();
     harness.run_steps(2);
     harness.get_by_label("Fit only this stretch").click();
     settle(&mut harness);
-    assert_eq!(harness.state().session.choice.only_s, Some((longest.t0, longest.t1)));
+    assert_eq!(harness.state().session.calibration.choice.only_s, Some((longest.t0, longest.t1)));
     assert!(samples(&harness) < all, "{} of {all}", samples(&harness));
 }
 
@@ -104,13 +106,22 @@ fn another_value_is_tried_on_the_replay_and_frozen() {
     let fitted = weight(&harness, "crank").0;
     harness.state_mut().session.try_value("crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
-    assert!(!harness.state().session.what_if.is_behind());
+    assert!(!harness.state().session.calibration.what_if.is_behind());
     let shown = harness.state().session.shown_curves().expect("curves").curves.clone();
     let first = harness.state().session.replay().expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();
     settle(&mut harness);
-    let frozen = harness.state().session.analysis.as_ref().expect("fitted").fit.parameter("crank", "weight_N").cloned();
+    let frozen = harness
+        .state()
+        .session
+        .calibration
+        .analysis
+        .as_ref()
+        .expect("fitted")
+        .fit
+        .parameter("crank", "weight_N")
+        .cloned();
     let frozen = frozen.expect("there");
     assert!(
         (frozen.value.expect("a value") - 2.0 * fitted).abs() < 1e-9 && frozen.std_error == Some(0.0),
@@ -135,10 +146,7 @@ fn the_palette_finds_and_does() {
     harness.run_steps(2);
     assert!(!harness.state().palette.is_open());
     assert_eq!(harness.state().session.workspace, Workspace::Diagnose);
-    assert!(
-        harness.state().session.jobs.is_running(JobKind::Diagnose)
-            || harness.state().session.diagnosing.answer.is_some()
-    );
+    assert!(harness.state().session.jobs.is_running(DIAGNOSE) || harness.state().session.diagnosing.answer.is_some());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(2);
     harness.key_press(Key::Escape);
@@ -154,15 +162,19 @@ fn panels_are_arranged_and_put_back() {
     Action::Arrange.run(&ctx, harness.state_mut());
     harness.run_steps(2);
     assert!(harness.query_by_label("Plots").is_some());
-    Action::Panel(Pane::Sensitivity).run(&ctx, harness.state_mut());
-    Action::Panel(Pane::Scene).run(&ctx, harness.state_mut());
+    Action::Panel(PanelId("sensitivity")).run(&ctx, harness.state_mut());
+    Action::Panel(PanelId::SCENE).run(&ctx, harness.state_mut());
     settle(&mut harness);
     assert!(harness.query_by_label("What the force depends on").is_some());
     let at = Workspace::Calibrate;
-    assert!(harness.state_mut().dock.has(at, Pane::Sensitivity) && !harness.state_mut().dock.has(at, Pane::Scene));
+    assert!(
+        harness.state_mut().dock.has(at, PanelId("sensitivity")) && !harness.state_mut().dock.has(at, PanelId::SCENE)
+    );
     Action::ResetLayout.run(&ctx, harness.state_mut());
     harness.run_steps(2);
-    assert!(!harness.state_mut().dock.has(at, Pane::Sensitivity) && harness.state_mut().dock.has(at, Pane::Scene));
+    assert!(
+        !harness.state_mut().dock.has(at, PanelId("sensitivity")) && harness.state_mut().dock.has(at, PanelId::SCENE)
+    );
 }
 
 #[test]
@@ -176,8 +188,8 @@ fn a_project_brings_back_what_was_done() {
     harness.state_mut().session.open_any(&ctx, &log);
     settle(&mut harness);
     let session = &mut harness.state_mut().session;
-    session.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
-    session.seek(7.0);
+    session.calibration.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
+    session.document.seek(7.0);
     let file = folder.path().join("mine.touchstone.json");
     session.save_project_as(&ctx, file.clone());
     settle(&mut harness);
@@ -186,13 +198,13 @@ fn a_project_brings_back_what_was_done() {
     other.state_mut().session.open_any(&ctx, &file);
     settle(&mut other);
     let session = &other.state().session;
-    assert!(session.banners.is_empty(), "{:?}", session.banners);
-    assert_eq!((session.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
-    assert_eq!(session.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
+    assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
+    assert_eq!((session.document.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
+    assert_eq!(session.calibration.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
     // A second recording joins the first one.
     other.state_mut().session.add_log(&ctx, &log);
     settle(&mut other);
-    assert_eq!((other.state().session.recordings.len(), other.state().session.sources.len()), (2, 2));
+    assert_eq!((other.state().session.document.recordings.len(), other.state().session.document.sources.len()), (2, 2));
 }
 
 #[test]
@@ -205,12 +217,12 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     let mut app = App::new(empty());
     app.keep(&state, true);
     assert!(app.tour.is_on(), "the first start shows around");
-    app.tour = crate::ui::tour::Tour::default();
+    app.tour = crate::ui::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
     first.state_mut().session.open_any(&ctx, &log);
     settle(&mut first);
-    first.state_mut().session.choice.only_s = Some((1.0, 9.0));
+    first.state_mut().session.calibration.choice.only_s = Some((1.0, 9.0));
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();
     until(&mut first, "the file with the change", |_| kept().contains("[1.0,9.0]"));
     // A killed program closes nothing.
@@ -222,9 +234,9 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     second.get_by_label("Go on there").click();
     settle(&mut second);
     let session = &second.state().session;
-    assert_eq!(session.choice.only_s, Some((1.0, 9.0)));
-    assert!(session.analysis.is_some(), "{:?}", session.banners);
-    assert!(session.recent.files().iter().any(|p| p.ends_with("stack.csv")));
+    assert_eq!(session.calibration.choice.only_s, Some((1.0, 9.0)));
+    assert!(session.calibration.analysis.is_some(), "{:?}", session.messages.banners);
+    assert!(session.document.recent.files().iter().any(|p| p.ends_with("stack.csv")));
 }
 
 #[test]

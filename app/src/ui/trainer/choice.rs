@@ -1,6 +1,6 @@
 //! Choice of the world in the trainer.
 
-use super::Trainer;
+use crate::ui::trainer::live::Trainer;
 use haptics::world::{World, presets};
 
 /// World in the trainer.

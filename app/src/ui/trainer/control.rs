@@ -1,6 +1,6 @@
 //! The passivity controller's switch: the observer always runs, the controller is optional.
 
-use super::{Operator, Trainer};
+use crate::ui::trainer::live::{Operator, Trainer};
 
 /// Maximum damping that can be chosen, N s/m; forces stay within the device's limits anyway.
 pub const MOST_CONTROL_N_S_M: f64 = 50.0;

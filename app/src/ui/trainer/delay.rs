@@ -1,7 +1,7 @@
 //! Link latency between the operator and the world: its settings, and the view of the operator over the link.
 
-use super::{Operator, Trainer};
-use crate::ui::session::sentence;
+use crate::text::sentence::sentence;
+use crate::ui::trainer::live::{Operator, Trainer};
 use haptics::device::Device;
 use haptics::servo::rate::SAFE_HZ;
 use haptics::servo::{ServoConfig, Swap, TickRecord};

@@ -33,7 +33,7 @@ impl Engine {
     /// Starts the thread.
     pub fn thread(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Result<Self, String> {
         let servo = Servo::start(swap, device, config);
-        servo.map(|s| Self::Thread(Box::new(s))).map_err(|e| crate::ui::session::sentence(&e.to_string()))
+        servo.map(|s| Self::Thread(Box::new(s))).map_err(|e| crate::text::sentence::sentence(&e.to_string()))
     }
 
     /// Creates a loop that is stepped on demand.

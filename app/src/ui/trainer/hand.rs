@@ -1,6 +1,7 @@
 //! Devices that move the fingers, and their construction.
 
-use super::{Pinch, Remote};
+use crate::ui::trainer::pinch::Pinch;
+use crate::ui::trainer::remote::Remote;
 use haptics::Vec2;
 use haptics::device::haply::{HaplyHand, Tally};
 use haptics::device::udp::{UdpDevice, UdpMonitor};
@@ -141,7 +142,7 @@ impl HandDevice {
 }
 
 fn said(error: &dyn std::error::Error) -> String {
-    crate::ui::session::sentence(&error.to_string())
+    crate::text::sentence::sentence(&error.to_string())
 }
 
 fn mouse_start(tips: [Vec2; 2]) -> MouseTarget {
@@ -160,7 +161,7 @@ impl Steering {
 /// Description of a device in plain words, as label and sentence. With `waves` it is behind a link with wave variables,
 /// and the damping seen by the servo is that of the link.
 pub fn spec_sentences(spec: &DeviceSpec, waves: bool) -> Vec<(&'static str, String)> {
-    use crate::ui::format::number;
+    use crate::text::format::number;
     let unit = |value: f64, decimals: usize, unit: &str, none: &str| {
         if value > 0.0 { format!("{} {unit}", number(value, decimals)) } else { none.to_owned() }
     };

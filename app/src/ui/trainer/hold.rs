@@ -1,8 +1,8 @@
 //! Pause of the world, because the window lost the focus or the device stopped responding. Its clock stops, so no time
 //! counts, and the force on the fingers drops to zero. On resume the force rises slowly.
 
-use super::{Operator, Steering, Trainer};
-use crate::ui::trainer::HandDevice;
+use crate::ui::trainer::hand::{HandDevice, Steering};
+use crate::ui::trainer::live::{Operator, Trainer};
 use std::time::Instant;
 
 /// Sidecar key under which a recording states its pauses: number and total duration.

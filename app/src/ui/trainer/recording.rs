@@ -1,7 +1,8 @@
 //! Recording in the trainer: start, progress, end. The ticks go directly to the disk, not through the window.
 
-use super::{Engine, Sensors, Trainer};
 use crate::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, Stopping, folder};
+use crate::ui::trainer::engine::Engine;
+use crate::ui::trainer::live::{Sensors, Trainer};
 use haptics::servo::recorder::SensorModel;
 use std::sync::Arc;
 

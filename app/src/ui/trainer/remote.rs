@@ -38,7 +38,7 @@ impl Remote {
         let listen = listen(self.address.trim())?;
         let damping_n_s_m = figure(&self.damping, MOST_DAMPING_N_S_M, "damping", "N s/m, like 0.5")?;
         let round_trip_ms = figure(&self.round_trip, MOST_ROUND_TRIP_MS, "round trip", "ms, like 12")?;
-        let key = Key::load(Path::new(path)).map_err(|e| crate::ui::session::sentence(&e.to_string()))?;
+        let key = Key::load(Path::new(path)).map_err(|e| crate::text::sentence::sentence(&e.to_string()))?;
         let mut config = UdpConfig::loopback(key);
         config.listen = listen;
         config.spec.damping_n_s_m = damping_n_s_m;

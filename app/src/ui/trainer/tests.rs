@@ -1,7 +1,12 @@
 //! The trainer without a window and without a thread: a pointer path through the mouse device.
 
-use super::*;
+use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Clock;
+use crate::ui::trainer::live::Operator;
+use crate::ui::trainer::live::Trainer;
 use haptics::Vec2;
+use haptics::teleop::Delay;
+use haptics::world::State;
 
 fn manual() -> Trainer {
     let mut trainer = Trainer { clock: Clock::Manual, ..Trainer::default() };

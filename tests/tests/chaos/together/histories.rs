@@ -2,7 +2,9 @@
 
 use super::Counts;
 use crate::documents;
-use app::history::{Answer, Attempt, History, Query, Store};
+use app::history::attempt::Attempt;
+use app::history::keeper::{Answer, History};
+use app::history::store::{Query, Store};
 use rand::SeedableRng as _;
 use rand::rngs::StdRng;
 use std::path::Path;

@@ -33,7 +33,7 @@ pub const FORCES: [&str; 3] = [
 /// Ticks whose samples were older than the watchdog allows.
 pub const STALE: &str = "together: ticks without fresh data";
 
-/// What moves the fingers.
+/// Choice of the device.
 enum Hand {
     Scripted,
     Mouse(MouseHandle),

@@ -3,10 +3,13 @@
 use super::faults::faults;
 use super::painted::Paint;
 use crate::ui::app::App;
-use crate::ui::gallery::{Plate, Studio, plates};
-use crate::ui::screenshot::{self, Panel, in_whole_window};
-use crate::ui::tests::keep;
-use crate::ui::{scene, theme};
+use crate::ui::gallery::plates::plates;
+use crate::ui::gallery::plates::{Plate, Studio};
+use crate::ui::panel::Picture;
+use crate::ui::scene::callback;
+use crate::ui::screenshot::{self, in_whole_window};
+use crate::ui::tests::{keep, picture};
+use crate::ui::theme;
 use egui_kittest::wgpu::WgpuTestRenderer;
 use egui_kittest::{Harness, HarnessBuilder};
 use std::fmt::Write as _;
@@ -31,14 +34,14 @@ impl Stage {
         let session = studio.session(plate).expect("the gallery's samples are there");
         let whole_page = !plate.is_framed();
         let size = size.unwrap_or(plate.size.map(|pixels| pixels as f32));
-        Self::new(screenshot::app_for(session, plate.panel()), plate.panel(), whole_page, size)
+        Self::new(screenshot::app_for(session, plate.picture), plate.picture, whole_page, size)
     }
 
     /// A window in which a panel or a page is drawn.
-    pub fn new(app: App, panel: Panel, whole_page: bool, size: [f32; 2]) -> Self {
+    pub fn new(app: App, shown: &'static Picture, whole_page: bool, size: [f32; 2]) -> Self {
         let paint = Paint::default();
         let kept = paint.clone();
-        let mut contents = screenshot::contents(panel);
+        let mut contents = screenshot::contents(shown);
         let builder = Harness::builder().with_size(size).with_accessibility_check(false);
         let builder = if draws() { drawing(builder) } else { builder.with_context_setup(theme::install) };
         let show = move |ui: &mut egui::Ui, app: &mut App| {
@@ -83,7 +86,7 @@ fn drawing<State>(builder: HarnessBuilder<State>) -> HarnessBuilder<State> {
     let surface = state.clone();
     let builder = builder.with_context_setup(move |ctx| {
         theme::install(ctx);
-        scene::announce(ctx, &surface);
+        callback::announce(ctx, &surface);
     });
     builder.with_render_cursor(false).renderer(WgpuTestRenderer::from_render_state(state))
 }
@@ -96,7 +99,7 @@ fn look_at_all(wanted: impl Fn(&Plate) -> bool) {
     for plate in plates {
         found += &Stage::of_plate(&mut studio, &plate, None).look(&plate.name);
         // The table of parameters stands among the results, which scroll.
-        if plate.is_framed() && plate.panel() != Panel::Parameters {
+        if plate.is_framed() && plate.picture.name != "parameters" {
             found += &Stage::of_plate(&mut studio, &plate, Some(SMALL)).look(&plate.name);
         }
     }
@@ -117,12 +120,12 @@ fn every_page_can_be_read_on_every_screen() {
 fn every_recording_and_world_can_be_read_in_a_whole_page() {
     let mut studio = Studio::default();
     let mut found = String::new();
-    for plate in plates().iter().filter(|p| p.is_view() || p.panel() == Panel::Trainer) {
-        let page = if plate.is_view() { Panel::Workbench } else { Panel::Train };
+    for plate in plates().iter().filter(|p| p.is_view() || p.picture.name == "trainer") {
+        let page = if plate.is_view() { picture("workbench") } else { picture("train") };
         let plate = plate.shown_in(page);
         found += &Stage::of_plate(&mut studio, &plate, None).look(&plate.name);
         if plate.name.contains("crank") || plate.name.contains("needle") {
-            let plate = plate.shown_in(Panel::Rules);
+            let plate = plate.shown_in(picture("rules"));
             found += &Stage::of_plate(&mut studio, &plate, None).look(&plate.name);
         }
     }

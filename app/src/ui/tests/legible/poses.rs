@@ -3,15 +3,17 @@
 use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::autosave::State;
-use crate::ui::dock::Pane;
-use crate::ui::dock::naming::Naming;
-use crate::ui::plots::LogView;
+use crate::ui::dock::name_field::Naming;
+use crate::ui::message_list::Tone;
+use crate::ui::panel_id::PanelId;
+use crate::ui::panels::list;
+use crate::ui::plots::choices::LogView;
 use crate::ui::prepare::Prepared;
 use crate::ui::project::{Project, Source};
-use crate::ui::screenshot::Panel;
-use crate::ui::session::{Session, Tone, Workspace};
+use crate::ui::session::Session;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
-use crate::ui::tests::{CRANK, STACK, cart, empty, session};
+use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};
+use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable as _;
 use haptics::recording::{Channel, Recording};
 use std::sync::Arc;
@@ -19,18 +21,19 @@ use std::sync::Arc;
 const WORKSPACES: [Workspace; 4] = [Workspace::Train, Workspace::Calibrate, Workspace::Diagnose, Workspace::Devices];
 
 fn page(app: App) -> Stage {
-    Stage::new(app, Panel::Workbench, true, [1280.0, 720.0])
+    Stage::new(app, picture("workbench"), true, [1280.0, 720.0])
 }
 
 /// Another window over the same results: they take seconds to compute.
 fn like(session: &Session) -> Session {
     let mut other = empty();
-    other.show(session.recordings.clone());
-    (other.workspace, other.choice) = (session.workspace, session.choice.clone());
-    (other.analysis, other.replays) = (session.analysis.clone(), session.replays.clone());
-    other.enough.clone_from(&session.enough);
-    other.sensitivity.clone_from(&session.sensitivity);
-    other.refits.answered(&session.choice);
+    other.show(session.document.recordings.clone());
+    (other.workspace, other.calibration.choice) = (session.workspace, session.calibration.choice.clone());
+    (other.calibration.analysis, other.calibration.replays) =
+        (session.calibration.analysis.clone(), session.calibration.replays.clone());
+    other.calibration.enough.clone_from(&session.calibration.enough);
+    other.calibration.sensitivity.clone_from(&session.calibration.sensitivity);
+    other.calibration.refits.answered(&session.calibration.choice);
     (other.diagnosing.answer, other.diagnosing.problem) =
         (session.diagnosing.answer.clone(), session.diagnosing.problem.clone());
     other
@@ -60,9 +63,9 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut full = diagnosed(RIPPLED.clone());
     full.look_at_sensitivity();
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
-        for pane in Pane::of(workspace) {
+        for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
-            app.dock.bring(workspace, *pane);
+            app.dock.bring(workspace, pane);
             found += &page(app).look(&format!("{workspace:?} with {pane:?}"));
         }
         let mut app = in_workspace(like(&full), workspace);
@@ -78,14 +81,14 @@ fn every_panel_alone_can_be_read() {
     let mut full = session(STACK.clone());
     full.look_at_sensitivity();
     for workspace in WORKSPACES {
-        for pane in Pane::of(workspace) {
+        for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
-            for other in Pane::of(workspace).iter().filter(|other| *other != pane) {
-                if app.dock.has(workspace, *other) {
-                    app.dock.toggle(workspace, *other);
+            for other in list::of(workspace).into_iter().filter(|other| *other != pane) {
+                if app.dock.has(workspace, other) {
+                    app.dock.toggle(workspace, other);
                 }
             }
-            app.dock.bring(workspace, *pane);
+            app.dock.bring(workspace, pane);
             found += &page(app).look(&format!("{workspace:?}, only {pane:?}"));
         }
     }
@@ -99,7 +102,7 @@ fn menus_can_be_read() {
     for group in ["File", "Edit", "Calibrate", "Time", "View", "Help"] {
         let mut session = like(&full);
         for file in ["a recording with a very long name, of the third day, second try.csv", "crank.mcap"] {
-            session.recent.note(std::path::Path::new(file));
+            session.document.recent.note(std::path::Path::new(file));
         }
         let mut app = App::new(session);
         for name in [
@@ -146,8 +149,9 @@ fn every_card_of_the_tour_can_be_read() {
 fn messages_can_be_read() {
     let mut session = session(STACK.clone());
     session
+        .messages
         .say(Tone::Done, "Undone: states set by hand, known value, prior, bounds, part of the recording.".to_owned());
-    session.fail("The file cannot be written (permission denied); check the folder and its permissions: /home/someone/with/a/long/name/and/many/folders/below/it/recording-of-the-third-day.csv");
+    session.messages.fail("The file cannot be written (permission denied); check the folder and its permissions: /home/someone/with/a/long/name/and/many/folders/below/it/recording-of-the-third-day.csv");
     let mut app = App::new(session);
     let source = Source { log: "/data/a-recording-with-a-very-long-name-of-the-third-day.csv".into(), meta: None };
     let project = Project { recordings: vec![source.clone(), source], ..Project::default() };
@@ -174,7 +178,7 @@ fn long_names(name: &str) -> Recording {
 fn over_each_other() -> Session {
     let mut session = session(long_names("a very long name of a recording, the third day, trial 17"));
     let other = Arc::new(Prepared::new(long_names("another very long name of a recording, the fourth day, trial 2")));
-    session.recordings.push(other);
+    session.document.recordings.push(other);
     session
 }
 
@@ -188,7 +192,7 @@ fn long_names_of_channels_and_recordings_can_be_read() {
             session.toggle_overlay(1);
             session.plots.view = view;
             let mut app = App::new(session);
-            for pane in [Pane::Recording, Pane::Scene, Pane::Results].iter().filter(|_| only) {
+            for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::RESULTS].iter().filter(|_| only) {
                 app.dock.toggle(Workspace::Calibrate, *pane);
             }
             found += &page(app).look(&format!("long names, {view:?}, alone {only}"));
@@ -202,10 +206,10 @@ fn every_parameter_can_be_looked_at_closely() {
     let mut found = String::new();
     for recording in [STACK.clone(), CRANK.clone()] {
         let full = session(recording);
-        let fit = &full.analysis.as_ref().expect("fitted").fit;
+        let fit = &full.calibration.analysis.as_ref().expect("fitted").fit;
         for name in fit.parameters.iter().map(estimator::estimate::Parameter::full_name) {
             let mut session = like(&full);
-            session.selected_parameter = Some(name.clone());
+            session.calibration.selected_parameter = Some(name.clone());
             found += &page(App::new(session)).look(&name);
         }
     }

@@ -1,6 +1,6 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
-use crate::ui::theme::state_name;
+use crate::text::states::state_name;
 use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, Residual, Verdict};
 use estimator::segment::SystemState;
 use haptics::law;

@@ -1,6 +1,6 @@
 //! What a fit says of a constraint beside its numbers, in words: the same for the command line and the window.
 
-use crate::ui::format;
+use crate::text::format;
 use estimator::constraint::existence::{probability, sentence};
 use estimator::estimate::{Constraint, ConstraintKind, Sided};
 

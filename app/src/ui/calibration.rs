@@ -1,0 +1,54 @@
+//! The calibration: how the recordings are fitted, and the fit.
+
+use super::fit_choice::FitChoice;
+use super::refits::Refits;
+use super::replayed::Replayed;
+use super::rules::Rules;
+use super::sensitivity::Sensitivity;
+use super::what_if::WhatIf;
+use estimator::online::information::Enough;
+use estimator::pipeline::Analysis;
+use std::sync::Arc;
+
+/// The choice of a fit, the fit, and all that is derived from it.
+#[derive(Default)]
+pub struct Calibration {
+    /// The choice of how to fit.
+    pub choice: FitChoice,
+    /// The choice that the fit on the screen was made with differs from `choice`.
+    pub stale: bool,
+    /// What refits have in common.
+    pub refits: Refits,
+    /// The parameter that is looked at closely, `object.name`.
+    pub selected_parameter: Option<String>,
+    /// How the force depends on the parameters.
+    pub sensitivity: Option<Arc<Sensitivity>>,
+    /// Values that are tried.
+    pub what_if: WhatIf,
+    /// The fit.
+    pub analysis: Option<Arc<Analysis>>,
+    /// Why there is none, in one sentence.
+    pub fit_problem: Option<String>,
+    /// The replay through the fitted world, by recording.
+    pub replays: Vec<Option<Replayed>>,
+    /// The data that the parameters of the fit still need.
+    pub enough: Vec<Enough>,
+    /// The open editor of a task's rules.
+    pub rules: Option<Box<Rules>>,
+}
+
+impl Calibration {
+    /// Forgets the fit: other recordings were opened. The method and the wish to follow changes stay.
+    pub fn forget(&mut self) {
+        self.replays.clear();
+        self.enough.clear();
+        (self.analysis, self.fit_problem, self.rules) = (None, None, None);
+        self.refits.forget();
+        self.what_if.forget();
+    }
+
+    /// True when the fitted world has something that the hand can touch.
+    pub fn can_train(&self) -> bool {
+        self.analysis.as_ref().is_some_and(|a| !a.world.blocks.is_empty() || a.world.crank.is_some())
+    }
+}

@@ -1,0 +1,73 @@
+//! Editing the rules of a task: trying and saving the draft.
+
+use super::files::{SAVE, saved};
+use super::session::Session;
+use crate::text::sentence::sentence;
+use crate::ui::refits::SEGMENT;
+use crate::ui::rules::Rules;
+use estimator::segment::library;
+use std::sync::Arc;
+
+/// Opens the rules of the task that is chosen; says why not where it has none.
+pub fn open(session: &mut Session) -> Option<Box<Rules>> {
+    let found =
+        session.document.prepared().cloned().and_then(|prepared| session.calibration.choice.definition(&prepared));
+    match found {
+        Some(Ok(task)) => Some(Box::new(Rules::of(task))),
+        Some(Err(problem)) => {
+            session.messages.fail(problem);
+            None
+        }
+        None => {
+            session.messages.fail("The task of this recording is not known; choose one first.");
+            None
+        }
+    }
+}
+
+/// Looks at what was changed, and tells the states anew with it. Call once a frame.
+pub fn follow(ctx: &egui::Context, session: &mut Session) {
+    let running = session.jobs.is_running(SEGMENT);
+    let Some(rules) = session.calibration.rules.as_mut().filter(|rules| rules.untried) else { return };
+    rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
+    if rules.fault.is_some() {
+        rules.untried = false;
+        return;
+    }
+    if running {
+        // One after the other: the newest draft waits for its turn.
+        return;
+    }
+    rules.untried = false;
+    let same = rules.draft == rules.before;
+    let draft = rules.draft.clone();
+    if !same || session.calibration.choice.own.is_some() {
+        session.calibration.choice.task = Some(draft.like);
+        session.calibration.choice.own = Some(Arc::new(draft));
+    }
+    session.resegment(ctx);
+}
+
+/// Writes the draft under its new name, in the background.
+pub fn save(ctx: &egui::Context, session: &mut Session) {
+    let Some(rules) = session.calibration.rules.as_mut() else { return };
+    let mut task = rules.draft.clone();
+    rules.name.trim().clone_into(&mut task.name);
+    if task.title == rules.before.title && task.name != rules.before.name {
+        task.title = task.name.replace(['-', '_'], " ");
+    }
+    let Some(folder) = library::folder() else {
+        session.messages.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
+        return;
+    };
+    match library::save(folder, &task) {
+        Ok(path) => {
+            (rules.before, rules.draft) = (task.clone(), task.clone());
+            session.calibration.choice.task = Some(task.like);
+            session.calibration.choice.own = Some(Arc::new(task));
+            session.resegment(ctx);
+            session.jobs.start(ctx, SAVE, "", move |_| saved(path));
+        }
+        Err(error) => session.messages.fail(sentence(&error.to_string())),
+    }
+}

@@ -1,0 +1,82 @@
+//! Replaying with tried values, in the background or at once.
+
+use super::jobs::change;
+use super::replayed::Replayed;
+use super::session::Session;
+use crate::ui::refits::replay_forces;
+use crate::ui::what_if::{WHAT_IF, world};
+
+impl Session {
+    /// Tries a value, or with `None` no longer.
+    pub fn try_value(&mut self, name: &str, value: Option<f64>) {
+        match value {
+            Some(value) => drop(self.calibration.what_if.values.insert(name.to_owned(), value)),
+            None => drop(self.calibration.what_if.values.remove(name)),
+        }
+        if !self.calibration.what_if.is_on() {
+            self.calibration.what_if.forget();
+        }
+    }
+
+    /// Replays with the newest tried values when the last replay has come; call once a frame.
+    pub fn follow_what_if(&mut self, ctx: &egui::Context) {
+        if !self.calibration.what_if.is_behind() || self.jobs.is_running(WHAT_IF) {
+            return;
+        }
+        let Some(analysis) = self.calibration.analysis.clone() else { return };
+        let (recordings, choice, values) = (
+            self.document.recordings.clone(),
+            self.calibration.choice.clone(),
+            self.calibration.what_if.values.clone(),
+        );
+        self.jobs.start(ctx, WHAT_IF, "", move |_| {
+            let world = world(&analysis, &choice.given_to_all(&recordings), &values);
+            let replays = replay_forces(&world, &recordings);
+            change(|session: &mut Self, _| session.calibration.what_if.take(values, replays))
+        });
+    }
+
+    /// Replays with the tried values now, for a picture.
+    pub(super) fn try_now(&mut self) {
+        let Some(analysis) = &self.calibration.analysis else { return };
+        let values = self.calibration.what_if.values.clone();
+        let world = world(analysis, &self.calibration.choice.given_to_all(&self.document.recordings), &values);
+        let replays = replay_forces(&world, &self.document.recordings);
+        self.calibration.what_if.take(values, replays);
+    }
+
+    /// The replay that plots show: of the tried values while something is tried.
+    pub fn shown_curves(&self) -> Option<&Replayed> {
+        let tried =
+            self.calibration.what_if.replays.get(self.document.current).filter(|_| self.calibration.what_if.is_on());
+        tried.and_then(Option::as_ref).or_else(|| self.replay())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::tests::{CRANK, STACK, session};
+    use crate::ui::what_if::residual_rms;
+
+    fn tried(session: &Session, name: &str, factor: f64) -> f64 {
+        let analysis = session.calibration.analysis.as_ref().expect("fitted");
+        let (object, plain) = name.split_once('.').expect("object.name");
+        let value = analysis.fit.value(object, plain).expect("identified");
+        let recordings = session.calibration.choice.given_to_all(&session.document.recordings);
+        let world = world(analysis, &recordings, &[(name.to_owned(), factor * value)].into());
+        residual_rms(&replay_forces(&world, &session.document.recordings)).expect("predicts")
+    }
+
+    #[test]
+    fn a_wrong_weight_leaves_more_of_the_force_and_the_fitted_one_as_much_as_before() {
+        for (recording, name) in [(STACK.clone(), "block-1.weight_N"), (CRANK.clone(), "crank.weight_N")] {
+            let session = session(recording);
+            let before = residual_rms(&session.calibration.replays).expect("predicts");
+            let same = tried(&session, name, 1.0);
+            assert!((same - before).abs() < 1e-9 + 1e-6 * before, "{name}: {same} and {before}");
+            let heavy = tried(&session, name, 1.6);
+            assert!(heavy > 1.1 * before, "{name}: {heavy} against {before}");
+        }
+    }
+}
