@@ -9,7 +9,7 @@ fn named((seed, number): (u64, u64)) -> Vec<String> {
     let job = jobs.iter().find(|j| j.seed == 1_000_000 * seed + number);
     let (case, _) = job.unwrap_or_else(|| panic!("battery {seed} has no case {number}")).make();
     let found = diagnose(&case.recordings, &score::options(&case)).expect("it can be diagnosed");
-    found.causes.into_iter().map(|c| c.id).filter(|id| !id.starts_with("other:")).collect()
+    found.diagnosis.causes.into_iter().map(|c| c.id).filter(|id| !id.starts_with("other:")).collect()
 }
 
 /// Where a handle sticks, the noise of its speed builds a bend of its own length up and takes it back: friction that is smaller there.
