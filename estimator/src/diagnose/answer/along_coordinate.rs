@@ -20,30 +20,18 @@ use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::estimates::{number, of_hardening_spring, parameters};
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
-use crate::diagnose::selection::stepwise::{Chosen, Selection};
+use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::stepwise::Chosen;
 use crate::diagnose::validation::fitted_terms::of_study;
 use crate::words::amount;
 use haptics::law::entries;
 
-/// Evidence of a generic term from which the residual has an unexplained part.
-const UNEXPLAINED: f64 = 20.0;
-/// Largest ratio of final residual to force noise under a correct model, whose residual also contains noise of the
-/// motion. Two values: for a noise that was measured in free rows, and for one estimated from fast changes.
-const MUCH: f64 = 1.6;
-const MUCH_UNSEEN: f64 = 8.0;
-/// The final residual is not white if noise would have this p-value or less.
-const SURELY_NOT_WHITE: f64 = 1e-12;
-/// Ratio of held-out residuals from which an unnamed term is rejected.
-const WORSE: f64 = 1.1;
-/// Evidence margin below which a rival keeps the cause ambiguous: its probability is then above a twentieth.
-const OPEN: f64 = 6.0;
 /// Channel of a motion along one coordinate.
 pub(crate) const FORCE: &str = "force";
 
 /// The answer of one object's recordings.
 pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Findings {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
-    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let unit = track.force_unit();
     let picks = study.picks();
     let (heldout, train) = rms(study, &[], &along);
@@ -69,28 +57,27 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     }
     let strange = strange(study, &picks);
     let mut causes = in_order(faults, found);
-    let least = 1.0 / (1.0 + (0.5 * OPEN).exp());
-    let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > least).cloned().collect();
+    let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > study.rules.open).cloned().collect();
     let mut verdict = verdict(!causes.is_empty(), strange.is_some(), !open_ones.is_empty());
     if let Some(strange) = strange {
         let (left, warning) = unnamed(study, strange, (floor, unit));
         causes.push(left);
         warnings.push(warning);
     }
-    let white = whiteness_p(study, &picks, &stretch);
-    if let Some(much) = much_left(track, end, white).filter(|_| causes.is_empty()) {
+    let white = whiteness_p(study, &picks);
+    if let Some(much) = much_left(track, &study.rules, end, white).filter(|_| causes.is_empty()) {
         verdict = Verdict::Unexplained;
         warnings.push(much);
     }
     let not_excited = unseen(track, study, &causes, &alternatives);
-    let passed_over = passed_over(study, &picks, UNEXPLAINED);
+    let passed_over = passed_over(study, study.rules.unexplained);
     let diagnosis = Diagnosis {
         verdict,
         baseline: Baseline {
             model: model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+"),
             rms_n: train,
             heldout_rms_n: heldout,
-            whiteness_p: whiteness_p(study, &[], &stretch),
+            whiteness_p: whiteness_p(study, &[]),
             unit: Some(unit.to_owned()),
             ..Baseline::default()
         },
@@ -133,10 +120,9 @@ fn of_path(geometry: &Study, found: &mut Vec<(f64, Cause)>, alternatives: &mut V
 
 /// Sentence on the final residual (`end`) if it is far above the force noise and not white. `white`: p-value of its
 /// whiteness.
-fn much_left(track: &Track, end: f64, white: f64) -> Option<String> {
-    let much = if track.noise_is_measured { MUCH } else { MUCH_UNSEEN };
+fn much_left(track: &Track, rules: &Rules, end: f64, white: f64) -> Option<String> {
     let times = end / track.force_noise;
-    (times > much && white < SURELY_NOT_WHITE).then(|| {
+    (rules.much.is_some_and(|much| times > much) && white < rules.surely_not_white).then(|| {
         let left = amount(end, track.force_unit());
         format!("{left} are left, {times:.0} times the noise of the force, and go with nothing that was tried")
     })
@@ -170,13 +156,13 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
 
 /// Generic term that no known cause explains, with its evidence.
 pub(crate) fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
-    let selection = Selection::new(&study.system, &study.candidates, UNEXPLAINED);
     // A term that increases the held-out residual is an overfit to a few other rows.
     let worse = |candidate: usize| {
         let gain = gain_between(study, picks, &[picks, &[candidate]].concat(), 0.0);
-        gain.heldout_rms_after > WORSE * gain.heldout_rms_before
+        gain.heldout_rms_after > study.rules.overfit * gain.heldout_rms_before
     };
-    selection.unexplained(picks).filter(|(candidate, score)| *score > UNEXPLAINED && !worse(*candidate))
+    let strongest = study.of_each().unexplained(picks);
+    strongest.filter(|(candidate, score)| *score > study.rules.unexplained && !worse(*candidate))
 }
 
 fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> Cause {
@@ -303,7 +289,7 @@ pub(crate) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
 
 /// Adds the unexplained terms of paths: a comparison, its generic term and the term's evidence for each path.
 pub fn add_of_path(found: &mut Diagnosis, strange: &[(Study, usize, f64)]) {
-    for (study, term, score) in strange.iter().filter(|(.., score)| *score > UNEXPLAINED) {
+    for (study, term, score) in strange.iter().filter(|(study, _, score)| *score > study.rules.unexplained) {
         let (cause, warning) = unnamed(study, (*term, *score), (0.0, "m"));
         if found.causes.iter().all(|c| c.id != cause.id) {
             found.causes.push(cause);

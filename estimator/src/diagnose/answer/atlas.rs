@@ -1,8 +1,8 @@
 //! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
 use crate::diagnose::data::regression_data::{Place, Track};
-use crate::diagnose::selection::comparison::{Compared, Study, residual};
-use crate::diagnose::selection::stepwise::Selection;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::comparison::{Compared, Study};
 use haptics::law::cause;
 use std::collections::BTreeSet;
 
@@ -142,60 +142,45 @@ impl View {
 }
 
 impl Compared {
-    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view
-    /// where that is missing.
-    pub(crate) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
-        channel(&self.study, (self.channel, self.unit, self.floor), view, threshold, best)
+    /// This channel's part of the atlas. `best`: variable that best shows a cause; the first of the view if that is
+    /// missing there.
+    pub(crate) fn atlas(&self, view: &View, best: fn(&str) -> Variable) -> Channel {
+        let left = self.study.residual(&[]);
+        let against = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
+            let acts = |i: usize| candidate.columns.iter().any(|column| column[i] != 0.0);
+            let sensors: BTreeSet<usize> = (0..left.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
+            let rows: Vec<usize> = (0..left.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
+            let best = best(candidate.id);
+            let (variable, values) = view.over.iter().find(|(v, _)| *v == best).or(view.over.first())?;
+            Some(Against {
+                id: candidate.id.to_owned(),
+                score,
+                variable: *variable,
+                over: rows.iter().map(|i| values[*i]).collect(),
+                taken: rows.iter().map(|i| taken[*i]).collect(),
+                rows,
+            })
+        };
+        let suspects = strongest(&self.study, &left).into_iter().filter_map(against).collect();
+        let View { recording, way, is_angular, .. } = view;
+        Channel {
+            name: self.channel,
+            unit: self.unit,
+            is_angular: *is_angular,
+            noise: self.floor,
+            recording: recording.clone(),
+            way: way.clone(),
+            left,
+            suspects,
+        }
     }
 }
 
-/// A compared channel's part of the atlas: its name, unit and noise.
-pub(crate) fn channel(
-    study: &Study,
-    (name, unit, noise): (&'static str, &'static str, f64),
-    view: &View,
-    threshold: f64,
-    best: fn(&str) -> Variable,
-) -> Channel {
+/// Strongest candidate of every cause that the rows can show, with its evidence and the part of the base model's
+/// residual `left` that it explains; the strongest cause first.
+fn strongest<'a>(study: &'a Study, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec<f64>)> {
     let Study { system, candidates, .. } = study;
-    let left = |picks: &[usize]| {
-        let solved = system.solve(picks)?;
-        Some(residual(&study.y, &study.base, candidates, picks, &solved))
-    };
-    let before = left(&[]).unwrap_or_else(|| study.y.clone());
-    let against = |(id, c, score): &(&str, usize, f64)| {
-        let after = left(&[*c])?;
-        let acts = |i: usize| candidates[*c].columns.iter().any(|column| column[i] != 0.0);
-        let sensors: BTreeSet<usize> = (0..before.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
-        let rows: Vec<usize> = (0..before.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
-        let (variable, values) = view.over.iter().find(|(v, _)| *v == best(id)).or(view.over.first())?;
-        Some(Against {
-            id: (*id).to_owned(),
-            score: *score,
-            variable: *variable,
-            over: rows.iter().map(|i| values[*i]).collect(),
-            taken: rows.iter().map(|i| before[*i] - after[*i]).collect(),
-            rows,
-        })
-    };
-    let suspects = strongest(study, threshold).iter().filter_map(against).collect();
-    let View { recording, way, is_angular, .. } = view;
-    Channel {
-        name,
-        unit,
-        is_angular: *is_angular,
-        noise,
-        recording: recording.clone(),
-        way: way.clone(),
-        left: before,
-        suspects,
-    }
-}
-
-/// Strongest candidate of every cause that the rows can show, with its evidence; the strongest cause first.
-fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
-    let Study { system, candidates, .. } = study;
-    let selection = Selection::new(system, candidates, threshold);
+    let selection = study.of_each();
     let mut best: Vec<(&str, usize, f64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         if candidate.expression.is_some() || cause(candidate.id).is_none() || !system.supported(c) {
@@ -209,25 +194,22 @@ fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
         }
     }
     best.sort_by(|a, b| b.2.total_cmp(&a.2));
-    best
+    let taken = |(_, c, score): (&str, usize, f64)| {
+        let after = study.residual_of(&[c], &system.solve(&[c])?);
+        Some((&candidates[c], score, left.iter().zip(&after).map(|(before, after)| before - after).collect()))
+    };
+    best.into_iter().filter_map(taken).collect()
 }
 
-/// The atlas of a comparison. `threshold`: least evidence of a named cause.
-pub(crate) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
-    let Study { system, candidates, .. } = study;
+/// The atlas of a comparison.
+pub(crate) fn atlas(track: &Track, study: &Study) -> Atlas {
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
-    let left = |picks: &[usize]| {
-        let solved = system.solve(picks)?;
-        Some(residual(&study.y, &study.base, candidates, picks, &solved))
-    };
-    let before = left(&[]).unwrap_or_else(|| study.y.clone());
-    let seen = |(id, c, score): &(&str, usize, f64)| {
-        let after = left(&[*c])?;
-        let taken = along.iter().map(|i| before[*i] - after[*i]).collect();
-        Some(Seen { id: (*id).to_owned(), score: *score, variable: Variable::of(id, track.planar), taken })
+    let seen = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
+        let taken = along.iter().map(|i| taken[*i]).collect();
+        Seen { id: candidate.id.to_owned(), score, variable: Variable::of(candidate.id, track.planar), taken }
     };
     Atlas {
-        suspects: strongest(study, threshold).iter().filter_map(seen).collect(),
+        suspects: strongest(study, &study.residual(&[])).into_iter().map(seen).collect(),
         acceleration: along.iter().map(|i| track.rows[*i].motion.acceleration).collect(),
         force_rate: along.iter().map(|i| track.rows[*i].force_rate.dot(&track.rows[*i].along)).collect(),
         channels: Vec::new(),

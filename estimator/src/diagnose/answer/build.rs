@@ -14,19 +14,11 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::estimates::parameters;
 use crate::diagnose::selection::held_out_gain::{gain, rms, whiteness_p};
-use crate::diagnose::selection::stepwise::{Chosen, REMAINDER, Selection, is_curve};
+use crate::diagnose::selection::rules::OPEN;
+use crate::diagnose::selection::stepwise::{Chosen, is_curve};
 use crate::diagnose::validation::fitted_terms::of_study;
 use crate::segment::SystemState;
 use crate::words::amount;
-
-/// Evidence of a generic term from which the residual has an unexplained part.
-const UNEXPLAINED: f64 = 25.0;
-/// The final residual is not white if noise would have this p-value or less.
-const SURELY_NOT_WHITE: f64 = 1e-12;
-/// Probability below which an alternative is excluded.
-const OPEN: f64 = 0.047;
-/// Evidence of a cause of usual size below which the motion does not excite it.
-const VISIBLE: f64 = 25.0;
 
 /// Input of a cause's evidence sentence.
 pub struct Found<'a> {
@@ -46,9 +38,8 @@ pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
 impl Compared {
     /// As a part of the answer.
     pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
-        let Self { study, channel, unit, floor, along, stretch, state } = self;
-        let (much, forward) = (None, Err(AT_ONCE));
-        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual, much, forward }
+        let Self { study, channel, unit, floor, along, state } = self;
+        Part { study, channel, unit, floor: *floor, along, state, shows, states, usual, forward: Err(AT_ONCE) }
     }
 }
 
@@ -64,14 +55,11 @@ pub struct Part<'a> {
     pub floor: f64,
     /// True for rows that are held out in turn.
     pub along: &'a [bool],
-    pub stretch: &'a [usize],
     /// The state of every row.
     pub state: &'a [SystemState],
     pub shows: Shows<'a>,
     pub states: States<'a>,
     pub usual: Usual<'a>,
-    /// Largest ratio of final residual to noise under a correct model. None if it is not known.
-    pub much: Option<f64>,
     /// Free-run simulation of the channel, or the reason why it has none.
     pub forward: Result<&'a dyn Forward, &'static str>,
 }
@@ -122,7 +110,7 @@ impl<'a> Part<'a> {
     pub fn figures(&self) -> Figures {
         let of = |picks: &[usize]| {
             let (heldout, train) = rms(self.study, picks, self.along);
-            (heldout, train, whiteness_p(self.study, picks, self.stretch))
+            (heldout, train, whiteness_p(self.study, picks))
         };
         let (heldout_rms_n, rms_n, whiteness) = of(&[]);
         let (end, _, end_white) = of(&self.study.picks());
@@ -157,8 +145,10 @@ impl<'a> Part<'a> {
         let (candidate, score) = self.strange()?;
         // If the final residual is small, a generic term may be a small misfit of a strong cause's curve. It is then
         // not reported.
-        let misses = |c: &Chosen| is_curve(self.study.candidates[c.candidate].id) && score < REMAINDER * c.score;
-        if self.much.is_some() && self.much_left().is_none() && self.study.chosen.iter().any(misses) {
+        let misses = |c: &Chosen| {
+            is_curve(self.study.candidates[c.candidate].id) && score < self.study.rules.remainder * c.score
+        };
+        if self.study.rules.much.is_some() && self.much_left().is_none() && self.study.chosen.iter().any(misses) {
             return None;
         }
         let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
@@ -181,8 +171,8 @@ impl<'a> Part<'a> {
         let picks = self.study.picks();
         let (end, _) = rms(self.study, &picks, self.along);
         let times = end / self.floor;
-        let is_much = self.much.is_some_and(|much| times > much);
-        (is_much && whiteness_p(self.study, &picks, self.stretch) < SURELY_NOT_WHITE).then(|| {
+        let is_much = self.study.rules.much.is_some_and(|much| times > much);
+        (is_much && whiteness_p(self.study, &picks) < self.study.rules.surely_not_white).then(|| {
             let left = amount(end, self.unit);
             format!("{left} of the {} are left, {times:.0} times its noise, and go with no known cause", self.channel)
         })
@@ -190,14 +180,13 @@ impl<'a> Part<'a> {
 
     /// Strongest generic term of the residual, with its evidence.
     fn strange(&self) -> Option<(usize, f64)> {
-        let Study { system, candidates, .. } = self.study;
-        let selection = Selection::new(system, candidates, UNEXPLAINED);
-        selection.unexplained(&self.study.picks()).filter(|(_, score)| *score > UNEXPLAINED)
+        let strongest = self.study.of_each().unexplained(&self.study.picks());
+        strongest.filter(|(_, score)| *score > self.study.rules.unexplained)
     }
 
     /// Causes of usual size whose effect this recording would hide.
     fn not_excited(&self, found: &mut Vec<NotExcited>) {
-        let Study { system, candidates, solved, .. } = self.study;
+        let Study { system, candidates, solved, rules, .. } = self.study;
         let picks = self.study.picks();
         let Some(solved) = solved else { return };
         let variance = solved.variance(system.rows);
@@ -213,7 +202,7 @@ impl<'a> Part<'a> {
         }
         for (id, power, why) in best {
             let named = picks.iter().any(|p| candidates[*p].id == id);
-            if power < VISIBLE && !named && found.iter().all(|n| n.id != id) {
+            if power < rules.visible && !named && found.iter().all(|n| n.id != id) {
                 found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
             }
         }
@@ -280,7 +269,7 @@ pub fn answer(parts: &[Part<'_>], beside: Beside, next: &dyn Fn(&[Alternative]) 
         strange.extend(part.unnamed());
         much.extend(part.much_left());
         part.not_excited(&mut not_excited);
-        join(&mut passed, passed_over(part.study, &part.study.picks(), UNEXPLAINED));
+        join(&mut passed, passed_over(part.study, part.study.rules.unexplained));
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     causes.extend(found.into_iter().map(|(_, cause)| cause));

@@ -5,10 +5,6 @@ use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::entries;
 
-/// Evidence of a cause of the noise's own size below which the motion does not excite it, because it would not be
-/// named.
-const VISIBLE: f64 = 20.0;
-
 /// Causes that this recording does not show.
 pub fn unseen(track: &Track, study: &Study, causes: &[Cause], alternatives: &[Alternative]) -> Vec<NotExcited> {
     let mut found = without_reversals(track, causes);
@@ -31,7 +27,7 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
         let rows = study.system.rows;
         let score = |c: &usize| study.system.distinct(*c, picks) * rows - study.candidates[*c].cost * rows.ln();
         let best = of.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
-        if best < VISIBLE {
+        if best < study.rules.visible {
             let why = entry.reveals.trim_end_matches('.');
             found.push(NotExcited {
                 id: entry.id.to_owned(),

@@ -1,17 +1,15 @@
 //! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use crate::diagnose::contract::{Alternative, Cause, NotExcited, PassedOver};
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::Study;
-use crate::diagnose::selection::normal_equations::System;
-use crate::diagnose::selection::stepwise::Selection;
 use haptics::law::cause;
 
 /// Causes that could have shown in this channel and were not chosen, those that would have explained most first.
 /// `least`: the score that names a cause.
-pub fn passed_over(study: &Study, picks: &[usize], least: f64) -> Vec<PassedOver> {
+pub fn passed_over(study: &Study, least: f64) -> Vec<PassedOver> {
     let Study { system, candidates, .. } = study;
-    let judge = Judge { system, candidates, picks, least };
+    let picks = study.picks();
+    let judge = Judge { study, picks: &picks, least };
     let mut ids: Vec<&str> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         let known = candidate.expression.is_none() && system.supported(c) && cause(candidate.id).is_some();
@@ -48,18 +46,18 @@ pub fn unsaid(
 }
 
 struct Judge<'a> {
-    system: &'a System,
-    candidates: &'a [Candidate],
+    study: &'a Study,
     picks: &'a [usize],
     least: f64,
 }
 
 impl Judge<'_> {
     fn one(&self, id: &str) -> PassedOver {
-        let selection = Selection::new(self.system, self.candidates, self.least);
-        let of = |c: &usize| self.candidates[*c].id == id && self.system.supported(*c);
+        let Study { system, candidates, .. } = self.study;
+        let selection = self.study.of_each();
+        let of = |c: &usize| candidates[*c].id == id && system.supported(*c);
         let best = |with: &[usize]| {
-            let scores = (0..self.candidates.len()).filter(of).filter_map(|c| selection.score_beside(with, c));
+            let scores = (0..candidates.len()).filter(of).filter_map(|c| selection.score_beside(with, c));
             scores.max_by(f64::total_cmp)
         };
         let (alone, beside) = (best(&[]), best(self.picks));
@@ -73,7 +71,7 @@ impl Judge<'_> {
     }
 
     fn words(&self, alone: f64, beside: Option<f64>) -> String {
-        let names: Vec<String> = self.picks.iter().map(|p| self.candidates[*p].id.replace('-', " ")).collect();
+        let names: Vec<String> = self.picks.iter().map(|p| self.study.candidates[*p].id.replace('-', " ")).collect();
         let found = if names.is_empty() { "the model".to_owned() } else { names.join(" and ") };
         let (least, verb) = (self.least, if names.len() > 1 { "explain" } else { "explains" });
         match beside {

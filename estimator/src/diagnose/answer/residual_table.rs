@@ -3,7 +3,7 @@
 use crate::diagnose::contract::Residual;
 use crate::diagnose::data::direction::STANDS;
 use crate::diagnose::data::regression_data::{Place, Track};
-use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::comparison::Study;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 
@@ -13,11 +13,7 @@ pub fn residuals(
     (unit, floor): (&str, Option<f64>),
     state: &dyn Fn(usize) -> Option<(&'static str, SystemState)>,
 ) -> Vec<Residual> {
-    let left = |picks: &[usize]| {
-        let solved = study.system.solve(picks);
-        solved.map_or_else(|| study.y.clone(), |s| residual(&study.y, &study.base, &study.candidates, picks, &s))
-    };
-    let (before, after) = (left(&[]), left(&study.picks()));
+    let (before, after) = (study.residual(&[]), study.residual(&study.picks()));
     let mut found: Vec<((&str, SystemState), [f64; 2], usize)> = Vec::new();
     for i in 0..study.y.len() {
         let Some(state) = state(i) else { continue };
@@ -26,8 +22,8 @@ pub fn residuals(
             found.len() - 1
         });
         let (_, squares, rows) = &mut found[k];
-        squares[0] += (study.weight[i] * before[i]).powi(2);
-        squares[1] += (study.weight[i] * after[i]).powi(2);
+        squares[0] += (study.layout.weight[i] * before[i]).powi(2);
+        squares[1] += (study.layout.weight[i] * after[i]).powi(2);
         *rows += 1;
     }
     let one = |((channel, state), squares, rows): ((&str, SystemState), [f64; 2], usize)| {

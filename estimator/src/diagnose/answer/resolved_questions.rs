@@ -2,11 +2,10 @@
 
 use crate::diagnose::contract::{Diagnosis, Settled};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::selection::rules::OPEN;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 
-/// Probability below which an alternative is excluded.
-const OPEN: f64 = 0.047;
 /// Number of recordings above which they are repetitions, not answers to each other.
 const MOST: usize = 8;
 

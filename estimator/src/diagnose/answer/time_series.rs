@@ -1,7 +1,7 @@
 //! Measured and modelled values row by row, for the plots of a diagnosis.
 
 use crate::diagnose::data::regression_data::{Place, Track};
-use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Use;
 
 /// One instant of the course along the motion.
@@ -91,11 +91,7 @@ impl Course {
 
 /// The rows along the motion with their residuals, without and with the chosen causes.
 pub(crate) fn course(track: &Track, study: &Study) -> Course {
-    let of = |picks: &[usize]| {
-        let solved = study.system.solve(picks);
-        solved.map_or_else(|| study.y.clone(), |s| residual(&study.y, &study.base, &study.candidates, picks, &s))
-    };
-    let (before, after) = (of(&[]), of(&study.picks()));
+    let (before, after) = (study.residual(&[]), study.residual(&study.picks()));
     let instants = track.rows.iter().enumerate().filter(|(_, row)| row.place == Place::Along).map(|(i, row)| Instant {
         recording: row.recording,
         time_s: row.motion.time_s,
@@ -107,7 +103,7 @@ pub(crate) fn course(track: &Track, study: &Study) -> Course {
         measured: if track.freely.is_some() { study.y[i] } else { row.y },
         left_before: before[i],
         left_after: after[i],
-        weight: study.weight[i],
+        weight: study.layout.weight[i],
         is_locked: matches!(study.system.uses[i], Use::Locked(_)),
         follows: track.follows(i),
     });

@@ -6,7 +6,7 @@ use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
-use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
 
@@ -55,17 +55,13 @@ pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<
 fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
-    let left = residual(&study.y, &study.base, &study.candidates, picks, &solved);
+    let left = study.residual_of(picks, &solved);
     // No force drives a free motion, and its inertial force is the target.
     let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
-    let mut at = study.base.len();
-    for candidate in picks.iter().map(|p| &study.candidates[*p]) {
-        for (column, value) in candidate.columns.iter().zip(&solved.values[at..]) {
-            if candidate.kind == Kind::Instrument {
-                drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
-            }
+    for (candidate, values) in study.with_values(picks, &solved.values).filter(|(c, _)| c.kind == Kind::Instrument) {
+        for (column, value) in candidate.columns.iter().zip(values) {
+            drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
         }
-        at += candidate.columns.len();
     }
     Some(Side { effects, drive, left })
 }
@@ -80,7 +76,7 @@ fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
             None => drive_forces(&side.effects, &motions),
         };
         for (i, needed) in stretch.zip(needed) {
-            if study.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
+            if study.layout.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
                 off += (side.drive[i] - side.left[i] - needed).powi(2);
                 worth += (side.left[i] - other.left[i]).powi(2);
             }

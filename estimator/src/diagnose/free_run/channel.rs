@@ -4,7 +4,6 @@
 
 use super::windows::{Compared, WINDOW_S, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::Study;
 
 /// Most windows, taken evenly from the whole recording; more add no information.
@@ -29,21 +28,6 @@ pub trait Forward {
     /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
     /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String>;
-}
-
-/// Each of the candidates with its values.
-pub fn causes<'a>(
-    study: &'a Study,
-    picks: &'a [usize],
-    values: &'a [f64],
-) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
-    let mut at = study.base.len();
-    picks.iter().map(move |p| {
-        let candidate = &study.candidates[*p];
-        let own = at..at + candidate.columns.len();
-        at = own.end;
-        (candidate, &values[own])
-    })
 }
 
 /// Columns of the model and of the candidates with their values.

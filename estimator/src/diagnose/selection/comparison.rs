@@ -1,5 +1,7 @@
+use super::layout::Layout;
 use super::normal_equations::{Solved, System};
-use super::stepwise::Chosen;
+use super::rules::Rules;
+use super::stepwise::{Chosen, Selection};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::segment::SystemState;
 
@@ -15,7 +17,6 @@ pub struct Compared {
     pub floor: f64,
     /// True for rows that are held out in turn.
     pub along: Vec<bool>,
-    pub stretch: Vec<usize>,
     /// The state of every row.
     pub state: Vec<SystemState>,
 }
@@ -30,7 +31,10 @@ pub struct Study {
     /// The target.
     pub y: Vec<f64>,
     pub base: Vec<Vec<f64>>,
-    pub weight: Vec<f64>,
+    /// The rows.
+    pub layout: Layout,
+    /// The limits in force.
+    pub rules: Rules,
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
     pub shares_of: [f64; 2],
@@ -40,6 +44,59 @@ impl Study {
     /// Candidates that were chosen.
     pub fn picks(&self) -> Vec<usize> {
         self.chosen.iter().map(|c| c.candidate).collect()
+    }
+
+    /// True if this cause was found.
+    pub fn has(&self, id: &str) -> bool {
+        self.chosen.iter().any(|c| self.candidates[c.candidate].id == id)
+    }
+
+    /// Evidence of single candidates.
+    pub fn of_each(&self) -> Selection<'_> {
+        Selection::of_each(&self.system, &self.candidates)
+    }
+
+    /// Residual of a fit with these candidates, row by row; without a solution, the target.
+    pub fn residual(&self, picks: &[usize]) -> Vec<f64> {
+        self.system.solve(picks).map_or_else(|| self.y.clone(), |solved| self.residual_of(picks, &solved))
+    }
+
+    /// Residual of a solution with these candidates, row by row.
+    pub fn residual_of(&self, picks: &[usize], solved: &Solved) -> Vec<f64> {
+        residual(&self.y, &self.base, &self.candidates, picks, solved)
+    }
+
+    /// The same comparison with these generic terms beside the found causes, whitened as before.
+    pub fn beside(&self, terms: Vec<Candidate>) -> Self {
+        let found = self.chosen.iter().map(|c| self.candidates[c.candidate].clone());
+        let candidates: Vec<Candidate> = found.chain(terms).collect();
+        let Self { y, base, layout, rules, .. } = self;
+        let system = System::new(base, &candidates, y, layout, self.system.coefficients.clone());
+        let as_before = |(candidate, c): (usize, &Chosen)| Chosen { candidate, rivals: Vec::new(), ..c.clone() };
+        let chosen: Vec<Chosen> = self.chosen.iter().enumerate().map(as_before).collect();
+        let solved = system.solve(&(0..chosen.len()).collect::<Vec<usize>>());
+        let (y, base, layout, shares_of) = (y.clone(), base.clone(), layout.clone(), self.shares_of);
+        Self { candidates, chosen, system, solved, y, base, layout, rules: *rules, shares_of }
+    }
+
+    /// Each of these candidates with its coefficients. `values`: of the model's regressors, then of the candidates' ones.
+    pub fn with_values<'a>(
+        &'a self,
+        picks: &[usize],
+        values: &'a [f64],
+    ) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
+        let mut at = self.base.len();
+        picks.iter().map(move |p| {
+            let candidate = &self.candidates[*p];
+            let own = at..at + candidate.columns.len();
+            at = own.end;
+            (candidate, &values[own])
+        })
+    }
+
+    /// Each found cause with its coefficients; none without a solution.
+    pub fn found(&self) -> Vec<(&Candidate, &[f64])> {
+        self.solved.as_ref().map_or_else(Vec::new, |s| self.with_values(&self.picks(), &s.values).collect())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Gain of a cause on the locked blocks, which took part in neither the choice nor the fit.
 
-use super::comparison::{Study, residual};
+use super::comparison::Study;
 use super::normal_equations::{Use, solve};
 use crate::diagnose::contract::Gain;
 use crate::diagnose::hypotheses::candidate::Column;
@@ -31,8 +31,11 @@ struct Parts {
 /// Weighted residuals of a subset of the chosen causes, all rows.
 fn left(study: &Study, picks: &[usize]) -> Vec<f64> {
     let Some(solved) = study.system.solve(picks) else { return study.y.clone() };
-    let plain = residual(&study.y, &study.base, &study.candidates, picks, &solved);
-    plain.iter().zip(&study.weight).map(|(r, w)| r * w).collect()
+    weighted(study, &study.residual_of(picks, &solved))
+}
+
+fn weighted(study: &Study, left: &[f64]) -> Vec<f64> {
+    left.iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
 }
 
 /// Root mean square over the locked rows, and over those that train.
@@ -101,8 +104,7 @@ fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
         let others = &study.system.train - products;
         let left = |picks: &[usize]| {
             let solved = solve(&others, &study.system.columns(picks), others.ncols() - 1)?;
-            let plain = residual(&study.y, &study.base, &study.candidates, picks, &solved);
-            Some(plain.iter().zip(&study.weight).map(|(r, w)| r * w).collect::<Vec<f64>>())
+            Some(weighted(study, &study.residual_of(picks, &solved)))
         };
         let (Some(before), Some(after)) = (left(rest), left(picks)) else { continue };
         let own: Vec<usize> = (0..before.len()).filter(|i| study.system.uses[*i] == Use::Fold(fold)).collect();
@@ -113,22 +115,22 @@ fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
 }
 
 /// Evidence for the k-th chosen cause, beside all others, on the rows that neither chose nor fitted it: 2
-/// ln(likelihood) of the whitened rows. Negative if it increases the error. `stretch`: segment of each row.
-pub fn confirmed(study: &Study, k: usize, stretch: &[usize]) -> f64 {
-    held_out(study, k, stretch, &|before, after| before * before - after * after)
+/// ln(likelihood) of the whitened rows. Negative if it increases the error.
+pub fn confirmed(study: &Study, k: usize) -> f64 {
+    held_out(study, k, &|before, after| before * before - after * after)
 }
 
 /// True if those rows could speak for or against it.
-pub fn is_tested(study: &Study, k: usize, stretch: &[usize]) -> bool {
-    held_out(study, k, stretch, &|before, after| (before - after).powi(2)) > TESTED
+pub fn is_tested(study: &Study, k: usize) -> bool {
+    held_out(study, k, &|before, after| (before - after).powi(2)) > TESTED
 }
 
 /// Sum over the held-out, whitened rows of a function of the residuals without and with the k-th chosen cause, beside
 /// all others. The noise has unit variance.
-fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) -> f64) -> f64 {
+fn held_out(study: &Study, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
-    let white = |picks: &[usize]| whitened(&left(study, picks), stretch, &study.system.coefficients);
+    let white = |picks: &[usize]| whitened(study, picks);
     let (before, after) = (white(&rest), white(&picks));
     let over = |wanted: &dyn Fn(Use) -> bool, of: &dyn Fn(f64, f64) -> f64| {
         let rows = study.system.uses.iter().zip(before.iter().zip(&after)).filter(|(used, _)| wanted(**used));
@@ -141,11 +143,12 @@ fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) ->
 }
 
 /// Rows whitened by the noise's autoregression; `None` at the start of a segment, before enough rows precede.
-fn whitened(values: &[f64], stretch: &[usize], coefficients: &[f64]) -> Vec<Option<f64>> {
+fn whitened(study: &Study, picks: &[usize]) -> Vec<Option<f64>> {
+    let (values, segment, coefficients) = (left(study, picks), &study.layout.segment, &study.system.coefficients);
     let mut since = 0;
     (0..values.len())
         .map(|i| {
-            since = if i > 0 && stretch[i] == stretch[i - 1] { since + 1 } else { 0 };
+            since = if i > 0 && segment[i] == segment[i - 1] { since + 1 } else { 0 };
             let past = || coefficients.iter().enumerate().map(|(k, c)| c * values[i - k - 1]).sum::<f64>();
             (since >= coefficients.len()).then(|| values[i] - past())
         })
@@ -179,8 +182,8 @@ pub fn bootstrap(pieces: usize, draws: usize, figure: &dyn Fn(&[usize]) -> f64) 
 
 fn mean_square_weight(study: &Study) -> f64 {
     let is_held_out = |u: Use| if holds_out(study) { matches!(u, Use::Locked(_)) } else { matches!(u, Use::Fold(_)) };
-    let locked = (0..study.weight.len()).filter(|i| is_held_out(study.system.uses[*i]));
-    let (sum, n) = locked.fold((0.0, 0_u32), |(s, n), i| (s + study.weight[i].powi(2), n + 1));
+    let locked = (0..study.layout.rows()).filter(|i| is_held_out(study.system.uses[*i]));
+    let (sum, n) = locked.fold((0.0, 0_u32), |(s, n), i| (s + study.layout.weight[i].powi(2), n + 1));
     if n > 0 { sum / f64::from(n) } else { 1.0 }
 }
 
@@ -223,9 +226,8 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
 
 /// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own
 /// autoregression.
-pub fn whiteness_p(study: &Study, picks: &[usize], stretch: &[usize]) -> f64 {
-    let white: Vec<f64> =
-        whitened(&left(study, picks), stretch, &study.system.coefficients).into_iter().flatten().collect();
+pub fn whiteness_p(study: &Study, picks: &[usize]) -> f64 {
+    let white: Vec<f64> = whitened(study, picks).into_iter().flatten().collect();
     let n = white.len() as f64;
     let power: f64 = white.iter().map(|v| v * v).sum();
     if white.len() < 3 * LAGS || power <= 0.0 {

@@ -67,9 +67,7 @@ fn combination(gram: &DMatrix<f64>, columns: &[usize], product: &dyn Fn(usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::selection::noise_model::Noise;
-    use crate::diagnose::selection::normal_equations::Held;
-    use crate::diagnose::selection::normal_equations::Rows;
+    use crate::diagnose::selection::layout::Layout;
     use rand::RngExt;
     use rand::SeedableRng;
     use rand::rngs::StdRng;
@@ -82,18 +80,8 @@ mod tests {
 
     /// A constant and a cause's regressor, solved: significance of the cause by its residual, and by the jackknife.
     fn sure(column: &[f64], y: &[f64]) -> [f64; 2] {
-        let time_s: Vec<f64> = (0..ROWS).map(|i| 0.01 * i as f64).collect();
-        let rows = Rows {
-            y,
-            stretch: &vec![0; ROWS],
-            testable: &vec![Held::Fully; ROWS],
-            time_s: &time_s,
-            weight: &vec![1.0; ROWS],
-            period_s: 0.01,
-            noise: Noise::Any,
-            may_stand: true,
-        };
-        let mut system = System::new(&[vec![1.0; ROWS], column.to_vec()], &[], &rows, Vec::new());
+        let layout = Layout { may_stand: true, ..Layout::of(vec![0; ROWS], &vec![true; ROWS], 0.01) };
+        let mut system = System::new(&[vec![1.0; ROWS], column.to_vec()], &[], y, &layout, Vec::new());
         system.pieces = vec![(0..ROWS).map(|i| i / OF_A_PIECE).collect()];
         let solved = system.solve(&[]).expect("it can be solved");
         let variance = solved.variance(system.rows) * solved.inverse[(1, 1)];

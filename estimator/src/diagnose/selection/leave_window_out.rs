@@ -35,9 +35,7 @@ impl System {
 mod tests {
     use super::*;
     use crate::diagnose::hypotheses::candidate::Candidate;
-    use crate::diagnose::selection::noise_model::Noise;
-    use crate::diagnose::selection::normal_equations::Held;
-    use crate::diagnose::selection::normal_equations::Rows;
+    use crate::diagnose::selection::layout::Layout;
     use haptics::law::Kind;
 
     #[test]
@@ -53,18 +51,9 @@ mod tests {
         let fit = |spoiled: f64| {
             let y: Vec<f64> =
                 (0..ROWS).map(|i| 1.0 + 2.0 * ramp[i] + if window.contains(&i) { spoiled } else { 0.0 }).collect();
-            let time_s: Vec<f64> = (0..ROWS).map(|i| 0.01 * i as f64).collect();
-            let rows = Rows {
-                y: &y,
-                stretch: &[0; ROWS],
-                testable: &(0..ROWS).map(|i| if i % 2 == 0 { Held::Fully } else { Held::Never }).collect::<Vec<_>>(),
-                time_s: &time_s,
-                weight: &[1.0; ROWS],
-                period_s: 0.01,
-                noise: Noise::Any,
-                may_stand: false,
-            };
-            System::new(&[vec![1.0; ROWS]], &candidates, &rows, Vec::new())
+            let testable: Vec<bool> = (0..ROWS).map(|i| i % 2 == 0).collect();
+            let layout = Layout::of(vec![0; ROWS], &testable, 0.01);
+            System::new(&[vec![1.0; ROWS]], &candidates, &y, &layout, Vec::new())
         };
         for spoiled in [0.0, 7.0] {
             let values = fit(spoiled).without(&window, &[0]).expect("all other rows tell both");

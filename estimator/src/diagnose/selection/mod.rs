@@ -5,6 +5,7 @@ pub(crate) mod estimates;
 pub(crate) mod gram;
 pub(crate) mod held_out_gain;
 pub(crate) mod jackknife;
+pub(crate) mod layout;
 pub(crate) mod leave_window_out;
 pub(crate) mod noise_model;
 pub(crate) mod normal_equations;

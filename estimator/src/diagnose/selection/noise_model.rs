@@ -1,6 +1,7 @@
 //! Autocorrelated noise of the rows: estimated as an autoregression, and removed from every column.
 
-use super::normal_equations::{Rows, Use};
+use super::layout::Layout;
+use super::normal_equations::Use;
 use std::ops::Range;
 
 /// Highest order of the autoregression that whitens the residual of a force.
@@ -20,9 +21,9 @@ pub enum Noise {
 }
 
 /// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
-pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
-    if rows.noise == Noise::OfDifferences {
-        return whitener_of_differences(residual, rows, used);
+pub fn whitener(residual: &[f64], layout: &Layout, used: &[Use]) -> Vec<f64> {
+    if layout.noise == Noise::OfDifferences {
+        return whitener_of_differences(residual, layout, used);
     }
     let trains = |i: usize| matches!(used[i], Use::Always | Use::Fold(_));
     let mut lags = [0.0; LARGEST_ORDER + 1];
@@ -33,7 +34,7 @@ pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
         }
         count += 1.0;
         for (lag, sum) in lags.iter_mut().enumerate() {
-            if i >= lag && rows.stretch[i - lag] == rows.stretch[i] && trains(i - lag) {
+            if i >= lag && layout.segment[i - lag] == layout.segment[i] && trains(i - lag) {
                 *sum += residual[i] * residual[i - lag];
             }
         }
@@ -74,7 +75,7 @@ const TAKEN_BACK: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
 
 /// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from
 /// few rows would fill up the gap that the noise has at low frequencies, where everything that swings is.
-fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
+fn whitener_of_differences(residual: &[f64], layout: &Layout, used: &[Use]) -> Vec<f64> {
     let order = (residual.len() / SHARE_OF_DIFFERENCES).min(ORDER_OF_DIFFERENCES);
     let second = TAKEN_BACK.map(|back| vec![1.0, back - 2.0, 1.0]);
     let kinds = second.into_iter().chain([vec![1.0, -1.0]]);
@@ -88,7 +89,7 @@ fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> V
         lags[0] *= 1.0 + white;
         let mut coefficients = Vec::new();
         levinson(&lags, &mut |found, _| coefficients = found.to_vec());
-        let left = Whitening::new(rows.stretch, &flat, &coefficients).of(residual);
+        let left = Whitening::new(&layout.segment, &flat, &coefficients).of(residual);
         let trains = (0..left.len()).filter(|i| matches!(used[*i], Use::Always | Use::Fold(_)));
         let power: f64 = trains.map(|i| left[i] * left[i]).sum();
         if power < best.0 {

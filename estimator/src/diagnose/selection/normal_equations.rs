@@ -4,7 +4,8 @@
 use super::comparison::Study;
 use super::gram;
 use super::gram::{Weighed, gram, mean_squares};
-use super::noise_model::{Noise, Whitening};
+use super::layout::{Held, Layout};
+use super::noise_model::Whitening;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
@@ -26,35 +27,6 @@ const ROUNDING: f64 = 1e-6;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
-/// Rows of the system.
-pub struct Rows<'a> {
-    pub y: &'a [f64],
-    /// Segment of each row.
-    pub stretch: &'a [usize],
-    /// Hold-out role of each row; rows that may not be held out always train.
-    pub testable: &'a [Held],
-    /// Time of each row, s: rows near in time are held out together.
-    pub time_s: &'a [f64],
-    /// Weight of each row, 0 … 1: factor by which its noise is reduced.
-    pub weight: &'a [f64],
-    pub period_s: f64,
-    /// Kind of their noise.
-    pub noise: Noise,
-    /// True if standing rows have next to no weight: blocks then have equal information, not equal numbers of rows.
-    pub may_stand: bool,
-}
-
-/// Hold-out role of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Held {
-    /// Always used for training.
-    Never,
-    /// Tested by folds. Its quantity is not the force, and locked blocks test it for that quantity alone.
-    ByFolds,
-    /// Tested by folds and by locked blocks.
-    Fully,
-}
-
 /// Use of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
@@ -71,18 +43,18 @@ pub enum Use {
 }
 
 /// Use of each row: blocks of the rows that may be held out.
-pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
-    let mut testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i] != Held::Never).collect();
-    testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
+pub fn uses(layout: &Layout) -> Vec<Use> {
+    let mut testable: Vec<usize> = (0..layout.rows()).filter(|i| layout.held[*i] != Held::Never).collect();
+    testable.sort_by(|a, b| layout.time_s[*a].total_cmp(&layout.time_s[*b]));
     // Single observations (a blow, not a sample of a motion) are independent of their neighbours.
-    let is_alone = rows.stretch.windows(2).all(|pair| pair[0] != pair[1]);
+    let is_alone = layout.segment.windows(2).all(|pair| pair[0] != pair[1]);
     // Blocks have equal information, not equal numbers of rows. A block of a stick phase tests nothing, and without the
     // only moving block nothing can be trained.
     let mut said = 0.0;
     let before: Vec<f64> = testable
         .iter()
         .map(|i| {
-            let own = if rows.may_stand { rows.weight[*i].powi(2) } else { 1.0 };
+            let own = if layout.may_stand { layout.weight[*i].powi(2) } else { 1.0 };
             said += own;
             said - own
         })
@@ -90,10 +62,10 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     let least = if is_alone { LEAST_ALONE } else { LEAST_BLOCK };
     let most = ((said + ROUNDING) as usize / LEAST_SAID).clamp(1, MOST_BLOCKS);
     let blocks = (testable.len() / least).clamp(1, most);
-    let guard = if is_alone { 0 } else { (GUARD_S / rows.period_s).round().max(1.0) as usize };
+    let guard = if is_alone { 0 } else { (GUARD_S / layout.period_s).round().max(1.0) as usize };
     let block_of = |k: usize| ((before[k] * blocks as f64 / said.max(1e-300)) as usize).min(blocks - 1);
     let locked = |block: usize| blocks >= LOCKED_EVERY && block % LOCKED_EVERY == LOCKED_EVERY - 1;
-    let mut uses = vec![Use::Always; rows.y.len()];
+    let mut uses = vec![Use::Always; layout.rows()];
     let mut open = 0;
     let mut fold_of = vec![0; blocks];
     for (block, fold) in fold_of.iter_mut().enumerate() {
@@ -105,7 +77,7 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     for (k, &i) in testable.iter().enumerate() {
         let block = block_of(k);
         uses[i] = if locked(block) {
-            if rows.testable[i] == Held::Fully { Use::Locked(block) } else { Use::Beside(block) }
+            if layout.held[i] == Held::Fully { Use::Locked(block) } else { Use::Beside(block) }
         } else {
             let near = |other: Option<usize>| other.is_some_and(|j| j < testable.len() && locked(block_of(j)));
             if near(k.checked_sub(guard)) || near(Some(k + guard)) { Use::Guard } else { Use::Fold(fold_of[block]) }
@@ -177,8 +149,8 @@ pub(crate) fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>>
 }
 
 /// Effective number of observations: a row of little weight counts as less than one.
-pub(crate) fn counted(picked: &[usize], rows: &Rows<'_>) -> f64 {
-    picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>()
+pub(crate) fn counted(picked: &[usize], layout: &Layout) -> f64 {
+    picked.iter().map(|i| layout.weight[*i].powi(2)).sum::<f64>()
 }
 
 /// Mean square of each regressor over the training rows, from their products, and over all `whole` rows in use.
@@ -210,42 +182,48 @@ impl Solved {
 }
 
 impl System {
-    pub fn new(base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>, coefficients: Vec<f64>) -> Self {
-        Self::build(columns_of(base, candidates, rows.y), (base.len(), candidates), rows, coefficients, None)
+    pub fn new(
+        base: &[Vec<f64>],
+        candidates: &[Candidate],
+        y: &[f64],
+        layout: &Layout,
+        coefficients: Vec<f64>,
+    ) -> Self {
+        Self::build(columns_of(base, candidates, y), (base.len(), candidates), layout, coefficients, None)
     }
 
     /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
-    pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>) -> Self {
-        let columns = columns_of(base, candidates, rows.y);
-        let Study { system, candidates: had, base: had_base, y: had_y, weight, .. } = before;
+    pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], y: &[f64], layout: &Layout) -> Self {
+        let columns = columns_of(base, candidates, y);
+        let Study { system, candidates: had, base: had_base, y: had_y, layout: had_layout, .. } = before;
         let coefficients = system.coefficients.clone();
-        let known = (weight == rows.weight && system.uses == uses(rows))
+        let known = (had_layout.weight == layout.weight && system.uses == uses(layout))
             .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });
-        Self::build(columns, (base.len(), candidates), rows, coefficients, known)
+        Self::build(columns, (base.len(), candidates), layout, coefficients, known)
     }
 
     fn build(
         columns: Vec<&[f64]>,
         (base, candidates): (usize, &[Candidate]),
-        rows: &Rows<'_>,
+        layout: &Layout,
         coefficients: Vec<f64>,
         known: Option<Known>,
     ) -> Self {
-        let uses = uses(rows);
-        let white = Whitening::new(rows.stretch, rows.weight, &coefficients);
+        let uses = uses(layout);
+        let white = Whitening::new(&layout.segment, &layout.weight, &coefficients);
         let whole = white.leaves();
         let (from, mut had) = known.map_or_else(|| (vec![None; columns.len()], None), |k| (k.from, Some(k.system)));
         let mut taken = |c: usize| Some(std::mem::take(&mut had.as_mut()?.whitened[from[c]?]));
         let columns: Vec<Vec<f64>> =
             columns.into_iter().enumerate().map(|(c, values)| taken(c).unwrap_or_else(|| white.of(values))).collect();
         let pick = |wanted: &dyn Fn(Use) -> bool| -> Vec<usize> {
-            (0..rows.y.len()).filter(|i| whole[*i] && wanted(uses[*i])).collect()
+            (0..layout.rows()).filter(|i| whole[*i] && wanted(uses[*i])).collect()
         };
         let products = |part: &dyn Fn(&System) -> &DMatrix<f64>, picked: &[usize]| match &had {
             Some(had) => gram::more(&columns, picked, part(had), &from),
             None => gram(&columns, picked),
         };
-        let counted = |picked: &[usize]| counted(picked, rows);
+        let counted = |picked: &[usize]| counted(picked, layout);
         let picked = pick(&|u| u == Use::Always);
         let always = products(&|had| &had.always, &picked);
         let mut train = always.clone();
@@ -259,7 +237,7 @@ impl System {
             folds.push((part, counted(&picked)));
         }
         let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let all_alike = vec![1.0; rows.y.len()];
+        let all_alike = vec![1.0; layout.rows()];
         let energy = energy(&train, &Weighed { columns: &slices, weight: &all_alike }, &uses, &whole);
         let places = places(base, candidates);
         Self {
@@ -413,18 +391,8 @@ mod tests {
 
     /// Blocks of rows of these weights, 50 a second.
     fn of(weight: &[f64]) -> Vec<Use> {
-        let time_s: Vec<f64> = (0..weight.len()).map(|i| 0.02 * i as f64).collect();
-        let rows = Rows {
-            y: &vec![0.0; weight.len()],
-            stretch: &vec![0; weight.len()],
-            testable: &vec![Held::Fully; weight.len()],
-            time_s: &time_s,
-            weight,
-            period_s: 0.02,
-            noise: Noise::Any,
-            may_stand: true,
-        };
-        uses(&rows)
+        let layout = Layout::of(vec![0; weight.len()], &vec![true; weight.len()], 0.02).weighted(weight.to_vec());
+        uses(&Layout { may_stand: true, ..layout })
     }
 
     #[test]
@@ -457,17 +425,8 @@ mod tests {
         let x: Vec<f64> = (0..600).map(|i| (0.1 * f64::from(i)).sin()).collect();
         let least = |slope: f64| {
             let y: Vec<f64> = x.iter().map(|x| 2.0 + slope * x).collect();
-            let rows = Rows {
-                y: &y,
-                stretch: &[0; 600],
-                testable: &[Held::Fully; 600],
-                time_s: &(0..600).map(f64::from).collect::<Vec<f64>>(),
-                weight: &[1.0; 600],
-                period_s: 0.02,
-                noise: Noise::Any,
-                may_stand: true,
-            };
-            let mut system = System::new(&[x.clone(), vec![1.0; 600]], &[], &rows, Vec::new());
+            let layout = Layout { may_stand: true, ..Layout::of(vec![0; 600], &[true; 600], 0.02) };
+            let mut system = System::new(&[x.clone(), vec![1.0; 600]], &[], &y, &layout, Vec::new());
             system.resisting = vec![0];
             let [plain, sound] = [system.least(&[]), system.least_sound(&[])].map(|found| found.expect("solved"));
             (plain, sound)

@@ -1,7 +1,8 @@
 //! Prescreen before the noise is known: the strongest causes, from few of the products of all columns.
 
 use super::gram::{STRIP, Weighed};
-use super::normal_equations::{FOLDS, Rows, System, Use, columns_of, counted, energy, places, uses};
+use super::layout::Layout;
+use super::normal_equations::{FOLDS, System, Use, columns_of, counted, energy, places, uses};
 use super::stepwise::{Selection, cheapest};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::DMatrix;
@@ -24,17 +25,17 @@ pub struct Rough<'a> {
 }
 
 impl<'a> Rough<'a> {
-    pub fn new(base: &'a [Vec<f64>], candidates: &'a [Candidate], rows: &Rows<'a>) -> Self {
-        let columns = columns_of(base, candidates, rows.y);
+    pub fn new(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64], layout: &'a Layout) -> Self {
+        let columns = columns_of(base, candidates, y);
         if columns.len() < MANY {
-            let system = System::new(base, candidates, rows, Vec::new());
-            return Self { system, candidates, columns, weight: rows.weight, parts: Vec::new() };
+            let system = System::new(base, candidates, y, layout, Vec::new());
+            return Self { system, candidates, columns, weight: &layout.weight, parts: Vec::new() };
         }
-        let uses = uses(rows);
+        let uses = uses(layout);
         let of = |wanted: Use| (0..uses.len()).filter(|i| uses[*i] == wanted).collect::<Vec<usize>>();
         let parts: Vec<Vec<usize>> =
             std::iter::once(of(Use::Always)).chain((0..FOLDS).map(|fold| of(Use::Fold(fold)))).collect();
-        let count = parts.iter().map(|part| counted(part, rows)).fold(0.0, |sum, part| sum + part);
+        let count = parts.iter().map(|part| counted(part, layout)).fold(0.0, |sum, part| sum + part);
         let system = System {
             train: DMatrix::from_element(columns.len(), columns.len(), f64::NAN),
             rows: count,
@@ -49,7 +50,7 @@ impl<'a> Rough<'a> {
             always: DMatrix::zeros(0, 0),
             whitened: Vec::new(),
         };
-        let mut rough = Self { system, candidates, columns, weight: rows.weight, parts };
+        let mut rough = Self { system, candidates, columns, weight: &layout.weight, parts };
         rough.begin();
         rough
     }
@@ -106,11 +107,11 @@ impl<'a> Rough<'a> {
     }
 
     /// The best few candidates, justified or not: the whitening must not absorb them.
-    pub fn greedy(&mut self, threshold: f64) -> Vec<usize> {
+    pub fn greedy(&mut self) -> Vec<usize> {
         let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
             let (system, candidates) = (&self.system, self.candidates);
-            let selection = Selection::new(system, candidates, threshold);
+            let selection = Selection::of_each(system, candidates);
             if chosen.len() == selection.most() {
                 return chosen;
             }
@@ -150,8 +151,6 @@ fn likely(priced: &[(usize, f64)], open: &[usize], candidates: &[Candidate]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::selection::noise_model::Noise;
-    use crate::diagnose::selection::normal_equations::Held;
     use haptics::law::Kind;
 
     #[test]
@@ -172,23 +171,13 @@ mod tests {
             .map(|i| wave(0, i) + 0.5 * wave(5 + 3 * 17, i) - 0.2 * wave(5 + 3 * 40, i) + 0.1 * noise(i))
             .collect();
         let weight: Vec<f64> = (0..900).map(|i| if i % 50 < 5 { 0.3 } else { 1.0 }).collect();
-        let time_s: Vec<f64> = (0..900).map(|i| 0.01 * f64::from(i)).collect();
-        let rows = Rows {
-            y: &y,
-            stretch: &[0; 900],
-            testable: &[Held::Fully; 900],
-            time_s: &time_s,
-            weight: &weight,
-            period_s: 0.01,
-            noise: Noise::Any,
-            may_stand: false,
-        };
-        let mut rough = Rough::new(&base, &candidates, &rows);
-        let chosen = rough.greedy(20.0);
+        let layout = Layout::of(vec![0; 900], &[true; 900], 0.01).weighted(weight);
+        let mut rough = Rough::new(&base, &candidates, &y, &layout);
+        let chosen = rough.greedy();
         assert!(chosen.len() > 2 && chosen.contains(&17) && chosen.contains(&40), "{chosen:?}");
         let some: Vec<usize> = chosen.iter().copied().chain([3, 9, 21]).collect();
         rough.know(&some);
-        let whole = System::new(&base, &candidates, &rows, Vec::new());
+        let whole = System::new(&base, &candidates, &y, &layout, Vec::new());
         assert_eq!(rough.system.rows.to_bits(), whole.rows.to_bits());
         let bits = |energy: &[(f64, f64)]| energy.iter().map(|(a, b)| [a.to_bits(), b.to_bits()]).collect::<Vec<_>>();
         assert_eq!(bits(&rough.system.energy), bits(&whole.energy));
@@ -199,7 +188,7 @@ mod tests {
                 assert_eq!(rough.system.train[(*a, *b)].to_bits(), whole.train[(*a, *b)].to_bits(), "{a} {b}");
             }
         }
-        let selection = Selection::new(&whole, &candidates, 20.0);
+        let selection = Selection::of_each(&whole, &candidates);
         let mut wanted = Vec::new();
         while wanted.len() < selection.most() {
             wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));

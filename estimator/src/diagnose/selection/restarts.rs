@@ -1,7 +1,7 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::comparison::Study;
-use super::stepwise::{LOST_MOTION, SURE, Selection};
+use super::stepwise::{LOST_MOTION, Selection};
 use crate::diagnose::hypotheses::candidate::Candidate;
 
 /// Number of causes, strongest alone, that are tried as the first of a pair.
@@ -54,7 +54,7 @@ impl Selection<'_> {
         let pairs = (1..kinds.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
         let priced = pairs.map(|(a, b)| vec![kinds[a].1, kinds[b].1]).map(|pair| (with(&pair), pair));
         let (price, pair) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (price < with(&[]) - SURE * self.threshold).then_some(pair)
+        (price < with(&[]) - self.rules.sure * self.rules.threshold).then_some(pair)
     }
 
     /// Candidates that need a finer grid before they can be compared with the chosen ones. Of hysteresis and backlash
@@ -81,9 +81,9 @@ impl Selection<'_> {
 
 /// The candidates around which the next round searches: those that were chosen, and what else may turn out better once
 /// it is searched for as closely.
-pub fn to_refine(study: &Study, threshold: f64, dry: bool) -> Vec<&Candidate> {
-    let Study { system, candidates, .. } = study;
+pub fn to_refine(study: &Study) -> Vec<&Candidate> {
+    let Study { system, candidates, rules, .. } = study;
     let picks = study.picks();
-    let others = Selection::new(system, candidates, threshold).of(dry, true).left_behind(&picks);
+    let others = Selection::new(system, candidates, rules).left_behind(&picks);
     picks.iter().chain(&others).map(|c| &candidates[*c]).collect()
 }

@@ -1,10 +1,124 @@
-/// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3).
-pub(crate) const THRESHOLD: f64 = 20.0;
-/// The same for slow rows, whose noise averages out less.
-pub(crate) const THRESHOLD_SLOW: f64 = 25.0;
-/// Row period from which rows count as slow, s.
-pub(crate) const SLOW_PERIOD_S: f64 = 0.019;
+//! Limits that decide which causes an answer names, side by side for the two kinds of channels.
 
-pub(crate) fn threshold(period_s: f64) -> f64 {
-    if period_s > SLOW_PERIOD_S { THRESHOLD_SLOW } else { THRESHOLD }
+/// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200.
+const THRESHOLD: f64 = 20.0;
+/// The same for slow rows, whose noise averages out less.
+const THRESHOLD_SLOW: f64 = 25.0;
+/// Row period from which rows count as slow, s.
+const SLOW_PERIOD_S: f64 = 0.019;
+/// Largest ratio of final residual to force noise under a correct model along one coordinate, whose residual also
+/// contains noise of the motion: for a noise measured in free rows, and for one estimated from fast changes.
+const MUCH: f64 = 1.6;
+const MUCH_UNSEEN: f64 = 8.0;
+/// Probability of an alternative below which it is excluded.
+pub const OPEN: f64 = 0.047;
+
+/// The limits in force for one channel. Evidence is 2 ln(likelihood ratio) less the price of the parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Least evidence of a named cause.
+    pub threshold: f64,
+    /// True if the model has dry friction. Causes that bend or lift it require it.
+    pub has_dry_friction: bool,
+    /// True if motion is lost at a reversal in one way only: hysteresis and backlash then exclude each other.
+    pub one_loss: bool,
+    /// Evidence margin within which rival causes are ambiguous.
+    pub ambiguous: f64,
+    /// Ridge on the candidates in the fit whose residual determines the whitening, relative to the power of a regressor.
+    /// For causes it is scaled by their part beyond the model. With a common ridge, the fit would attribute nearly
+    /// collinear causes to the model and leave the difference in the residual.
+    pub ridge: f64,
+    /// Share of an empirical curve's evidence below which another cause over the same variable may be its misfit.
+    pub remainder: f64,
+    /// Multiple of the threshold from which a joint effect is beyond doubt.
+    pub sure: f64,
+    /// True if the held-out rows may be too few to test a cause. An untested cause must then be steady; along a
+    /// coordinate, every cause is tested and must be steady.
+    pub is_sparse: bool,
+    /// Multiple of the threshold below which a cause must be confirmed on the locked blocks.
+    pub confirmed: f64,
+    /// Least evidence on the locked blocks. A true cause keeps about a third of its evidence there, while one found by
+    /// a search in noise becomes negative.
+    pub shown: f64,
+    /// Least ratio of a cause's squared effect to its jackknife variance.
+    pub steady: f64,
+    /// Ratio of held-out residuals from which a cause is harmful. A true but poorly estimated small cause may increase
+    /// the residual slightly.
+    pub harms: f64,
+    /// Evidence of a generic term from which the residual has an unexplained part.
+    pub unexplained: f64,
+    /// Ratio of held-out residuals above which such a term is an overfit.
+    pub overfit: f64,
+    /// Share of the explainable power up to which such a term is noise.
+    pub least_share: f64,
+    /// Largest ratio of final residual to noise under a correct model; `None` if it is not known.
+    pub much: Option<f64>,
+    /// The final residual is not white if noise would have this p-value or less.
+    pub surely_not_white: f64,
+    /// Evidence of a cause of usual size below which the motion does not excite it, because it would not be named.
+    pub visible: f64,
+    /// Probability of an alternative above which its question is open.
+    pub open: f64,
+}
+
+impl Rules {
+    /// Channel whose rows may be few, or dealt out between fitted and held-out ones.
+    pub fn of_channel(period_s: f64) -> Self {
+        Self {
+            threshold: if period_s > SLOW_PERIOD_S { THRESHOLD_SLOW } else { THRESHOLD },
+            has_dry_friction: true,
+            one_loss: false,
+            ambiguous: 10.0,
+            ridge: 1e-2,
+            remainder: 0.12,
+            sure: 10.0,
+            is_sparse: true,
+            confirmed: 2.5,
+            shown: 1.0,
+            steady: 15.0,
+            harms: 1.05,
+            unexplained: 25.0,
+            overfit: f64::INFINITY,
+            least_share: 0.0,
+            much: None,
+            surely_not_white: 1e-12,
+            visible: 25.0,
+            open: OPEN,
+        }
+    }
+
+    /// Channel of observations without a period: blows, or places of a path without a clock.
+    pub fn of_observations() -> Self {
+        Self { threshold: THRESHOLD, ..Self::of_channel(f64::INFINITY) }
+    }
+
+    /// Force along one coordinate, in blocks of a long motion.
+    pub fn of_coordinate(period_s: f64) -> Self {
+        Self {
+            one_loss: true,
+            is_sparse: false,
+            unexplained: 20.0,
+            overfit: 1.1,
+            least_share: f64::NEG_INFINITY,
+            visible: 20.0,
+            // An evidence margin of 6.
+            open: 1.0 / (1.0 + 3.0_f64.exp()),
+            ..Self::of_channel(period_s)
+        }
+    }
+
+    /// Path of a handle: a circle, without friction.
+    pub fn of_path(period_s: f64) -> Self {
+        Self { one_loss: false, ridge: 0.0, ..Self::of_coordinate(period_s) }
+    }
+
+    /// The same rules for a model with or without dry friction.
+    pub fn with_friction(self, has_dry_friction: bool) -> Self {
+        Self { has_dry_friction, ..self }
+    }
+
+    /// The same rules with the noise measured in free rows, or estimated from fast changes.
+    pub fn with_noise(self, is_measured: bool) -> Self {
+        Self { much: Some(if is_measured { MUCH } else { MUCH_UNSEEN }), ..self }
+    }
 }

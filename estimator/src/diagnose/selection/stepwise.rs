@@ -2,6 +2,7 @@
 
 use super::normal_equations::{Solved, System};
 use super::restarts::MANY;
+use super::rules::Rules;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -17,8 +18,6 @@ const CLEAR_T: f64 = 2.0;
 const UNTESTED: f64 = 1e-8;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
-/// Evidence margin within which rival causes are ambiguous.
-pub const AMBIGUOUS: f64 = 10.0;
 
 /// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
@@ -33,15 +32,11 @@ pub struct Chosen {
     pub rivals: Vec<(usize, f64)>,
 }
 
-/// Chooses among the candidates. `threshold`: least evidence of a cause.
+/// Chooses among the candidates.
 pub struct Selection<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
-    pub threshold: f64,
-    /// True if the model has dry friction. Causes that bend or lift it require it.
-    dry: bool,
-    /// True if motion is lost at a reversal in one way only: hysteresis and backlash then exclude each other.
-    one_loss: bool,
+    pub rules: Rules,
     /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
     prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
@@ -74,14 +69,10 @@ const LINES: [(&str, &[Over]); 10] = [
     ("length-scale", &[Over::Path]),
     ("pad-compliance", &[Over::Path]),
 ];
-/// Share of such a cause's evidence below which another cause may be its misfit.
-pub const REMAINDER: f64 = 0.12;
 /// Squared correlation of two causes' estimates from which they count as one.
 const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const TAKEN_BACK: f64 = 0.1;
-/// Multiple of the threshold from which the pair is kept all the same.
-pub(crate) const SURE: f64 = 10.0;
 
 /// Variable of a curve.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -106,21 +97,21 @@ pub(crate) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "fricti
 pub(crate) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl<'a> Selection<'a> {
-    /// A selection beside dry friction, in which motion may be lost at reversals in two ways.
-    pub fn new(system: &'a System, candidates: &'a [Candidate], threshold: f64) -> Self {
-        Self { system, candidates, threshold, dry: true, one_loss: false, prices: RefCell::default() }
+    /// A selection by these rules.
+    pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
+        Self { system, candidates, rules: *rules, prices: RefCell::default() }
     }
 
-    /// Sets if the model has dry friction, and if motion is lost at reversals in one way only.
-    pub fn of(self, dry: bool, one_loss: bool) -> Self {
-        Self { dry, one_loss, ..self }
+    /// Evidence of single candidates, whatever else the rules would exclude beside them.
+    pub fn of_each(system: &'a System, candidates: &'a [Candidate]) -> Self {
+        Self::new(system, candidates, &Rules::of_channel(0.0))
     }
 }
 
 impl Selection<'_> {
     /// Most causes at once.
     pub(crate) fn most(&self) -> usize {
-        if self.dry { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
+        if self.rules.has_dry_friction { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
     }
 
     /// Price N ln(RSS) plus the penalty of the parameters; smaller is better. Infinite if a parameter has an impossible
@@ -136,7 +127,7 @@ impl Selection<'_> {
 
     fn asked(&self, chosen: &[usize]) -> f64 {
         let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
-        if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
+        if !self.rules.has_dry_friction && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
             return f64::INFINITY;
         }
         let Some((values, rss)) = self.system.least_sound(chosen) else { return f64::INFINITY };
@@ -173,13 +164,13 @@ impl Selection<'_> {
         let search = 2.0 * (generic.len().max(1) as f64).ln();
         let whole = self.price(chosen);
         let score = self.plain_price(&rest).map_or(0.0, |less| less - whole);
-        let more = search + (REMAINDER * score).max(AMBIGUOUS);
+        let more = search + (self.rules.remainder * score).max(self.rules.ambiguous);
         generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
     }
 
     /// True if two causes exclude each other.
     fn excludes(&self, a: &str, b: &str) -> bool {
-        a == b || (self.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
+        a == b || (self.rules.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
     }
 
     /// Candidates that may join the chosen ones: supported, and of another cause.
@@ -277,7 +268,9 @@ impl Selection<'_> {
             });
             merged.min_by(|a, b| a.1.total_cmp(&b.1))
         };
-        while let Some((better, _)) = pair(chosen).filter(|(_, price)| *price < self.price(chosen) + AMBIGUOUS) {
+        while let Some((better, _)) =
+            pair(chosen).filter(|(_, price)| *price < self.price(chosen) + self.rules.ambiguous)
+        {
             *chosen = better;
         }
     }
@@ -310,7 +303,7 @@ impl Selection<'_> {
             let Some((weakest, loss)) = cheapest(losses) else { return };
             let is_doubtful =
                 |k: &usize| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k);
-            if loss < self.threshold {
+            if loss < self.rules.threshold {
                 chosen.remove(weakest);
             } else if let Some(k) = (0..chosen.len()).find(is_doubtful) {
                 chosen.remove(k);
@@ -335,7 +328,7 @@ impl Selection<'_> {
         let own = [over(chosen[k], &CURVES), over(chosen[k], &LINES)].concat();
         (0..chosen.len())
             .filter(|o| *o != k && over(chosen[*o], &CURVES).iter().any(|over| own.contains(over)))
-            .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
+            .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < self.rules.remainder * strong))
     }
 
     /// True if the k-th cause and a better one are nearly collinear in this recording: large coefficients cancel, and
@@ -359,7 +352,8 @@ impl Selection<'_> {
         // A joint effect beyond doubt is real, even if it is small beside either of the two.
         let sure = |o: usize| {
             let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k] && *c != chosen[o]).collect();
-            self.plain_price(&rest).is_some_and(|less| less - self.price(chosen) > SURE * self.threshold)
+            self.plain_price(&rest)
+                .is_some_and(|less| less - self.price(chosen) > self.rules.sure * self.rules.threshold)
         };
         (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
     }
@@ -461,7 +455,7 @@ impl Selection<'_> {
         for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
             let others = [rest, &[c]].concat();
             let behind = (self.price(&others) - whole - self.forgiven(&others, c)).max(0.0);
-            if !behind.is_finite() || behind > AMBIGUOUS {
+            if !behind.is_finite() || behind > self.rules.ambiguous {
                 continue;
             }
             match best.iter_mut().find(|(o, _)| self.candidates[*o].id == self.candidates[c].id) {

@@ -10,14 +10,15 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
-use crate::diagnose::selection::channel::whitening as whitening_of;
-use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
+use crate::diagnose::selection::layout::{Blocks, Held, Layout};
 use crate::diagnose::selection::noise_model::Noise;
-use crate::diagnose::selection::normal_equations::{Held, Rows, System};
-use crate::diagnose::selection::pruning::{PIECES_S, leave_out_what_harms, pieces};
+use crate::diagnose::selection::pruning::leave_out_what_is_unsure;
 use crate::diagnose::selection::restarts::to_refine;
-use crate::diagnose::selection::stepwise::{Chosen, Selection};
+use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::stepwise::Chosen;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
@@ -28,18 +29,17 @@ const REFINEMENTS: usize = 2;
 /// The same for a free motion, whose noise becomes smaller if it swings.
 const REFINEMENTS_OF_FREE: usize = 5;
 
-/// Compares all causes on a track. `fixed`: laws that are completely known. `threshold`: least evidence of a cause.
-pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
+/// Compares all causes on a track. `fixed`: laws that are completely known.
+pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<Study, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
     // Without a force, a stick phase under load cannot be distinguished from one without.
     if track.freely.is_none() {
         stick_phases::add(track, &loads);
     }
-    let has_dry = model.iter().any(|e| e.law().is_dry());
     let coarse = Grid::coarse(track);
     let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false, noise: None };
-    let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
+    let mut made = compare(track, (model, fixed), &known, [&coarse, &Grid::default()], None)?;
     let is_free = track.freely.is_some();
     for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
@@ -50,7 +50,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             break;
         }
         let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
-        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, step);
+        let fine = Grid::around(&to_refine(&made), track, step);
         known.noise = match (known.noise, calmer(track, &made)) {
             (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
             (before, now) => now.or(before),
@@ -60,28 +60,25 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             known.columns.forget_loads();
             known.generic = generic(track);
         }
-        made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
+        made = compare(track, (model, fixed), &known, [&coarse, &fine], Some(made))?;
     }
     // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
     // estimated too small, which looks like friction that rises there or like a misfit of the curves.
-    let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
+    let rises = |study: &Study| study.has(Stribeck.id());
     let bends = |study: &Study| {
-        let Study { system, candidates, .. } = study;
-        let selection = Selection::new(system, candidates, threshold);
-        selection.unexplained(&study.picks()).is_some_and(|(_, score)| score > threshold)
+        study.of_each().unexplained(&study.picks()).is_some_and(|(_, score)| score > study.rules.threshold)
     };
     let (rose, bent) = (rises(&made), !track.planar && bends(&made));
     if !track.planar && (rose || bent) {
         known.is_sharp = true;
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
         let fine = Grid::around(&found, track, 1.0);
-        let sharp = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], None)?;
+        let sharp = compare(track, (model, fixed), &known, [&coarse, &fine], None)?;
         if rose && !rises(&sharp) || bent && !bends(&sharp) {
             made = sharp;
         }
     }
-    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    leave_out_what_harms(&mut made, &stretch, threshold, &|_, _| true);
+    leave_out_what_is_unsure(&mut made);
     Ok(made)
 }
 
@@ -99,9 +96,9 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
     }
     let left = |picks: &[usize]| -> Option<f64> {
         let solved = made.system.solve(picks)?;
-        let left = residual(&made.y, &made.base, &made.candidates, picks, &solved);
+        let left = made.residual_of(picks, &solved);
         let (sum, rows) = track.along().fold((0.0, 0.0), |(sum, rows), i| {
-            let weight = made.weight[i].powi(2);
+            let weight = made.layout.weight[i].powi(2);
             (sum + weight * left[i].powi(2), rows + weight)
         });
         Some((sum / f64::max(rows, 1e-12)).sqrt())
@@ -112,15 +109,10 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
 
 /// Removes the sensor faults found from the force across the motion; true if the load changed.
 fn correct_load(track: &mut Track, study: &Study) -> bool {
-    let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return false };
-    let mut faults: Vec<(&Candidate, Vec<f64>)> = Vec::new();
-    let mut at = study.base.len();
-    for chosen in &study.chosen {
-        let candidate = &study.candidates[chosen.candidate];
-        let end = at + candidate.columns.len();
-        faults.push((candidate, solved.values[at..end].to_vec()));
-        at = end;
+    if !track.planar {
+        return false;
     }
+    let faults = study.found();
     let bearing = track.bearing;
     let mut changes = false;
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
@@ -163,7 +155,6 @@ fn compare(
     track: &Track,
     (model, fixed): (&Model, &Model),
     made: &Known,
-    threshold: f64,
     [coarse, fine]: [&Grid; 2],
     before: Option<Study>,
 ) -> Result<Study, EstimateError> {
@@ -190,42 +181,30 @@ fn compare(
     base.extend(stick_phases::creep(track, &y, &losses));
     base.extend(made.is_sharp.then(|| blurred(track, &dry)));
     candidates.extend(made.generic.iter().cloned());
-    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let held = |row: &Row| match row.place {
         Place::Along => Held::Fully,
         Place::Stuck { .. } => Held::ByFolds,
         Place::FreeX | Place::FreeY => Held::Never,
     };
-    let testable: Vec<Held> = track.rows.iter().map(held).collect();
-    // One recording after the other.
-    let time_s: Vec<f64> =
-        track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect();
-    let rows = Rows {
-        y: &y,
-        stretch: &stretch,
-        testable: &testable,
-        time_s: &time_s,
-        weight: &weight,
+    let layout = Layout {
+        segment: track.rows.iter().map(|r| r.stretch).collect(),
+        held: track.rows.iter().map(held).collect(),
+        // One recording after the other.
+        time_s: track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect(),
+        weight,
         period_s: track.period_s,
         noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
         may_stand: true,
+        blocks: Blocks::OfTime,
     };
-    let has_dry = model.iter().any(|e| e.law().is_dry());
-    let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
-    let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
-    let start: Vec<usize> = found.filter_map(place).collect();
-    let mut system = match before {
-        // Rows with other weights have another residual noise.
-        Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
-        _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
-    };
-    system.resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
-    system.pieces = PIECES_S.map(|piece_s| pieces(&time_s, piece_s)).to_vec();
-    let chosen = Selection::new(&system, &candidates, threshold).of(has_dry, true).run(&start);
-    let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
-    let solved = system.solve(&picks);
-    let shares_of = solved.as_ref().map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, system.rows));
-    Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
+    let rules = Rules::of_coordinate(track.period_s)
+        .with_friction(model.iter().any(|e| e.law().is_dry()))
+        .with_noise(track.noise_is_measured);
+    let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
+    let mut study = Channel { y, base, resisting, candidates, layout, rules }.select(before)?;
+    let solved = study.solved.as_ref();
+    study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
+    Ok(study)
 }
 
 /// Residual RMS of the model with Coulomb friction, and true if its friction opposes motion.

@@ -21,7 +21,6 @@ use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::held_out_gain;
-use crate::diagnose::selection::rules::threshold;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use crate::segment::slid::{LIFTED_M, LIFTED_S};
@@ -70,9 +69,8 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Findings, Est
     let (mut track, faults, read) = track_of(recordings, options.world.as_ref())?;
     let weight_n = read.iter().find_map(|s| s.weight_n);
     let model = model(options, weight_n.is_some())?;
-    let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
-    let study = one_coordinate::study(&mut track, &model, &given_by_pads(), limit)?;
+    let study = one_coordinate::study(&mut track, &model, &given_by_pads())?;
     options.progress.tell(0.8)?;
     let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
     // Motions of the library are for an object that a program drives along its coordinate.

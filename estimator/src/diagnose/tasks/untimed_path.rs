@@ -2,9 +2,8 @@
 //! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use crate::constraint::detect_in;
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::atlas::{Variable, View};
-use crate::diagnose::answer::build::{Beside, Found, Part, answer};
+use crate::diagnose::answer::build::{Beside, Found, answer};
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::NO_CLOCK;
@@ -12,8 +11,9 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Study;
-use crate::diagnose::selection::rules::THRESHOLD;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::{ConstraintKind, EstimateError};
 use crate::identify::mechanism::path;
 use crate::identify::mechanism::path::{from_constraint, project};
@@ -86,7 +86,6 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
     let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
     let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };
-    let unit = units.force;
     beside.warnings.push(format!(
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
@@ -107,64 +106,21 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
         }
         beside.causes.push(sample_faults::backwards("fx, fy and fz"));
     }
-    let along = along(&rows, units)?;
+    let (along, falls) = along(&rows, units)?;
     let second = second(&rows)?;
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
-    let (of_place, of_second) = (|f: &Found<'_>| shows(f, &along.1), |f: &Found<'_>| differs(f, recordings));
-    let holds = |n: usize| (vec![true; n], vec![0_usize; n]);
-    let (one, other) = (holds(along.0.y.len()), holds(second.as_ref().map_or(0, |s| s.0.y.len())));
-    let stretch: Vec<usize> = rows.iter().map(|r| r.recording).collect();
-    let state = vec![SystemState::Turning; one.0.len().max(other.0.len())];
-    let part = |study, channel, unit, floor, along, stretch, shows| Part {
-        study,
-        channel,
-        unit,
-        floor,
-        along,
-        stretch,
-        state: &state,
-        shows,
-        states: &plain,
-        usual: &|_| None,
-        much: None,
-        forward: Err(NO_CLOCK),
-    };
-    let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
-    let mut parts = vec![part(
-        &along.0,
-        "force along the way",
-        unit,
-        floor,
-        &one.0,
-        &stretch,
-        &of_place as &dyn Fn(&Found<'_>) -> String,
-    )];
-    if let Some((study, floor)) = &second {
-        parts.push(part(study, "difference of the two forces", "N", *floor, &other.0, &other.1, &of_second));
-    }
+    let (of_place, of_second) = (|f: &Found<'_>| shows(f, &falls), |f: &Found<'_>| differs(f, recordings));
+    let mut parts = vec![along.part(&of_place, &plain, &|_| None).still(NO_CLOCK)];
+    parts.extend(second.as_ref().map(|second| second.part(&of_second, &plain, &|_| None).still(NO_CLOCK)));
     let mut found = answer(&parts, beside, &|_| None);
     if options.atlas {
         let is_angular = turns >= slides && turns > 0;
-        found.atlas.channels = in_the_atlas(&rows, is_angular, (&along.0, unit, floor), second.as_ref());
+        let way = View { is_angular, ..view(&rows) };
+        let both = View { is_angular, ..view_of_both(&rows) };
+        found.atlas.channels = vec![along.atlas(&way, |_| Variable::Place)];
+        found.atlas.channels.extend(second.iter().map(|second| second.atlas(&both, best_of_both)));
     }
     Ok(found)
-}
-
-/// Both comparisons as parts of the atlas.
-fn in_the_atlas(
-    rows: &[Row],
-    is_angular: bool,
-    (along, unit, floor): (&Study, &'static str, f64),
-    second: Option<&(Study, f64)>,
-) -> Vec<atlas::Channel> {
-    let way = View { is_angular, ..view(rows) };
-    let both = View { is_angular, ..view_of_both(rows) };
-    let of_place = |_: &str| Variable::Place;
-    let mut found = vec![atlas::channel(along, ("force along the way", unit, floor), &way, THRESHOLD, of_place)];
-    found.extend(second.map(|(study, floor)| {
-        atlas::channel(study, ("difference of the two forces", "N", *floor), &both, THRESHOLD, best_of_both)
-    }));
-    found
 }
 
 /// Variables of the plots of the force along the path.
@@ -252,7 +208,7 @@ fn second_names(recording: &Recording) -> Option<[String; 3]> {
 }
 
 /// Comparison of the force along the path over position. The base model is the dry friction of one direction.
-fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> {
+fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let (low, high) =
         rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
@@ -294,10 +250,10 @@ fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> 
         rows[largest].place,
         quarter(n - n / 4, n)
     );
-    let stretch = rows.iter().map(|r| r.recording).collect();
-    let channel =
-        Channel { y, base, candidates, stretch, testable: vec![true; n], weight: vec![1.0; n], period_s: 1.0 };
-    Ok((channel.compare(THRESHOLD)?, falls))
+    let layout = Layout::of(rows.iter().map(|r| r.recording).collect(), &vec![true; n], 1.0);
+    let floor = white_noise(&y);
+    let study = Channel::new(y, base, candidates, layout, Rules::of_observations()).fit()?;
+    Ok((compared(study, "force along the way", units.force, floor), falls))
 }
 
 /// Sentence on how the residual shows a cause.
@@ -310,7 +266,7 @@ fn shows(found: &Found<'_>, falls: &str) -> String {
 }
 
 /// Comparison of two estimates of one force: a constant, a factor or a rotation between them.
-fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
+fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
     if rows.iter().any(|r| r.second_n.is_none()) {
         return Ok(None);
     }
@@ -343,16 +299,14 @@ fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
     candidates.retain(|c| c.columns.iter().all(|v| v.iter().any(|x| *x != 0.0)));
     let floor = white_noise(&y);
     let stretch: Vec<usize> = (0..3 * n).map(|i| 1000 * (i / n) + rows[i % n].recording).collect();
-    let channel = Channel {
-        y,
-        base: Vec::new(),
-        candidates,
-        stretch,
-        testable: vec![true; 3 * n],
-        weight: vec![1.0; 3 * n],
-        period_s: 1.0,
-    };
-    Ok(Some((channel.compare(THRESHOLD)?, floor)))
+    let layout = Layout::of(stretch, &vec![true; 3 * n], 1.0);
+    let study = Channel::new(y, Vec::new(), candidates, layout, Rules::of_observations()).fit()?;
+    Ok(Some(compared(study, "difference of the two forces", "N", floor)))
+}
+
+fn compared(study: Study, channel: &'static str, unit: &'static str, floor: f64) -> Compared {
+    let (along, state) = (vec![true; study.y.len()], vec![SystemState::Turning; study.y.len()]);
+    Compared { study, channel, unit, floor, along, state }
 }
 
 fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {

@@ -5,7 +5,6 @@ use crate::diagnose::contract::Validation;
 use crate::diagnose::hypotheses::candidate::{Candidate, Searched};
 use crate::diagnose::options;
 use crate::diagnose::selection::comparison::{Compared, Study};
-use crate::diagnose::selection::stepwise;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
@@ -31,23 +30,15 @@ pub struct Kept {
 
 /// All causes chosen in a comparison.
 pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
-    let Some(solved) = &study.solved else { return Vec::new() };
-    let mut at = study.base.len();
-    let of = |chosen: &stepwise::Chosen| {
-        let candidate = &study.candidates[chosen.candidate];
-        let end = at + candidate.columns.len();
-        let values = solved.values[at..end].to_vec();
-        at = end;
-        Kept {
-            channel,
-            id: candidate.id,
-            kind: candidate.kind,
-            linear: candidate.linear.iter().map(|l| l.0).collect(),
-            searched: candidate.searched.clone(),
-            values,
-        }
+    let of = |(candidate, values): (&Candidate, &[f64])| Kept {
+        channel,
+        id: candidate.id,
+        kind: candidate.kind,
+        linear: candidate.linear.iter().map(|l| l.0).collect(),
+        searched: candidate.searched.clone(),
+        values: values.to_vec(),
     };
-    study.chosen.iter().map(of).collect()
+    study.found().into_iter().map(of).collect()
 }
 
 impl Kept {
@@ -109,7 +100,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
         let after: Vec<f64> = study.y.iter().zip(&sum).map(|(y, s)| y - s).collect();
         // Rows that are held out in turn represent their neighbours. Other rows of the channel (empty fingers) count
         // with them.
-        let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
+        let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
         found = Some(Validation {
             of: is_any.then(|| channel.channel.to_owned()),
             unit: is_any.then(|| channel.unit.to_owned()),
@@ -127,7 +118,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
 fn open(channel: &Compared, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let study = &channel.study;
     let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
-    let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
+    let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let mut left = y.to_vec();
     if !base.is_empty() {
         let fit = least_squares(&base, y, Some(&squares))?;

@@ -5,7 +5,9 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::held_out_gain::{gain, holds_out};
+use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::normal_equations::Use;
+use crate::diagnose::selection::rules::Rules;
 use crate::segment::SystemState;
 use haptics::law::Kind;
 use rand::{RngExt as _, SeedableRng as _};
@@ -13,7 +15,6 @@ use std::f64::consts::TAU;
 
 const ROWS: usize = 480;
 const NOISE: f64 = 0.1;
-const THRESHOLD: f64 = 20.0;
 
 fn noise(seed: u64) -> Vec<f64> {
     let mut rng = rand::rngs::StdRng::seed_from_u64(seed);
@@ -34,12 +35,11 @@ fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> Study {
         y,
         base: vec![vec![1.0; ROWS]],
         candidates,
-        stretch: vec![0; ROWS],
-        testable: vec![true; ROWS],
-        weight: vec![1.0; ROWS],
-        period_s: 0.02,
+        layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
+        rules: Rules::of_observations(),
+        resisting: Vec::new(),
     };
-    channel.compare(THRESHOLD).expect("a constant fits")
+    channel.fit().expect("a constant fits")
 }
 
 fn cause() -> Candidate {
@@ -96,9 +96,8 @@ fn what_has_no_name_has_a_gain_and_a_size() {
     let expression = Some("cos(0.05 i)".to_owned());
     let strange = Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) };
     let study = compared(y, vec![strange]);
-    let (along, stretch) = (vec![true; ROWS], vec![0; ROWS]);
-    let state = vec![SystemState::Turning; along.len()];
-    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, stretch, state };
+    let (along, state) = (vec![true; ROWS], vec![SystemState::Turning; ROWS]);
+    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, state };
     let part = compared.part(&|_| String::new(), &|_, found| found, &|_| None);
     let found = answer(&[part], Beside::default(), &|_| None);
     let [cause] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
@@ -115,12 +114,11 @@ fn short(size: f64, seed: u64) -> Study {
         y: noise.iter().zip(&column).map(|(n, c)| n + size * c).take(FEW).collect(),
         base: vec![vec![1.0; FEW]],
         candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", column[..FEW].to_vec())],
-        stretch: vec![0; FEW],
-        testable: vec![true; FEW],
-        weight: vec![1.0; FEW],
-        period_s: 0.02,
+        layout: Layout::of(vec![0; FEW], &[true; FEW], 0.02),
+        rules: Rules::of_observations(),
+        resisting: Vec::new(),
     };
-    channel.compare(THRESHOLD).expect("a constant fits")
+    channel.fit().expect("a constant fits")
 }
 
 #[test]
@@ -134,7 +132,11 @@ fn where_nothing_can_be_kept_out_of_the_choice_a_cause_must_be_beyond_doubt() {
             "seed {seed}: {worth:?}"
         );
         let small = short(0.08, seed);
-        assert!(small.chosen.iter().all(|c| c.score >= 2.5 * THRESHOLD), "seed {seed}: {:?}", small.chosen);
+        assert!(
+            small.chosen.iter().all(|c| c.score >= small.rules.confirmed * small.rules.threshold),
+            "seed {seed}: {:?}",
+            small.chosen
+        );
     }
 }
 
@@ -149,12 +151,11 @@ fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
             y: lifted(1.0).iter().zip(noise(3)).map(|(a, b)| a + b).collect(),
             base: Vec::new(),
             candidates: vec![Candidate::one("stribeck", Kind::Plant, "dmu", "1", lifted(1.0)).positive()],
-            stretch: vec![0; ROWS],
-            testable: vec![true; ROWS],
-            weight: vec![1.0; ROWS],
-            period_s: 0.02,
+            layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
+            rules: Rules::of_observations().with_friction(is_dry),
+            resisting: Vec::new(),
         };
-        if is_dry { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }
+        channel.fit()
     };
     assert_eq!(asked(true).expect("a curve").picks(), [0]);
     assert!(asked(false).expect("a curve").picks().is_empty());
@@ -170,12 +171,11 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
         y: load.iter().zip(&direction).zip(noise(5)).map(|((l, d), n)| 10.0 * l + 10.0 * d + n).collect(),
         base: vec![load],
         candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", direction).positive()],
-        stretch: vec![0; ROWS],
-        testable: vec![true; ROWS],
-        weight: vec![1.0; ROWS],
-        period_s: 0.02,
+        layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
+        rules: Rules::of_observations(),
+        resisting: Vec::new(),
     };
-    let study = channel.compare(THRESHOLD).expect("two terms");
+    let study = channel.fit().expect("two terms");
     let strongest = study.system.coefficients.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     assert!(study.picks() == [0] && strongest < 0.3, "{:?}", study.system.coefficients);
 }
@@ -194,12 +194,11 @@ fn a_dozen_of_single_observations_can_be_tested() {
             "1",
             (0..n).map(|i| if i % 2 == 0 { 2.0 } else { 1.0 }).collect(),
         )],
-        stretch: (0..n).collect(),
-        testable: vec![true; n],
-        weight: vec![1.0; n],
-        period_s: 1.0,
+        layout: Layout::of((0..n).collect(), &vec![true; n], 1.0),
+        rules: Rules::of_observations(),
+        resisting: Vec::new(),
     };
-    let study = channel.compare(THRESHOLD).expect("a line");
+    let study = channel.fit().expect("a line");
     assert_eq!(study.picks(), [0]);
     let locked = study.system.uses.iter().filter(|u| matches!(u, Use::Locked(_))).count();
     assert!(locked > 0 && study.system.uses.iter().all(|u| *u != Use::Guard), "{:?}", study.system.uses);

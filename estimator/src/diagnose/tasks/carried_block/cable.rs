@@ -195,7 +195,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usiz
     columns.extend(study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
     let others = study.picks().into_iter().filter(|p| *p != pick);
     columns.extend(others.flat_map(|p| study.candidates[p].columns.iter().map(|column| column.to_vec())));
-    let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
+    let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let fit = least_squares(&columns, &study.y, Some(&squares)).ok()?;
     Some([fit.std_errors[0], fit.std_errors[2], fit.std_errors[3], fit.std_errors[4]])
 }

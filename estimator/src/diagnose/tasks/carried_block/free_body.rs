@@ -4,7 +4,7 @@
 use super::cable::pull_n;
 use super::rows::{Place, Rows};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::free_run::channel::{Forward, causes, consecutive};
+use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::selection::comparison::Study;
@@ -116,7 +116,7 @@ impl Forward for Airborne {
         let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();
         let (mut mass_kg, mut drag) = (weight_n / self.gravity_m_s2, 0.0);
         let mut ties: Vec<Cable> = self.of_world(number, values).into_iter().collect();
-        for (candidate, own) in causes(study, picks, values) {
+        for (candidate, own) in study.with_values(picks, values) {
             let at = |name: &str| candidate.searched.iter().find(|s| s.name == name).map_or(0.0, |s| s.value);
             match candidate.id {
                 // One mass for all blocks, or each its own.

@@ -6,8 +6,10 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::channel::{Channel, stretches};
+use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::layout::{Layout, segments};
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::block::signals::object;
 use crate::segment::SystemState;
@@ -75,12 +77,12 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
         }
     }
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
-    rows.stretch = stretches(&rows.time_s, period_s, |i| owner[i] != owner[i - 1]);
+    rows.stretch = segments(&rows.time_s, period_s, |i| owner[i] != owner[i - 1]);
     rows
 }
 
 /// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
-pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Option<Grasp>, EstimateError> {
+pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Option<Grasp>, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = rows(seen);
     let n = rows.number.len();
@@ -119,20 +121,12 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         })
         .collect();
     let floor_m = white_noise(&y);
-    let channel = Channel {
-        y,
-        base,
-        candidates,
-        stretch: rows.stretch.clone(),
-        testable: vec![true; n],
-        weight: vec![1.0; n],
-        period_s,
-    };
-    let study = channel.compare(threshold)?;
     let along = vec![true; n];
+    let layout = Layout::of(rows.stretch.clone(), &along, period_s);
+    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
-    let (channel, stretch, state) = ("distance of the tips", rows.stretch, rows.state);
-    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch, state };
+    let (channel, state) = ("distance of the tips", rows.state);
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state };
     let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
     Ok(Some(Grasp { compared, view, means, modelled, pads }))
 }

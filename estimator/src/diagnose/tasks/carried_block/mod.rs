@@ -30,7 +30,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
-use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 use haptics::world::World;
@@ -53,8 +53,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, E
         ..Beside::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
-        let within =
-            ground.compared.study.picks().iter().any(|p| ground.compared.study.candidates[*p].id == "fingertip-slip");
+        let within = ground.compared.study.has("fingertip-slip");
         let scaled = grasp.as_ref().is_some_and(|g| g.has("length-scale"));
         match regrasp::moved(ground, &seen, world) {
             Some(cause) if scaled || carry.has("force-cross-axis") => beside.warnings.push(format!(
@@ -83,14 +82,10 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, E
     );
     let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
     if options.atlas {
-        let limit = limit(&seen);
         let Carry { compared, view, .. } = &carry;
-        found.atlas.channels.push(compared.atlas(view, limit, net_force::best_seen));
-        found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grip_width::best_seen)));
-        found
-            .atlas
-            .channels
-            .extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, standing_height::best_seen)));
+        found.atlas.channels.push(compared.atlas(view, net_force::best_seen));
+        found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, grip_width::best_seen)));
+        found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, standing_height::best_seen)));
     }
     // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
@@ -109,18 +104,13 @@ fn look(
     seen: &[Seen<'_>],
     world: Option<&World>,
 ) -> Result<(Carry, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
-    let limit = limit(seen);
-    let carry = net_force::carry(seen, world, limit)?;
-    let grasp = grip_width::grasp(seen, world, limit)?;
+    let rules = Rules::of_channel(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
+    let carry = net_force::carry(seen, world, rules)?;
+    let grasp = grip_width::grasp(seen, world, rules)?;
     // A block with a taut cable is supported by more than the ground.
     let ground =
-        if carry.has("added-constraint") { None } else { standing_height::ground(seen, world, carry.cross(), limit)? };
+        if carry.has("added-constraint") { None } else { standing_height::ground(seen, world, carry.cross(), rules)? };
     Ok((carry, grasp, ground))
-}
-
-/// Least evidence of a cause.
-fn limit(seen: &[Seen<'_>]) -> f64 {
-    threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max))
 }
 
 /// The channels of other recordings of the same blocks.

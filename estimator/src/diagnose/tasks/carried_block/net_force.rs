@@ -13,8 +13,9 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::Chosen;
 use crate::estimate::EstimateError;
 use crate::identify::block::signals::object;
@@ -42,7 +43,7 @@ pub struct Carry {
 }
 
 /// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
-pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Carry, EstimateError> {
+pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Carry, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
@@ -73,9 +74,8 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     candidates.extend(instrument(&rows, &known, &given));
     candidates.extend(cables);
     candidates.extend(generic(&rows));
-    let channel =
-        Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
-    let study = beside_swinging(channel, &rows, threshold)?;
+    let layout = Layout::of(rows.stretch.clone(), &testable, period_s).weighted(weight);
+    let study = beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?;
     let floor = floor(&rows, &study);
     let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
     let numbers: Vec<usize> = rows.all.iter().map(of).collect();
@@ -88,7 +88,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let view = view(&rows);
     let late = late(&rows, &known);
     let airborne = Airborne::of(&rows, &rows.stretch, world, &known);
-    let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
+    let compared = Compared { study, channel, unit: "N", floor, along, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
 }
@@ -100,8 +100,8 @@ const OF_A_CABLE: f64 = 0.05;
 const ROUNDS: usize = 4;
 
 /// Comparison without causes that may be misfit of a cable or wall.
-fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, EstimateError> {
-    let mut study = channel.clone().compare(threshold)?;
+fn without_remainders(mut channel: Channel) -> Result<Study, EstimateError> {
+    let mut study = channel.clone().fit()?;
     for _ in 0..ROUNDS {
         let of = |c: &Chosen| &study.candidates[c.candidate];
         let cable = study.chosen.iter().filter(|c| of(c).id == "added-constraint").map(|c| c.score).fold(0.0, f64::max);
@@ -115,7 +115,7 @@ fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, Est
             break;
         }
         channel.candidates.retain(|c| rests.iter().all(|(id, expression)| c.id != *id || c.expression != *expression));
-        study = channel.clone().compare(threshold)?;
+        study = channel.clone().fit()?;
     }
     Ok(study)
 }
@@ -184,9 +184,9 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
 /// The comparison, with a check for pad compliance. A block swings in compliant pads and lags behind the grip, which
 /// looks like inertia. Inertia is named only if it is also found beside each block's swinging. The swinging is no
 /// regular part of the model, because its regressor contains noise of the forces.
-fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<Study, EstimateError> {
-    let plain = without_remainders(channel.clone(), threshold)?;
-    let has_mass = |study: &Study| study.picks().iter().any(|p| study.candidates[*p].id == "inertia");
+fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<Study, EstimateError> {
+    let plain = without_remainders(channel.clone())?;
+    let has_mass = |study: &Study| study.has("inertia");
     if !has_mass(&plain) {
         return Ok(plain);
     }
@@ -195,7 +195,7 @@ fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<
         rows.carried(|_, row, number, axis| if number == k { curves[row.recording][axis][row.i] } else { 0.0 })
     };
     let base = channel.base.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
-    let swinging = without_remainders(Channel { base, ..channel }, threshold)?;
+    let swinging = without_remainders(Channel { base, ..channel })?;
     Ok(if has_mass(&swinging) { plain } else { swinging })
 }
 
@@ -209,8 +209,7 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
 /// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
 fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
-    let picks = study.picks();
-    let left = comparison::residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let left = study.residual_of(&study.picks(), solved);
     let mean = |free: bool| {
         let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
         let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));
@@ -222,23 +221,19 @@ fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
 impl Carry {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
-        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
+        self.compared.study.has(id)
     }
 
     /// Share of each finger's horizontal force in its vertical channel, as found.
     pub fn cross(&self) -> [f64; 2] {
-        let Some(solved) = &self.compared.study.solved else { return [0.0; 2] };
         let mut found = [0.0; 2];
-        let mut at = self.compared.study.base.len();
-        for pick in self.compared.study.picks() {
-            let candidate = &self.compared.study.candidates[pick];
+        for (candidate, values) in self.compared.study.found() {
             match candidate.linear[0].0 {
-                "kappa_yx1" => found[0] += solved.values[at],
-                "kappa_yx2" => found[1] += solved.values[at],
-                "kappa_yx" => found = found.map(|f| f + solved.values[at]),
+                "kappa_yx1" => found[0] += values[0],
+                "kappa_yx2" => found[1] += values[0],
+                "kappa_yx" => found = found.map(|f| f + values[0]),
                 _ => {}
             }
-            at += candidate.columns.len();
         }
         found
     }

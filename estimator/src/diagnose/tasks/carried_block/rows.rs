@@ -1,7 +1,7 @@
 //! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::signals::Seen;
-use crate::diagnose::selection::channel::stretches;
+use crate::diagnose::selection::layout::segments;
 
 /// Kind of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +52,7 @@ impl<'a> Rows<'a> {
         let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
         let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
         let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording;
-        let stretch = stretches(&time, period_s, other);
+        let stretch = segments(&time, period_s, other);
         Self { seen, all: rows, stretch }
     }
 

@@ -6,8 +6,10 @@ use crate::diagnose::answer::atlas::{Variable, View};
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::channel::{Channel, stretches};
+use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::layout::{Layout, segments};
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::block::rests::{Rest, rests};
 use crate::identify::block::signals::object;
@@ -78,7 +80,7 @@ pub fn ground(
     seen: &[Seen<'_>],
     world: Option<&World>,
     cross: [f64; 2],
-    threshold: f64,
+    rules: Rules,
 ) -> Result<Option<Ground>, EstimateError> {
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let mut rows = Rows { half_s: 0.5 * period_s, ..Rows::default() };
@@ -115,31 +117,16 @@ pub fn ground(
         let expression = Some(format!("cos({k} pi t/T)"));
         Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
     }));
-    let stretch = stretches(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
+    let stretch = segments(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
     let since = |i: usize| i - stands[rows.stand[i]].first;
     let along: Vec<bool> = (0..n).map(|i| since(i) >= FIRST && since(i) % HELD_OUT == 0).collect();
-    let channel = Channel {
-        y: rows.height_m.clone(),
-        base,
-        candidates,
-        stretch: stretch.clone(),
-        testable: along.clone(),
-        weight: vec![1.0; n],
-        period_s,
-    };
+    let layout = Layout { time_s: spread(&along), ..Layout::of(stretch, &along, period_s) };
     let floor_m = white_noise(&rows.height_m);
-    let study = channel.compare_in(&spread(&along), threshold)?;
+    let study = Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?;
     let ways = ways(&rows, &stands, &model, &study);
     let channel = "height of the grip over the ground";
-    let compared = Compared {
-        study,
-        channel,
-        unit: "m",
-        floor: floor_m,
-        along,
-        stretch,
-        state: vec![SystemState::HoldOnGround; n],
-    };
+    let compared =
+        Compared { study, channel, unit: "m", floor: floor_m, along, state: vec![SystemState::HoldOnGround; n] };
     let view = View {
         recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
         // Each rest has a height of its own.

@@ -8,7 +8,7 @@ use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
-use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::baseline_models::plain_crank;
 use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
@@ -55,7 +55,7 @@ impl Looked {
     pub fn at(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let signals = Signals::of(recording, bad)?;
         let path = signals.path(recording);
-        let circle = path::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+        let circle = path::geometry(&path, signals.time_s.len(), Rules::of_path(signals.period_s))?;
         let (rows, axis) = upright(&signals, recording, &circle.arm)?;
         Ok(Self { signals, circle, rows, axis })
     }

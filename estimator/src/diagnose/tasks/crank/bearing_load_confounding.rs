@@ -29,7 +29,7 @@ pub fn beside_causes(
     track: &Track,
     (looked_at, study): (&Track, &Study),
     (model, fixed): (&Model, &Model),
-    (gravity_m_s2, threshold): (f64, f64),
+    gravity_m_s2: f64,
 ) -> Result<Option<(f64, Track, Study)>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
     let mistaken = study.picks().iter().any(|c| MISTAKEN.contains(&study.candidates[*c].id));
@@ -46,7 +46,7 @@ pub fn beside_causes(
         }
         let mut other = track.clone();
         put(&mut other, weight_n, gravity_m_s2);
-        let again = one_coordinate::study(&mut other, model, fixed, threshold)?;
+        let again = one_coordinate::study(&mut other, model, fixed)?;
         let put_n = std::mem::replace(&mut weight_n, weight_of(&again, model, fixed));
         found = Some((put_n, other, again));
     }

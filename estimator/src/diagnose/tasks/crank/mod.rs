@@ -19,7 +19,6 @@ use crate::diagnose::findings::Findings;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
-use crate::diagnose::selection::rules::threshold;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use haptics::law::{Effect, Law as _, Weight};
@@ -67,24 +66,16 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         None => plain_crank(),
     };
     let fixed = known_weight(&recordings[0], &mut model);
-    let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
     let gravity_m_s2 = recordings[0].meta.gravity();
     let look = |track: &mut regression_data::Track| -> Result<_, EstimateError> {
-        Ok((
-            bearing_load::load(track, &model, &fixed, gravity_m_s2)?,
-            one_coordinate::study(track, &model, &fixed, limit)?,
-        ))
+        Ok((bearing_load::load(track, &model, &fixed, gravity_m_s2)?, one_coordinate::study(track, &model, &fixed)?))
     };
     let as_measured = track.clone();
     let (mut bearing_n, mut study) = look(&mut track)?;
     if bearing_n.is_none() {
-        let again = bearing_load_confounding::beside_causes(
-            &as_measured,
-            (&track, &study),
-            (&model, &fixed),
-            (gravity_m_s2, limit),
-        )?;
+        let again =
+            bearing_load_confounding::beside_causes(&as_measured, (&track, &study), (&model, &fixed), gravity_m_s2)?;
         if let Some((weight_n, other, found)) = again {
             (bearing_n, track, study) = (Some(weight_n), other, found);
         }
@@ -105,7 +96,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
     along_coordinate::add_of_path(&mut found, &strange);
     found.warnings.extend(short);
     if options.atlas {
-        found.atlas = atlas::atlas(&track, &study, limit);
+        found.atlas = atlas::atlas(&track, &study);
     }
     found.delay.guess_s = time_delay::guess_s(&track, &model);
     name_joint(&mut found, link);
@@ -168,16 +159,8 @@ fn turned(
     circle: &path::Geometry,
     rows: regression_data::Track,
 ) -> Result<Turned, EstimateError> {
-    let study = &circle.study;
-    let mut at = study.base.len();
-    let mut offset = None;
-    for chosen in &study.chosen {
-        let candidate = &study.candidates[chosen.candidate];
-        if candidate.id == "joint-offset" {
-            offset = study.solved.as_ref().map(|s| s.values[at]);
-        }
-        at += candidate.columns.len();
-    }
+    let found = circle.study.found();
+    let offset = found.iter().rfind(|(c, _)| c.id == "joint-offset").map(|(_, values)| values[0]);
     // With two fingers, the error is of one arm of two: the handle itself is not rotated.
     let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
         return Ok(Turned { rows, other: None, link: None });
@@ -196,7 +179,7 @@ fn turned(
 
 /// True if the forces seem rotated against the motion.
 fn is_turned(study: &comparison::Study) -> bool {
-    study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
+    study.has("force-cross-axis")
 }
 
 /// Names the joint with the angle error, if the data tell.

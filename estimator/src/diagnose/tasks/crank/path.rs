@@ -2,12 +2,11 @@
 
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::{Study, residual};
-use crate::diagnose::selection::noise_model::{Noise, whitener};
-use crate::diagnose::selection::normal_equations::{Held, Rows, System, solve, uses};
-use crate::diagnose::selection::prescreen::Rough;
-use crate::diagnose::selection::pruning::leave_out_what_harms;
-use crate::diagnose::selection::stepwise::Selection;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::layout::{Blocks, Layout};
+use crate::diagnose::selection::pruning::leave_out_what_is_unsure;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
@@ -96,9 +95,8 @@ struct Displaced {
     linear: Vec2,
 }
 
-/// Fits the circle and its distortions. `signals`: number of rows of the signals; `threshold`: least evidence of a
-/// cause.
-pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry, EstimateError> {
+/// Fits the circle and its distortions. `signals`: number of rows of the signals.
+pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, EstimateError> {
     let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
     let mut center_m = circle(&positions)?;
     let mut shift_m = vec![Vec2::zeros(); signals];
@@ -110,10 +108,8 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
     let mut courses = coarse.clone();
     let mut step_s = path.span_s() / SLIP_STARTS as f64;
     for round in 0..ROUNDS {
-        let made = compare(path, (center_m, &bent), &courses, threshold)?;
-        let Some(solved) = &made.solved else {
-            return Err(EstimateError::Other("no circle fits the handle's path".to_owned()));
-        };
+        let made = compare(path, (center_m, &bent), &courses, rules)?;
+        let solved = made.solved.as_ref().ok_or_else(no_circle)?;
         radius_m = solved.values[0];
         let step = Vec2::new(solved.values[1], solved.values[2]);
         center_m += step;
@@ -146,7 +142,7 @@ fn compare(
     path: &Path,
     (center_m, bent): (Vec2, &[Displaced]),
     courses: &[Course],
-    threshold: f64,
+    rules: Rules,
 ) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
@@ -159,37 +155,23 @@ fn compare(
         base.push(column(&|i| outward[i].x * path.points[i].force.x));
         base.push(column(&|i| outward[i].y * path.points[i].force.y));
     }
-    let candidates = candidates(path, &outward, courses);
-    let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
-    let (testable, weight) = (vec![Held::Fully; y.len()], vec![1.0; y.len()]);
-    let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
-    let rows = Rows {
-        y: &y,
-        stretch: &stretch,
-        testable: &testable,
-        time_s: &time_s,
-        weight: &weight,
-        period_s: path.period_s,
-        noise: Noise::Any,
-        may_stand: false,
-    };
-    // The whitening must not absorb causes, so it is learnt from the residual of all candidates together.
-    let mut unwhitened = Rough::new(&base, &candidates, &rows);
-    let picks = unwhitened.greedy(threshold);
-    let unwhitened = unwhitened.system();
-    let columns = unwhitened.columns(&picks);
-    let solved = solve(&unwhitened.train, &columns, unwhitened.train.ncols() - 1)
-        .ok_or_else(|| EstimateError::Other("no circle fits the handle's path".to_owned()))?;
-    let residual = residual(&y, &base, &candidates, &picks, &solved);
-    let coefficients = whitener(&residual, &rows, &uses(&rows));
-    let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection::new(&system, &candidates, threshold).run(&[]);
-    let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
-    let solved = system.solve(&picks);
-    let mut study = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };
+    let channel = Channel::new(y, base, candidates(path, &outward, courses), layout(path), rules);
+    let mut study = channel.select(None).map_err(|_| no_circle())?;
     // Misfit of hardening pads, or of two slips by one, looks like another weak cause in the fitted rows.
-    leave_out_what_harms(&mut study, &stretch, threshold, &|_, _| true);
+    leave_out_what_is_unsure(&mut study);
     Ok(study)
+}
+
+fn no_circle() -> EstimateError {
+    EstimateError::Other("no circle fits the handle's path".to_owned())
+}
+
+/// The points of a path as rows.
+pub fn layout(path: &Path) -> Layout {
+    let segment: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
+    let testable = vec![true; segment.len()];
+    let time_s = path.points.iter().map(|p| p.time_s).collect();
+    Layout { time_s, blocks: Blocks::None, ..Layout::of(segment, &testable, path.period_s) }
 }
 
 fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidate> {
@@ -234,15 +216,14 @@ fn finger(candidate: &Candidate) -> usize {
 fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
     let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };
+    let found = study.found();
     let give = if path.two_fingered { Vec2::new(solved.values[3], solved.values[4]) } else { Vec2::zeros() };
     let of = |point: &PathPoint| {
         let outward = (point.position - center_m).normalize();
         let mut shift = point.force.component_mul(&give);
         let mut bow = Vec2::zeros();
-        let mut at = study.base.len();
-        for chosen in &study.chosen {
-            let candidate = &study.candidates[chosen.candidate];
-            let value = solved.values[at];
+        for (candidate, values) in &found {
+            let value = values[0];
             shift += match (candidate.id, point.joints[finger(candidate)]) {
                 ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
                 ("joint-offset", Some(joint)) => {
@@ -255,10 +236,9 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
                 (SLIP, _) if candidate.columns.len() == 1 => {
                     outward * (value * Course::of(candidate).gone(point.time_s))
                 }
-                (SLIP, _) => Vec2::new(value, solved.values[at + 1]) * Course::of(candidate).gone(point.time_s),
+                (SLIP, _) => Vec2::new(value, values[1]) * Course::of(candidate).gone(point.time_s),
                 _ => Vec2::zeros(),
             };
-            at += candidate.columns.len();
         }
         Displaced { exact: shift + bow, linear: shift }
     };

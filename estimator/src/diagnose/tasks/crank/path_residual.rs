@@ -2,10 +2,7 @@
 
 use super::path::{Arm, Path};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::{Study, residual};
-use crate::diagnose::selection::noise_model::Noise;
-use crate::diagnose::selection::normal_equations::{Held, Rows, System};
-use crate::diagnose::selection::stepwise::{Chosen, Selection};
+use crate::diagnose::selection::comparison::Study;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
@@ -44,42 +41,15 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 /// Unexplained residual of the path beside the causes found: the comparison with the generic term, its index and its
 /// evidence. `None` if the residual is near the noise or no term fits it.
 pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
-    let picks = study.picks();
-    let solved = study.solved.as_ref()?;
-    let left = residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
     if rms < STRANGE * white_noise(&study.y) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
-    let candidates: Vec<Candidate> =
-        picks.iter().map(|p| study.candidates[*p].clone()).chain(generic(path, &outward)).collect();
-    let chosen = study.chosen.iter().enumerate().map(|(k, c)| Chosen { candidate: k, rivals: Vec::new(), ..c.clone() });
-    let chosen: Vec<Chosen> = chosen.collect();
-    let made = |candidates: Vec<Candidate>| -> Option<(Study, usize, f64)> {
-        let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
-        let testable = vec![Held::Fully; study.y.len()];
-        let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
-        let rows = Rows {
-            y: &study.y,
-            stretch: &stretch,
-            testable: &testable,
-            time_s: &time_s,
-            weight: &study.weight,
-            period_s: path.period_s,
-            noise: Noise::Any,
-            may_stand: false,
-        };
-        let coefficients = study.system.coefficients.clone();
-        let system = System::new(&study.base, &candidates, &rows, coefficients);
-        let picks: Vec<usize> = (0..chosen.len()).collect();
-        let selection = Selection::new(&system, &candidates, 0.0);
-        let (term, score) = selection.unexplained(&picks)?;
-        let solved = system.solve(&picks);
-        let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());
-        Some((Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] }, term, score))
-    };
-    made(candidates)
+    let made = study.beside(generic(path, &outward));
+    let (term, score) = made.of_each().unexplained(&made.picks())?;
+    Some((made, term, score))
 }
 
 /// Sentence on an arc that is too short, for the noise of its positions, to determine its circle well. The error is the

@@ -22,7 +22,6 @@ use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::Study;
-use crate::diagnose::selection::rules::threshold;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism;
@@ -65,11 +64,10 @@ pub(crate) fn diagnose(
     let (mut track, faults) = tracks(recordings, paths)?;
     let first = &recordings[0];
     let mut model = model(&track, first, options)?;
-    let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
     let mut scale = scale_of(&mut track, first, &mut model, options);
     let fixed = fixed(&track);
-    let mut study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+    let mut study = one_coordinate::study(&mut track, &model, &fixed)?;
     options.progress.tell(0.6)?;
     if let Scale::ByRatio(stated) = scale {
         // Estimated together with the causes found: a hidden spring would look like gravity.
@@ -78,7 +76,7 @@ pub(crate) fn diagnose(
                 set(&mut track, inertia, relative_error);
                 keep_known(&mut track, first, &mut model, Some(stated));
                 let fixed = self::fixed(&track);
-                study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+                study = one_coordinate::study(&mut track, &model, &fixed)?;
             }
             None => scale = Scale::Hidden,
         }
@@ -88,7 +86,7 @@ pub(crate) fn diagnose(
     found.along = Some(Along::of(track.coordinate, recordings, paths));
     scale::put_right(&mut found, &track, scale, goes_both_ways(&track));
     if options.atlas {
-        found.atlas = atlas::atlas(&track, &study, limit);
+        found.atlas = atlas::atlas(&track, &study);
     }
     Ok(found)
 }

@@ -13,7 +13,6 @@ use crate::diagnose::data::{coordinate, covariates, known_weight, regression_dat
 use crate::diagnose::findings::Findings;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults, sample_offset, time_delay};
-use crate::diagnose::selection::rules::threshold;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
@@ -90,13 +89,12 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
         (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
         (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
     };
-    let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
     let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
-    let mut study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+    let mut study = one_coordinate::study(&mut track, &model, &fixed)?;
     track.zero = sensor_zero::told(&study, recordings);
     if track.zero != regression_data::Zero::Open {
-        study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+        study = one_coordinate::study(&mut track, &model, &fixed)?;
     }
     options.progress.tell(0.8)?;
     let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
@@ -106,7 +104,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
     let is_hung = track.hung.iter().any(Option::is_some);
     excitation::without_known(&mut found, !fixed.is_empty() || is_hung, true);
     if options.atlas {
-        found.atlas = atlas::atlas(&track, &study, limit);
+        found.atlas = atlas::atlas(&track, &study);
     }
     let skew_s = sample_offset::skewed_s(&study, &track);
     Ok((found, skew_s))

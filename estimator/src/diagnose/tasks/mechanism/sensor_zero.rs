@@ -7,6 +7,7 @@
 use crate::diagnose::contract::{Alternative, Cause, Diagnosis, NextExperiment, Verdict};
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
+use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::Study;
 use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
@@ -22,17 +23,11 @@ const SHARE: f64 = 0.15;
 
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
 pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
-    let Some(solved) = &study.solved else { return Zero::Open };
-    let mut at = study.base.len();
-    let mut constant = None;
-    for pick in study.picks() {
-        let candidate = &study.candidates[pick];
-        if matches!((candidate.id, candidate.linear[0].0), ("force-bias", "b") | ("friction-asymmetry", "dFc")) {
-            constant = Some(solved.values[at]);
-        }
-        at += candidate.columns.len();
-    }
-    let Some(constant) = constant else { return Zero::Open };
+    let is_constant =
+        |c: &Candidate| matches!((c.id, c.linear[0].0), ("force-bias", "b") | ("friction-asymmetry", "dFc"));
+    let Some(constant) = study.found().iter().rfind(|(c, _)| is_constant(c)).map(|(_, values)| values[0]) else {
+        return Zero::Open;
+    };
     let mut said = recordings.iter().map(|r| rest(r).map_or(Zero::Open, |rest| compared(constant, rest)));
     let first = said.next().unwrap_or_default();
     if said.all(|other| other == first) { first } else { Zero::Open }

@@ -6,7 +6,7 @@ use super::sheet::{Law, first_push_n, own_n};
 use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::extension::model::without_friction;
-use crate::diagnose::free_run::channel::{Forward, causes, consecutive};
+use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -92,11 +92,11 @@ impl Forward for Pressed {
         let law = law.as_ref();
         let elastic = |x: f64| first_push_n(self.stiffness_n_m, law, x);
         let laws: Vec<(Law, f64)> =
-            causes(study, picks, values).filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
+            study.with_values(picks, values).filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
         let of_motion = [Some(*holds), self.model.two_fingered.then_some(holds + 1)];
         let constant = study.base.iter().enumerate().filter(|(k, _)| !of_motion.contains(&Some(*k)));
         let mut beside: Vec<(&[f64], f64)> = constant.map(|(k, column)| (column.as_slice(), values[k])).collect();
-        beside.extend(faults(causes(study, picks, values).filter(|(c, _)| Law::of(c).is_none())));
+        beside.extend(faults(study.with_values(picks, values).filter(|(c, _)| Law::of(c).is_none())));
         let moment =
             |i: &usize| Moment { motion: motion(&self.rows[*i]), drive: drive(study, *i, &beside), beside: [0.0; 2] };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
@@ -157,7 +157,7 @@ impl Forward for Sliding {
         let no_law = || NO_LAW.to_owned();
         let mass = self.model.holds;
         let mut plant: Vec<(&Candidate, &[f64])> =
-            causes(study, picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
+            study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
         // Friction that bends before it slides is subtracted from the dry friction, which must come first.
         plant.sort_by_key(|(c, _)| c.id != "coulomb-friction");
         // A hole that differs from one insertion to the next is no change in time.
@@ -170,7 +170,7 @@ impl Forward for Sliding {
             without_friction(&self.track, effects, self.dry_n, &candidates, &own.concat()).ok_or_else(no_law)?;
         let mut beside: Vec<(&[f64], f64)> =
             study.base[..self.model.holds].iter().map(Vec::as_slice).zip(values.iter().copied()).collect();
-        beside.extend(faults(causes(study, picks, values).filter(|(c, _)| c.kind == Kind::Instrument)));
+        beside.extend(faults(study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Instrument)));
         let moment = |i: &usize| Moment {
             motion: self.track.rows[*i].motion,
             drive: drive(study, *i, &beside),

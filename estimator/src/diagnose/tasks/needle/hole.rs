@@ -15,6 +15,8 @@ use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::signal::noise::white_noise;
@@ -164,7 +166,11 @@ fn candidates(
 }
 
 /// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
-pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
+/// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
+/// reversals.
+const MUCH: f64 = 4.0;
+
+pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
     if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS {
@@ -189,36 +195,26 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let state = rows.iter().map(Row::state).collect();
     let coarse = Grid::coarse(&track);
     let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
-    let channel = Channel {
-        y,
-        base,
-        candidates: asked(&coarse, dry_n),
-        stretch: stretch.clone(),
-        testable: along.clone(),
-        weight,
-        period_s: needle.period_s,
-    };
-    let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
+    let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
+    let rules = Rules { much: Some(MUCH), ..rules.with_friction(law.is_some()) };
+    let channel = Channel::new(y, base, asked(&coarse, dry_n), layout, rules);
+    let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, dry_n)?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state };
     Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
 }
 
 /// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
-/// dry friction; `dry`: true if the model has dry friction. Returns also the friction, N, to which the last shares
-/// refer.
+/// dry friction, N, at first `first_n`. Returns also the friction to which the last shares refer.
 fn closely(
     channel: &Channel,
     (track, coarse): (&Track, &Grid),
     asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
-    (dry, threshold, first_n): (bool, f64, f64),
+    first_n: f64,
 ) -> Result<(Study, f64), EstimateError> {
-    let compare = |channel: Channel| {
-        if dry { channel.compare(threshold) } else { channel.compare_without_friction(threshold) }
-    };
-    let mut study = compare(channel.clone())?;
+    let mut study = channel.clone().fit()?;
     let (mut grid, mut dry_n) = (coarse.clone(), first_n);
     for step in CLOSER {
         let picks = study.picks();
@@ -230,17 +226,14 @@ fn closely(
         grid = grid.with(Grid::around(&found, track, step));
         // Backlash takes much of it away in a first fit; its share refers to the friction of sliding.
         dry_n = sliding_n(&study).unwrap_or(first_n);
-        study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
+        study = Channel { candidates: asked(&grid, dry_n), ..channel.clone() }.fit()?;
     }
     Ok((study, dry_n))
 }
 
 /// Estimated dry friction, N.
 fn sliding_n(study: &Study) -> Option<f64> {
-    let picks = study.picks();
-    let before = picks.iter().take_while(|p| study.candidates[**p].id != "coulomb-friction");
-    let place = study.base.len() + before.map(|p| study.candidates[*p].columns.len()).sum::<usize>();
-    study.solved.as_ref()?.values.get(place).copied()
+    study.found().into_iter().find(|(c, _)| c.id == "coulomb-friction").map(|(_, values)| values[0])
 }
 
 /// A world's hole in a pierced sheet, without drag.

@@ -25,7 +25,7 @@ use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
-use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
@@ -35,17 +35,14 @@ use rows::{Needle, Puncture};
 const UNEVEN: f64 = 25.0;
 /// Relative scatter of the puncture forces of one sheet.
 const PUNCTURE_SHARE: f64 = 0.03;
-/// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
-/// reversals.
-const MUCH: f64 = 4.0;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
-    let limit = threshold(seen.period_s);
-    let sheet::Sheet { compared: sheet, view, pressed } = sheet::sheet(&seen, law, limit)?;
-    let shaft = hole::shaft(&seen, law, limit)?;
+    let rules = Rules::of_channel(seen.period_s);
+    let sheet::Sheet { compared: sheet, view, pressed } = sheet::sheet(&seen, law, rules)?;
+    let shaft = hole::shaft(&seen, law, rules)?;
     let mut beside = Beside {
         model: format!(
             "{}+{}",
@@ -70,15 +67,14 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| hole::shows(f));
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual).running(&pressed)];
     if let Some(hole::Shaft { compared, sliding, .. }) = &shaft {
-        let part = compared.part(&on_shaft, &plain, &hole::usual).running(sliding);
-        parts.push(Part { much: Some(MUCH), ..part });
+        parts.push(compared.part(&on_shaft, &plain, &hole::usual).running(sliding));
     }
     let asked =
         |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
     let mut found = answer(&parts, beside, &asked);
     if options.atlas {
-        let of_shaft = |s: &hole::Shaft| s.compared.atlas(&s.view, limit, sheet::best_seen);
-        found.atlas.channels.push(sheet.atlas(&view, limit, sheet::best_seen));
+        let of_shaft = |s: &hole::Shaft| s.compared.atlas(&s.view, sheet::best_seen);
+        found.atlas.channels.push(sheet.atlas(&view, sheet::best_seen));
         found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
     }
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
@@ -93,9 +89,9 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, E
 pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
     let (seen, ..) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
-    let limit = threshold(seen.period_s);
-    let mut found = vec![sheet::sheet(&seen, law, limit)?.compared];
-    found.extend(hole::shaft(&seen, law, limit)?.map(|s| s.compared));
+    let rules = Rules::of_channel(seen.period_s);
+    let mut found = vec![sheet::sheet(&seen, law, rules)?.compared];
+    found.extend(hole::shaft(&seen, law, rules)?.map(|s| s.compared));
     Ok(found)
 }
 

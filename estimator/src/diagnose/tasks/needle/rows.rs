@@ -5,7 +5,7 @@ use super::interpolation::Between;
 use super::time_delay::{Forces, late};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::Late;
-use crate::diagnose::selection::channel::stretches;
+use crate::diagnose::selection::layout::segments;
 use crate::estimate::EstimateError;
 use crate::identify::needle::sheet::Sheet;
 use crate::identify::needle::signals::{Along, along};
@@ -205,7 +205,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     }
     let period_s = stride as f64 * step_s;
     let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-    let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
+    let numbers = segments(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
     // Noise of the slope of a line through the window.

@@ -8,6 +8,8 @@ use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use crate::signal::noise::white_noise;
@@ -211,25 +213,17 @@ pub struct Sheet {
 }
 
 /// Compares them.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Sheet, EstimateError> {
     let Columns { rows, floor_n, base, candidates } = columns(needle, law);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let y = of(&|r| r.force_n);
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let weight = vec![said_by_a_row(needle, &rows, &base, &candidates)?; y.len()];
-    let channel = Channel {
-        y,
-        base,
-        candidates,
-        stretch: stretch.clone(),
-        testable: along.clone(),
-        weight,
-        period_s: needle.period_s,
-    };
-    let study = channel.compare(threshold)?;
+    let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
+    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
-    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, stretch, state };
+    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state };
     let view = View {
         // Rows on the sheet are apart from those of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),

@@ -3,6 +3,7 @@
 use super::rows::{Needle, Phase, Puncture, Row};
 use super::sheet;
 use crate::diagnose::data::regression_data::Span;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::needle::punctures;
 use rand::{RngExt as _, SeedableRng as _};
 use std::f64::consts::TAU;
@@ -69,7 +70,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
 }
 
 fn named(needle: &Needle) -> Vec<&'static str> {
-    let found = sheet::sheet(needle, None, 20.0).expect("a sheet").compared;
+    let found = sheet::sheet(needle, None, Rules::of_observations()).expect("a sheet").compared;
     found.study.picks().into_iter().map(|p| found.study.candidates[p].id).collect()
 }
 

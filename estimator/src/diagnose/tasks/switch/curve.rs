@@ -11,8 +11,10 @@ use crate::diagnose::answer::atlas::{Variable, View};
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
-use crate::diagnose::selection::channel::{Channel, stretches};
+use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::layout::{Layout, segments};
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
@@ -53,7 +55,7 @@ pub fn curve(
     push: &Push,
     known: &Known<'_>,
     period_s: f64,
-    threshold: f64,
+    rules: Rules,
 ) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
     let viscous =
         push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
@@ -75,21 +77,13 @@ pub fn curve(
         return Ok(None);
     }
     let time: Vec<f64> = times.iter().map(|t| t.1).collect();
-    let stretch = stretches(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
+    let stretch = segments(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
     let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
     let base = base(&points);
     let candidates = candidates(&points, known, viscous);
     let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
-    let channel = Channel {
-        y: of(&|p| p.left_n),
-        base,
-        candidates,
-        stretch: stretch.clone(),
-        testable: along.clone(),
-        weight: vec![1.0; points.len()],
-        period_s,
-    };
-    let study = channel.compare(threshold)?;
+    let layout = Layout::of(stretch.clone(), &along, period_s);
+    let study = Channel::new(of(&|p| p.left_n), base, candidates, layout, rules).fit()?;
     let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
     let over = vec![
         (Variable::Place, of(&|p| p.at_m)),
@@ -101,7 +95,7 @@ pub fn curve(
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
     let time = times.iter().map(|t| t.1).collect();
     let knob = Captured::new(&known.switch.curve, points, time, &stretch, period_s);
-    Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view, knob)))
+    Ok(Some((Compared { study, channel, unit, floor, along, state }, view, knob)))
 }
 
 /// Position of the switch, which may have been moved, as a regressor.

@@ -5,7 +5,7 @@ use super::model::asked_n;
 use super::rows::{Place, Row, direction};
 use super::throw::{Curve, along_m};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::free_run::channel::{Forward, causes, consecutive};
+use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::Study;
@@ -106,9 +106,9 @@ impl Forward for Thrown {
         let side = self.travel.side[window[0]].unwrap_or(0);
         let curve = self.curve(side, values);
         let is_drag = |c: &Candidate| c.id == "viscous-friction";
-        let drag: f64 = causes(study, picks, values).filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
+        let drag: f64 = study.with_values(picks, values).filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
         let drive = |i: usize| {
-            let beside = causes(study, picks, values).filter(|(c, _)| !is_drag(c));
+            let beside = study.with_values(picks, values).filter(|(c, _)| !is_drag(c));
             study.y[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
         let acts = |motion: &Motion| {
@@ -155,13 +155,13 @@ impl Forward for Captured {
             |c: &Candidate| ["viscous-friction", "return-spring", "local-resistance"].contains(&c.id);
         let drive = |i: usize| {
             let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
-            let beside = causes(study, picks, values).filter(|(c, _)| !goes_with_motion(c));
+            let beside = study.with_values(picks, values).filter(|(c, _)| !goes_with_motion(c));
             // The position of the switch is estimated.
             let moved = values[0] * direction(side) * slope_n_m;
             left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
         let laws: Vec<(&Candidate, &[f64])> =
-            causes(study, picks, values).filter(|(c, _)| goes_with_motion(c)).collect();
+            study.with_values(picks, values).filter(|(c, _)| goes_with_motion(c)).collect();
         let acts = |motion: &Motion| {
             let at_m = direction(side) * motion.position;
             let law = |(candidate, own): &(&Candidate, &[f64])| match (candidate.id, candidate.searched.as_slice()) {

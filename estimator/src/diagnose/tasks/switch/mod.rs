@@ -22,7 +22,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
-use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 use held_knob::Captured;
@@ -40,17 +40,17 @@ struct Look {
 fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
     let seen = rows::seen(recordings, bad)?;
     let known = options.world.as_ref().and_then(Known::of);
-    let limit = threshold(seen.period_s);
-    let push = throw::push(&seen, limit)?;
+    let rules = Rules::of_channel(seen.period_s);
+    let push = throw::push(&seen, rules)?;
     options.progress.tell(0.5)?;
     let curve = match &known {
-        Some(known) => curve::curve(&push, known, seen.period_s, limit)?,
+        Some(known) => curve::curve(&push, known, seen.period_s, rules)?,
         None => None,
     };
     // With another knob force or a sensor error, the knob rests at another position in its stops.
-    let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
-    let other = curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty()) || has("friction-change");
-    let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
+    let has_changed = push.compared.study.has("friction-change");
+    let other = has_changed || curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty());
+    let stop = if other { None } else { stop::stop(&seen, known.as_ref(), rules)? };
     Ok(Look { seen, push, curve, stop })
 }
 
@@ -86,11 +86,10 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Findings, E
     };
     let mut found = answer(&parts, beside, &asked);
     if options.atlas {
-        let limit = threshold(seen.period_s);
         let channels = &mut found.atlas.channels;
-        channels.push(push.compared.atlas(&push.view, limit, throw::best_seen));
-        channels.extend(curve.as_ref().map(|(c, view, _)| c.atlas(view, limit, curve::best_seen)));
-        channels.extend(stop.as_ref().map(|(s, view, _)| s.atlas(view, limit, stop::best_seen)));
+        channels.push(push.compared.atlas(&push.view, throw::best_seen));
+        channels.extend(curve.as_ref().map(|(c, view, _)| c.atlas(view, curve::best_seen)));
+        channels.extend(stop.as_ref().map(|(s, view, _)| s.atlas(view, stop::best_seen)));
     }
     let beside = curve.iter().map(|(c, ..)| c).chain(stop.iter().map(|(s, ..)| s));
     let compared = std::iter::once(&push.compared).chain(beside);

@@ -1,7 +1,7 @@
 //! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
 //! that touch nothing.
 
-use crate::diagnose::selection::channel::stretches;
+use crate::diagnose::selection::layout::segments;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use crate::segment::threshold::percentile;
@@ -138,7 +138,7 @@ pub fn seen(recordings: &[Recording], bad: &[Vec<bool>]) -> Result<Seen, Estimat
     let period = |i: usize| if free(rows[i].place) { FREE_EVERY as f64 } else { 1.0 } * all.period_s;
     let apart = |i: usize| time[i] - time[i - 1] > 1.6 * period(i) || time[i] <= time[i - 1];
     let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording || apart(i);
-    all.stretch = stretches(&time, f64::INFINITY, other);
+    all.stretch = segments(&time, f64::INFINITY, other);
     Ok(all)
 }
 

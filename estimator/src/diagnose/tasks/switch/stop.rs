@@ -9,6 +9,8 @@ use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
@@ -26,7 +28,7 @@ const MOST_STIFFER: f64 = 0.9;
 pub fn stop(
     seen: &Seen,
     known: Option<&Known<'_>>,
-    threshold: f64,
+    rules: Rules,
 ) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
     if indices.len() < LEAST_ROWS {
@@ -79,16 +81,8 @@ pub fn stop(
     }
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let floor = white_noise(&y);
-    let channel = Channel {
-        y,
-        base,
-        candidates,
-        stretch: stretch.clone(),
-        testable: along.clone(),
-        weight: vec![1.0; rows.len()],
-        period_s: seen.period_s,
-    };
-    let study = channel.compare(threshold)?;
+    let layout = Layout::of(stretch.clone(), &along, seen.period_s);
+    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let over = vec![(Variable::Force, of(&pressed)), (Variable::Time, of(&|r| r.time_s))];
     // The two stops are separate positions.
     let view =
@@ -96,7 +90,7 @@ pub fn stop(
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
     // Pads have damping: the first regressor is the rate.
     let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
-    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view, pads)))
+    Ok(Some((Compared { study, channel, unit: "m", floor, along, state }, view, pads)))
 }
 
 /// Variable that best shows a cause on the stops: the force on the knob.

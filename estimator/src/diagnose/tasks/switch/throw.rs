@@ -10,6 +10,8 @@ use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
@@ -135,7 +137,7 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
 }
 
 /// Compares the causes that depend on speed and time.
-pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
+pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
     let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
@@ -172,9 +174,8 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let y: Vec<f64> = rows.iter().map(force_n).collect();
     let candidates = candidates(seen, &rows, &curves, &forces);
     let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
-    let weight = vec![1.0; rows.len()];
-    let channel = Channel { y, base, candidates, stretch: stretch.clone(), testable, weight, period_s: seen.period_s };
-    let study = channel.compare(threshold)?;
+    let layout = Layout::of(stretch.clone(), &testable, seen.period_s);
+    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let found = of_found(&study, rows.len());
     let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
     let state = rows.iter().map(Row::state).collect();
@@ -183,7 +184,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    let compared = Compared { study, channel, unit, floor, along, stretch, state };
+    let compared = Compared { study, channel, unit, floor, along, state };
     Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
 }
 

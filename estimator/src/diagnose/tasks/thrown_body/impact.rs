@@ -8,6 +8,8 @@ use crate::diagnose::hypotheses::candidate;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
@@ -45,8 +47,6 @@ const MIXED: f64 = 0.25;
 const OVER_MEDIAN: f64 = 1.4826;
 /// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
 const UNSEEN: f64 = 0.29;
-/// Least evidence of a cause.
-pub const THRESHOLD: f64 = 20.0;
 
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
 /// The number is the error of a restitution that no scatter shows: the ground may push on behind a blow, the more of it
@@ -72,29 +72,20 @@ pub fn blow(
     let y: Vec<f64> = pairs.iter().map(|(before, after)| after + restitution * before).collect();
     let column: Vec<f64> = pairs.iter().map(|(before, _)| -before).collect();
     let lost = Candidate::one("velocity-loss", Kind::Plant, "change of e", "1", column);
-    let stretch: Vec<usize> = (0..n).collect();
-    let channel = Channel {
-        y,
-        base: Vec::new(),
-        candidates: vec![lost],
-        stretch: stretch.clone(),
-        testable: vec![true; n],
-        weight: vec![1.0; n],
-        period_s: 1.0,
-    };
-    let study = channel.compare(THRESHOLD)?;
+    let along = vec![true; n];
+    let layout = Layout::of((0..n).collect(), &along, 1.0);
+    let study = Channel::new(y, Vec::new(), vec![lost], layout, Rules::of_observations()).fit()?;
     let floor = study.solved.as_ref().map_or(0.0, |s| (s.rss / study.system.rows.max(1.0)).sqrt());
     // The model's restitution is kept in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
         candidate.searched.push(candidate::Searched { name: "e of the model", value: restitution, unit: "1" });
     }
-    let along = vec![true; n];
     // A throw has one blow, so all of them are shown together, over their speed before impact.
     let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
     // Segmentation has no state for a blow.
     let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
-    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
+    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, state }, view, pushed)))
 }
 
 /// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one

@@ -79,8 +79,8 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     }
     if options.atlas {
         let channels = &mut found.atlas.channels;
-        channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::THRESHOLD, sliding::best_seen)));
-        channels.extend(blow.as_ref().map(|(b, view, _)| b.atlas(view, impact::THRESHOLD, impact::best_seen)));
+        channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::best_seen)));
+        channels.extend(blow.as_ref().map(|(b, view, _)| b.atlas(view, impact::best_seen)));
     }
     Ok(found)
 }

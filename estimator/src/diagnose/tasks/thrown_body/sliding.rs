@@ -7,6 +7,8 @@ use crate::diagnose::free_run::channel::{Forward, columns};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
@@ -19,7 +21,7 @@ use nalgebra::{DVector, Vector3};
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
 /// Least evidence of a cause.
-pub const THRESHOLD: f64 = 25.0;
+const THRESHOLD: f64 = 25.0;
 /// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
 const LEAST_MU: f64 = 2e-3;
 /// Tried decay speeds of static friction, as shares of the usual speed.
@@ -77,24 +79,17 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     let n = y.len();
     let floor = floor(&ways);
     let period_s = ways.first().map_or(0.01, |w| w.time_s[1] - w.time_s[0]);
-    let channel = Channel {
-        y,
-        base: Vec::new(),
-        candidates,
-        stretch: stretch.clone(),
-        testable: vec![true; n],
-        weight: vec![1.0; n],
-        period_s,
-    };
-    // Friction that rises as the body stops requires dry friction.
-    let study = if mu > 0.0 { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }?;
     let along = vec![true; n];
+    let layout = Layout::of(stretch, &along, period_s);
+    // Friction that rises as the body stops requires dry friction.
+    let rules = Rules { threshold: THRESHOLD, ..Rules::of_channel(period_s) }.with_friction(mu > 0.0);
+    let study = Channel::new(y, Vec::new(), candidates, layout, rules).fit()?;
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
     // A single slide is short, so all are shown together.
     let view = View::of(Vec::new(), over);
     let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
-    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
+    Ok(Some((Compared { study, channel, unit: "m", floor, along, state }, view)))
 }
 
 /// Free-run simulation of slides. Their regressors are decelerations already integrated twice, each from its own start.
@@ -110,7 +105,7 @@ impl Forward for Slides<'_> {
     }
 
     fn windows(&self) -> Vec<Vec<usize>> {
-        let stretch = &self.compared.stretch;
+        let stretch = &self.compared.study.layout.segment;
         let rows: Vec<usize> = (0..stretch.len()).collect();
         rows.chunk_by(|a, b| stretch[*a] == stretch[*b]).map(<[usize]>::to_vec).collect()
     }

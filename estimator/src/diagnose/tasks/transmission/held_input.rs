@@ -4,7 +4,7 @@
 
 use super::rows::{ROW_HZ, Row, Seen};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::free_run::channel::{Forward, causes, consecutive};
+use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::selection::comparison::Study;
@@ -44,7 +44,7 @@ impl Input {
     /// Laws of the causes; `None` if one has no law.
     fn effects(&self, study: &Study, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
         let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
-        for (candidate, own) in causes(study, picks, values) {
+        for (candidate, own) in study.with_values(picks, values) {
             match candidate.id {
                 "coulomb-friction" => dry += own[0],
                 // Friction that bends before it slides is part of the dry friction, and is subtracted from it.

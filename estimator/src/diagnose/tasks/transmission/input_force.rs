@@ -4,10 +4,9 @@ use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
 use super::held_input::Input;
 use super::load_confounding::Told;
-use super::rows::{Columns, ROW_HZ, Row, Seen, constants, stretches_of};
+use super::rows::{Columns, Row, Seen, constants, stretches_of};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::rules::threshold;
-use crate::diagnose::tasks::transmission::{Side, channel, generic};
+use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -73,13 +72,12 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
             cause.at("way", *way, names.unit)
         };
         let candidates = tried[0].values().iter().map(bend).chain(plain.iter().cloned()).collect();
-        let channel = channel(of(&|r| r.force.unwrap_or(0.0)), base.clone(), candidates, &stretch);
-        channel.compare(threshold(1.0 / ROW_HZ))
+        fit(of(&|r| r.force.unwrap_or(0.0)), &base, candidates, &rows)
     };
     let study = closer(&mut [Tried::new("hysteresis", high - low)], &once)?;
     let told = if is_loaded { Told::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
     let input = Input::new((&rows, &stretch), names.force_unit, inertia, seen);
-    let side = Side::new(study, rows, stretch, ("force at the input", names.force_unit), floor);
+    let side = Side::new(study, rows, ("force at the input", names.force_unit), floor);
     Ok(Some(Force { side, told, input }))
 }

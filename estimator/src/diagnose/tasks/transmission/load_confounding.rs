@@ -29,7 +29,7 @@ impl Told {
     /// dry friction, a value per row.
     pub fn of(study: &Study, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
         let used: Vec<usize> = (0..rows.len())
-            .filter(|i| study.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
+            .filter(|i| study.layout.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
             .collect();
         let others = study.base.iter().enumerate().filter(|(k, _)| *k != load).map(|(_, column)| column.as_slice());
         let columns: Vec<&[f64]> = others.chain([direction, study.base[load].as_slice()]).collect();

@@ -2,12 +2,11 @@
 
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
-use super::rows::{Columns, ROW_HZ, Row, Seen, constants, ratio, spread, stretches_of};
+use super::rows::{Columns, Row, Seen, constants, ratio, spread};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::comparison::Study;
-use crate::diagnose::selection::rules::threshold;
-use crate::diagnose::tasks::transmission::{Side, channel, generic};
+use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -26,7 +25,6 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     let (low, high) = seen.ends();
     let kept: Vec<usize> = (0..seen.rows.len()).collect();
     let rows = &seen.rows;
-    let stretch = stretches_of(rows);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
@@ -70,11 +68,11 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
         };
         let searched = tried[0].values().iter().map(gap).chain(tried[1].values().iter().map(bend));
         let candidates = searched.chain(plain.iter().cloned()).collect();
-        channel(of(&|r| r.output), base.clone(), candidates, &stretch).compare(threshold(1.0 / ROW_HZ))
+        fit(of(&|r| r.output), &base, candidates, &rows)
     };
     let mut tried = ["backlash", "hysteresis"].map(|id| Tried::new(id, high - low));
     let study = closer(&mut tried, &once)?;
-    Ok(Side::new(study, rows.clone(), stretch, ("output's place", names.unit), noise))
+    Ok(Side::new(study, rows.clone(), ("output's place", names.unit), noise))
 }
 
 /// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known

@@ -19,12 +19,13 @@ use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
-use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::Kind;
 use haptics::recording::Recording;
-use rows::{Columns, ROW_HZ, Row, Seen, columns};
+use rows::{Columns, ROW_HZ, Row, Seen, columns, stretches_of};
 
 /// Number of equal parts of a recording in which the work of the input is evaluated.
 const PARTS: usize = 10;
@@ -45,11 +46,11 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    fn new(study: Study, rows: Vec<Row>, stretch: Vec<usize>, what: (&'static str, &'static str), floor: f64) -> Self {
+    fn new(study: Study, rows: Vec<Row>, what: (&'static str, &'static str), floor: f64) -> Self {
         let n = rows.len();
         let (channel, unit) = what;
         let (along, state) = (vec![true; n], vec![SystemState::Turning; n]);
-        Self { compared: Compared { study, channel, unit, floor, along, stretch, state }, rows }
+        Self { compared: Compared { study, channel, unit, floor, along, state }, rows }
     }
 }
 
@@ -76,8 +77,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     }
     let told = force.as_ref().and_then(|f| f.told.as_ref());
     if let (Some(force), Some(told)) = (&force, told.filter(|t| t.is_one())) {
-        let study = &force.side.compared.study;
-        if study.picks().iter().any(|c| study.candidates[*c].id == "coulomb-friction") {
+        if force.side.compared.study.has("coulomb-friction") {
             beside.alternatives.extend(told.alternative());
         } else {
             let why = load_confounding::WHY.to_owned();
@@ -105,9 +105,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let mut found = answer(&parts, beside, &|_| None);
     if options.atlas {
         let sides = force.iter().map(|f| &f.side).chain([&way]);
-        let period_s = 1.0 / ROW_HZ;
-        found.atlas.channels =
-            sides.map(|side| side.compared.atlas(&view(&side.rows, names), threshold(period_s), best_seen)).collect();
+        found.atlas.channels = sides.map(|side| side.compared.atlas(&view(&side.rows, names), best_seen)).collect();
     }
     Ok(found)
 }
@@ -168,17 +166,10 @@ fn best_seen(id: &str) -> Variable {
     }
 }
 
-fn channel(y: Vec<f64>, base: Vec<Vec<f64>>, candidates: Vec<Candidate>, stretch: &[usize]) -> Channel {
-    let n = y.len();
-    Channel {
-        y,
-        base,
-        candidates,
-        stretch: stretch.to_vec(),
-        testable: vec![true; n],
-        weight: vec![1.0; n],
-        period_s: 1.0 / ROW_HZ,
-    }
+fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<Study, EstimateError> {
+    const PERIOD_S: f64 = 1.0 / ROW_HZ;
+    let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], PERIOD_S);
+    Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(PERIOD_S)).fit()
 }
 
 fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {

@@ -1,7 +1,7 @@
 //! Rows of a transmission's recordings.
 
 use super::filtered_columns::Fine;
-use crate::diagnose::selection::channel::stretches;
+use crate::diagnose::selection::layout::segments;
 use crate::signal::noise::quantum;
 use crate::signal::task::smooth;
 use haptics::recording::Recording;
@@ -126,7 +126,7 @@ pub fn constants(rows: &[Row]) -> Vec<Vec<f64>> {
 /// Rows that follow each other.
 pub fn stretches_of(rows: &[Row]) -> Vec<usize> {
     let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-    stretches(&time, 1.0 / ROW_HZ, |i| rows[i].recording != rows[i - 1].recording)
+    segments(&time, 1.0 / ROW_HZ, |i| rows[i].recording != rows[i - 1].recording)
 }
 
 /// Slope of the output over the input, about the means of each recording.
