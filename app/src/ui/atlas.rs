@@ -4,7 +4,8 @@
 use super::format;
 use crate::diagnosis_words::{force_unit, title};
 use estimator::diagnose::Findings;
-use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
+use estimator::diagnose::Variable;
+use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen};
 use estimator::diagnose::{Course, Instant};
 use std::f64::consts::TAU;
 
