@@ -9,8 +9,10 @@ use super::noise_model::{Noise, whitener};
 use super::normal_equations::{Held, Rows, System, solve, uses};
 use super::prescreen::Rough;
 use super::pruning::{CONFIRMED, PIECES_S, SHOWN, harms, is_steady};
-use super::stepwise::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
+use super::stepwise::Selection;
+use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::relations::Relation;
 use crate::estimate::EstimateError;
 
 /// Ridge on the candidates in the fit whose residual determines the whitening, relative to the power of a regressor.
@@ -92,7 +94,7 @@ impl Channel {
             // The dry friction beside which the change was found was removed: a change of friction without friction is
             // not possible.
             let Study { y, base, mut candidates, weight, .. } = made;
-            candidates.retain(|c| !OF_DRY_FRICTION.contains(&c.id));
+            candidates.retain(|c| !relations(c.id).contains(&Relation::OfDryFriction));
             let testable = testable.iter().map(|held| *held != Held::Never).collect();
             return Self { y, base, candidates, stretch, testable, weight, period_s }.chosen(order, threshold, dry);
         }
@@ -142,8 +144,8 @@ fn pieces(stretch: &[usize], rows: f64) -> Option<Vec<usize>> {
 
 /// True if a change of dry friction was chosen without any dry friction.
 fn lifts_nothing(study: &Study) -> bool {
-    let is = |all: &[&str]| study.picks().iter().any(|c| all.contains(&study.candidates[*c].id));
-    is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION)
+    let is = |relation: Relation| study.picks().iter().any(|c| relations(study.candidates[*c].id).contains(&relation));
+    is(Relation::OfDryFriction) && !is(Relation::DryFriction)
 }
 
 /// Removes causes whose estimate no longer fits their name after another cause was removed.
