@@ -1,7 +1,8 @@
 //! The residual atlas of tasks without one coordinate: what was hidden stands there as a suspect of its channel, over the variable that it is best
 //! seen against, and what it takes is what was left over.
 
-use estimator::diagnose::atlas::{Against, Channel, Variable};
+use estimator::diagnose::Variable;
+use estimator::diagnose::atlas::{Against, Channel};
 use estimator::diagnose::{Findings, Options, diagnose};
 use haptics::recording::{Channel as Column, Recording, Task};
 use tests::tasks::{Case, needle, switch, throw};

@@ -4,7 +4,8 @@
 use crate::text::diagnosis_words::{force_unit, title};
 use crate::text::format;
 use estimator::diagnose::Findings;
-use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
+use estimator::diagnose::Variable;
+use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen};
 use estimator::diagnose::{Course, Instant};
 use std::f64::consts::TAU;
 

@@ -30,9 +30,10 @@ pub use contract::{
 };
 pub use experiment::strokes::{Stroke, Strokes};
 pub use experiment::waypoints::{Insertions, Throw, Throws};
-pub use extension::sensor_fault::SensorFault;
 pub use findings::Findings;
 use haptics::recording::{Recording, Task};
+pub use hypotheses::sensor_fault::SensorFault;
+pub use hypotheses::variable::Variable;
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::baseline_models::named;

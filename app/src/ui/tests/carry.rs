@@ -11,7 +11,7 @@ use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use estimator::diagnose::atlas::Variable;
+use estimator::diagnose::Variable;
 use haptics::recording::Recording;
 use std::path::Path;
 use std::sync::LazyLock;

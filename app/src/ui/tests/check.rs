@@ -12,7 +12,7 @@ use blind::{Bench, Effect};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use estimator::diagnose::atlas::Variable;
+use estimator::diagnose::Variable;
 use estimator::diagnose::{Options, validate};
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};

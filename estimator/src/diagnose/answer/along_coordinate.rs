@@ -14,8 +14,8 @@ use crate::diagnose::extension::model::{effects, plain};
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::along_coordinate::rollout;
 use crate::diagnose::free_run::windows::{AT_ONCE, NO_LAW};
-use crate::diagnose::hypotheses::equivalent::TWINS;
-use crate::diagnose::hypotheses::resolvable_speed::widen;
+use crate::diagnose::hypotheses::all::{twins, widen};
+use crate::diagnose::hypotheses::length_scale;
 use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::estimates::{number, of_hardening_spring, parameters};
@@ -176,7 +176,7 @@ fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> 
     } else {
         ""
     };
-    let link = if candidate.id == "length-scale"
+    let link = if candidate.id == length_scale::ID
         && candidate.linear.first().is_some_and(|(n, _)| n.starts_with("link_error"))
     {
         "; the length is that of the first link (an error of the second link's, as large and the other way round, makes the same path but for the size of \
@@ -209,7 +209,7 @@ fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
     let own = study.candidates[chosen.candidate].id;
     let rival = |id: &str| chosen.rivals.iter().any(|(c, _)| study.candidates[*c].id == id);
     let tested = |id: &str| study.candidates.iter().any(|c| c.id == id);
-    let twins = TWINS.iter().filter(|(a, b, _)| *a == own && !rival(b) && !tested(b)).count();
+    let twins = twins().filter(|(a, b, _)| *a == own && !rival(b) && !tested(b)).count();
     1.0 + twins as f64 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()
 }
 
@@ -232,7 +232,7 @@ pub(crate) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
             why: format!("it explains this recording nearly as well (score {behind:.1} behind)"),
         })
         .collect();
-    for (a, b, why) in TWINS {
+    for (a, b, why) in twins() {
         // A cause that has a regressor of its own here is not equivalent here.
         if own == a && study.candidates.iter().all(|c| c.id != b) {
             found.push(Alternative {

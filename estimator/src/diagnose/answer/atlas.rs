@@ -1,58 +1,12 @@
 //! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
 use crate::diagnose::data::regression_data::{Place, Track};
+use crate::diagnose::hypotheses::all::best_seen_against;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use haptics::law::cause;
 use std::collections::BTreeSet;
-
-/// Variable against which the effect of a cause is plotted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Variable {
-    /// Place along the motion.
-    Place,
-    /// Its rate.
-    Velocity,
-    /// The rate of that.
-    Acceleration,
-    /// Force across the motion.
-    Across,
-    /// Measured force along the motion.
-    Force,
-    /// Rate of change of that force.
-    ForceRate,
-    /// Time.
-    Time,
-    /// Grip force.
-    Grip,
-    /// Lift force.
-    Lift,
-    /// Distance of the tips.
-    Width,
-    /// Depth of a needle beyond the surface of its sheet.
-    Depth,
-    /// Load at the output of a transmission.
-    Load,
-}
-
-impl Variable {
-    /// Variable that shows a cause best. `planar`: the force has two axes, whose share along the motion depends on the
-    /// position.
-    fn of(id: &str, planar: bool) -> Self {
-        match id {
-            "coulomb-friction" | "viscous-friction" | "stribeck" | "quadratic-drag" | "friction-asymmetry" => {
-                Self::Velocity
-            }
-            "inertia" => Self::Acceleration,
-            "load-friction" | "force-cross-axis" => Self::Across,
-            "force-gain" | "force-saturation" => Self::Force,
-            "time-delay" => Self::ForceRate,
-            "mass-change" | "friction-change" | "force-drift" => Self::Time,
-            "force-bias" if !planar => Self::Time,
-            _ => Self::Place,
-        }
-    }
-}
 
 /// One candidate cause of the atlas.
 #[derive(Clone, Debug, PartialEq)]
@@ -206,7 +160,7 @@ pub(crate) fn atlas(track: &Track, study: &Study) -> Atlas {
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
     let seen = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
         let taken = along.iter().map(|i| taken[*i]).collect();
-        Seen { id: candidate.id.to_owned(), score, variable: Variable::of(candidate.id, track.planar), taken }
+        Seen { id: candidate.id.to_owned(), score, variable: best_seen_against(candidate.id, track.planar), taken }
     };
     Atlas {
         suspects: strongest(study, &study.residual(&[])).into_iter().map(seen).collect(),

@@ -2,11 +2,11 @@
 //! well. Experiments can be rehearsed in each.
 
 use super::model::{effects, effects_of};
-use super::sensor_fault::SensorFault;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::{Model, Track};
+use crate::diagnose::hypotheses::all::{add_to_fault, twins};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::equivalent::TWINS;
+use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
 
@@ -55,13 +55,13 @@ pub(crate) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
             other[k] = *rival;
             add(study.candidates[*rival].id, &other);
         }
-        let twins = TWINS.iter().filter(|(a, b, _)| *a == own && study.candidates.iter().all(|c| c.id != *b));
+        let twins = twins().filter(|(a, b, _)| *a == own && study.candidates.iter().all(|c| c.id != *b));
         for (_, twin, _) in twins {
             let laws = effects(track, model, study);
             // By itself, a tilted axis is equivalent to an eccentric mass. Only a hung weight separates them.
             let (laws, hung_share) = if track.planar { (tilted(&laws), 1.0) } else { (Some(laws), LEANS) };
             let fault = study.solved.as_ref().and_then(|s| fault(study, &picks, &s.values));
-            all.push(Hypothesis { id: (*twin).to_owned(), inside: laws.map(Inside::Laws), fault, hung_share });
+            all.push(Hypothesis { id: twin.to_owned(), inside: laws.map(Inside::Laws), fault, hung_share });
         }
     }
     all
@@ -145,7 +145,7 @@ fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f6
     let mut at = study.base.len();
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
         let end = at + candidate.columns.len();
-        if candidate.kind == Kind::Instrument && !sum.add(candidate, &values[at..end]) {
+        if candidate.kind == Kind::Instrument && !add_to_fault(&mut sum, candidate, &values[at..end]) {
             return None;
         }
         at = end;
@@ -205,9 +205,8 @@ mod tests {
         let column = || vec![1.0];
         let mut fault = SensorFault::default();
         let net = vec![("bx", "N"), ("by", "N")];
-        assert!(
-            fault.add(&Candidate::several("force-bias", Kind::Instrument, vec![column(), column()], net), &[0.2, -0.4])
-        );
+        let net = Candidate::several("force-bias", Kind::Instrument, vec![column(), column()], net);
+        assert!(add_to_fault(&mut fault, &net, &[0.2, -0.4]));
         let one =
             |id, name| Candidate::several(id, Kind::Instrument, vec![column()], vec![(name, "1")]).at("tau", 5.0, "s");
         for (id, name, value) in [
@@ -220,7 +219,7 @@ mod tests {
             ("force-bias", "b", 0.7),
             ("force-drift", "rate", 0.03),
         ] {
-            assert!(fault.add(&one(id, name), &[value]), "{id} {name}");
+            assert!(add_to_fault(&mut fault, &one(id, name), &[value]), "{id} {name}");
         }
         let expected = SensorFault {
             offset_n: [Vec2::new(0.1, -0.2), Vec2::new(0.1, -0.1)],
@@ -234,6 +233,6 @@ mod tests {
             delay_s: 0.01,
         };
         assert_eq!(fault, expected);
-        assert!(!fault.add(&one("length-scale", "epsilon"), &[0.1]), "no fault of a force");
+        assert!(!add_to_fault(&mut fault, &one("length-scale", "epsilon"), &[0.1]), "no fault of a force");
     }
 }

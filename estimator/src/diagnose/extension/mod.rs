@@ -2,6 +2,5 @@ pub(crate) mod block_world;
 pub(crate) mod hypothetical_worlds;
 pub(crate) mod model;
 pub(crate) mod needle_world;
-pub(crate) mod sensor_fault;
 pub(crate) mod switch_world;
 pub(crate) mod world;

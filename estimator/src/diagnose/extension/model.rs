@@ -1,16 +1,16 @@
 //! Extended model: the base model with the causes found, as laws with values that a world can run.
 
 use crate::diagnose::data::regression_data::{Model, Track};
-use crate::diagnose::hypotheses::candidate::{Candidate, about_its_zero};
-use crate::diagnose::hypotheses::{free_motion, slope};
+use crate::diagnose::hypotheses::all::{hypothesis, relations};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::dry_share::DryFriction;
+use crate::diagnose::hypotheses::free_motion;
+use crate::diagnose::hypotheses::hypothesis::Found;
+use crate::diagnose::hypotheses::relations::Relation;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Solved;
 use crate::diagnose::selection::profile_likelihood::{settled, shares};
-use haptics::law::{
-    AddedConstraint, Backlash, Cable, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange,
-    GravityTilt, Hysteresis, Inertia, Kind, Law, LoadFriction, LoadFrictionChange, LoadHysteresis, LocalPush,
-    LocalResistance, MassChange, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
-};
+use haptics::law::{Effect, Kind, Role};
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own.
 /// Instruments' faults are no part of a world.
@@ -50,7 +50,7 @@ fn made(
 ) -> (Vec<Effect>, bool) {
     let found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
     let of_causes = causes.iter().map(|c| c.columns.len()).sum::<usize>();
-    let dry = Dry::of(&found);
+    let dry = DryFriction::of(&found);
     beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
 }
 
@@ -66,14 +66,15 @@ pub fn without_friction(
 ) -> Option<Vec<Effect>> {
     let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
     let searched: Vec<Vec<f64>> = causes.iter().map(tried).collect();
-    let (found, is_whole) = beside_model(track, laws, &Dry { level_n: dry_n, mu: 0.0 }, causes, values, &searched);
+    let (found, is_whole) =
+        beside_model(track, laws, &DryFriction { level_n: dry_n, mu: 0.0 }, causes, values, &searched);
     is_whole.then_some(found)
 }
 
 fn beside_model(
     track: &Track,
     mut found: Vec<Effect>,
-    dry: &Dry,
+    dry: &DryFriction,
     causes: &[&Candidate],
     values: &[f64],
     searched: &[Vec<f64>],
@@ -82,14 +83,10 @@ fn beside_model(
     let (mut at, mut is_whole) = (0, true);
     for (candidate, searched) in causes.iter().zip(searched) {
         let values = &values[at..at + candidate.columns.len()];
-        if candidate.id == Hysteresis.id() {
-            // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
+        if relations(candidate.id).contains(&Relation::TakesDryFriction) {
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
-        let laws = match dry.law(candidate, values, searched) {
-            laws if laws.is_empty() => effect(candidate, (values, searched), track, weight_n).into_iter().collect(),
-            laws => laws,
-        };
+        let laws = laws_of(&Found { candidate, values, searched, track, weight_n, dry });
         is_whole &= !laws.is_empty() || candidate.kind == Kind::Instrument;
         found.extend(laws);
         at += candidate.columns.len();
@@ -97,43 +94,10 @@ fn beside_model(
     (free_motion::whole(track, found), is_whole)
 }
 
-/// Dry friction of a model: a constant part, N or N m, and a part in proportion to the load.
-struct Dry {
-    level_n: f64,
-    mu: f64,
-}
-
-impl Dry {
-    fn of(laws: &[Effect]) -> Self {
-        let at = |normal_force_n: f64| {
-            let motion = Motion { direction: 1.0, normal_force_n, ..Motion::default() };
-            laws.iter().filter(|e| e.law().is_dry()).map(|e| e.force(&motion)).sum::<f64>()
-        };
-        Self { level_n: at(0.0).max(0.0), mu: (at(1.0) - at(0.0)).max(0.0) }
-    }
-
-    /// Laws of a cause that is a share of the dry friction, one for each part of that friction. Empty for other causes.
-    fn law(&self, candidate: &Candidate, values: &[f64], searched: &[f64]) -> Vec<Effect> {
-        let (share, searched) = (values[0], |k: usize| searched.get(k).copied().unwrap_or(0.0));
-        let starts = candidate.searched.first().is_some_and(|s| s.name == "t0");
-        let course = if starts { [0.0, searched(0)] } else { [searched(0), 0.0] };
-        let changes = |of: f64| [0.0, share * of, course[0], course[1]];
-        let (level, mu) = match candidate.id {
-            "hysteresis" => {
-                let (level, way) = (share * self.level_n, searched(0).max(1e-12));
-                let everywhere = Effect::new(&Hysteresis, &[level, level / way, searched(1)]);
-                (everywhere, Effect::new(&LoadHysteresis, &[share * self.mu, way, searched(1)]))
-            }
-            // No law of a world depends on other recorded channels.
-            "friction-change" if candidate.channel.is_none() => (
-                Effect::new(&FrictionChange, &changes(self.level_n)),
-                Effect::new(&LoadFrictionChange, &changes(self.mu)),
-            ),
-            _ => return Vec::new(),
-        };
-        let parts = [(level, self.level_n), (mu, self.mu)];
-        parts.into_iter().filter(|(_, size)| *size > 0.0).map(|(law, _)| law).collect()
-    }
+/// Laws of a plant cause in a world. Empty for a fault of the measurement.
+fn laws_of(found: &Found<'_>) -> Vec<Effect> {
+    let plant = hypothesis(found.candidate.id).filter(|_| found.candidate.kind == Kind::Plant);
+    plant.map_or_else(Vec::new, |hypothesis| hypothesis.effects(found))
 }
 
 /// The model's laws fitted without any cause.
@@ -153,72 +117,11 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
     scaled
 }
 
-/// Law of a plant cause that is no share of the dry friction. `weight_n`: weight of the model, N or N m.
-fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &Track, weight_n: f64) -> Option<Effect> {
-    if candidate.kind != Kind::Plant {
-        return None;
-    }
-    let first = values.first().copied().unwrap_or(0.0);
-    let searched = |k: usize| searched.get(k).copied().unwrap_or(0.0);
-    let radius = track.radius_m.unwrap_or(0.0);
-    let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
-    let of = |law: &'static dyn Law, values: &[f64]| Some(Effect::new(law, values));
-    match candidate.id {
-        "coulomb-friction" => of(&CoulombFriction, &[first]),
-        "load-friction" => of(&LoadFriction, &[first]),
-        "viscous-friction" => of(&ViscousFriction, &[first]),
-        "friction-asymmetry" if named("dFc") => of(&FrictionAsymmetry, &[first, 0.0, 0.0]),
-        "friction-asymmetry" if named("dc") => of(&FrictionAsymmetry, &[0.0, first, 0.0]),
-        "friction-asymmetry" => of(&FrictionAsymmetry, &[0.0, 0.0, first]),
-        "stribeck" => of(&Stribeck, &[first, searched(0), searched(1)]),
-        "quadratic-drag" => of(&QuadraticDrag, &[first]),
-        "inertia" => of(&Inertia, &[first]),
-        "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),
-        "gravity-tilt" if track.planar && weight_n > 0.0 => of(&GravityTilt, &[weight_n, first, radius]),
-        "gravity-tilt" => slope::tilted(track, first),
-        "position-ripple" => {
-            let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
-            // cos(x − π/2) is the regressor of the sine.
-            of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
-        }
-        "return-spring" if named("k3") => of(&ReturnSpring, &[0.0, 0.0, first, searched(0)]),
-        "return-spring" if !candidate.searched.is_empty() => {
-            of(&ReturnSpring, &[first, 0.0, values.get(1).copied().unwrap_or(0.0), searched(0)])
-        }
-        "return-spring" => of(&ReturnSpring, &spring(values, track)),
-        "local-resistance" => {
-            let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };
-            let values = [first, searched(0), searched(1), turn];
-            if named("P") { of(&LocalPush, &values) } else { of(&LocalResistance, &values) }
-        }
-        "added-constraint" if candidate.searched.len() == 3 => {
-            of(&Cable, &[first, searched(1), searched(0), searched(2), radius])
-        }
-        "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
-        "backlash" => of(&Backlash, &[searched(0)]),
-        "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
-        "mass-change" => {
-            // A step takes place within a sample.
-            let step_s = track.period_s;
-            of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
-        }
-        _ => None,
-    }
-}
-
-/// Parameters of a spring, k, f0, k3 and rest position, from the coefficients of its regressors.
-pub fn spring(values: &[f64], track: &Track) -> [f64; 4] {
-    let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
-    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
-    let cube = half.powi(3);
-    let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let [k, f0, k3, place] = about_its_zero([at(0) * half, at(1), at(2) * cube, at(3) * cube]);
-    [k / half, f0, k3 / cube, middle + place * half]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::data::regression_data::Row;
+    use haptics::law::{CoulombFriction, LoadFriction, Motion, ViscousFriction};
 
     #[test]
     fn a_share_of_friction_that_goes_with_the_load_goes_with_it() {
@@ -229,20 +132,25 @@ mod tests {
         ];
         let at = |time_s: f64| Motion { time_s, direction: 1.0, normal_force_n: -5.0, ..Motion::default() };
         let total = |laws: &[Effect], time_s: f64| laws.iter().map(|e| e.force(&at(time_s))).sum::<f64>();
+        let track = Track::of_rows(vec![Row::at_rest()]);
+        let of = |model: &[Effect], candidate: &Candidate, values: &[f64], searched: &[f64]| {
+            let dry = &DryFriction::of(model);
+            laws_of(&Found { candidate, values, searched, track: &track, weight_n: 0.0, dry })
+        };
         let bends = Candidate::one("hysteresis", Kind::Plant, "share", "1", Vec::new()).at("way", 1e-4, "m");
-        let laws = Dry::of(&model).law(&bends, &[0.8], &[1e-4]);
+        let laws = of(&model, &bends, &[0.8], &[1e-4]);
         assert!(laws.len() == 2 && (total(&laws, 0.0) - 0.8 * (0.1 + 0.2 * 5.0)).abs() < 1e-12, "{laws:?}");
         // The same share under another load.
-        let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8], &[1e-4]);
+        let loaded = of(&model[1..2], &bends, &[0.8], &[1e-4]);
         assert!(loaded.len() == 1 && (total(&loaded, 0.0) - 0.8).abs() < 1e-12, "{loaded:?}");
         let change = || Candidate::one("friction-change", Kind::Plant, "relative change", "1", Vec::new());
-        let laws = Dry::of(&model).law(&change().at("t0", 8.0, "s"), &[0.5], &[8.0]);
+        let laws = of(&model, &change().at("t0", 8.0, "s"), &[0.5], &[8.0]);
         assert!(total(&laws, 7.9) == 0.0 && (total(&laws, 8.1) - 0.5 * 1.1).abs() < 1e-12, "{laws:?}");
-        let warms = Dry::of(&model).law(&change().at("tau", 8.0, "s"), &[-0.5], &[8.0]);
+        let warms = of(&model, &change().at("tau", 8.0, "s"), &[-0.5], &[8.0]);
         assert!((total(&warms, 8.0) + 0.5 * 1.1 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12, "{warms:?}");
         let channel = ("temperature_degC".to_owned(), "degC".to_owned());
-        assert!(Dry::of(&model).law(&change().with(channel), &[0.5], &[]).is_empty(), "no world has a temperature");
-        let other = Candidate::one("stribeck", Kind::Plant, "Fs", "N", Vec::new());
-        assert!(Dry::of(&model).law(&other, &[0.5], &[]).is_empty());
+        assert!(of(&model, &change().with(channel), &[0.5], &[]).is_empty(), "no world has a temperature");
+        let other = Candidate::one("time-delay", Kind::Instrument, "tau", "s", Vec::new());
+        assert!(of(&model, &other, &[0.5], &[]).is_empty(), "no law");
     }
 }

@@ -17,6 +17,14 @@ pub struct Searched {
 /// Largest distance of a spring's rest position from the middle, in half ranges.
 const RESTS_WITHIN: f64 = 3.0;
 
+/// Largest share of the dry friction that a law may replace. Beyond it, another presliding distance or gap would fit
+/// better.
+pub(crate) const LARGEST_SHARE: f64 = 1.7;
+/// Penalty of one of two causes that are equivalent in some recordings, so that the other one is always named first.
+/// Examples are a rotated sensor where the load keeps its sign, equivalent to friction by direction, and friction by
+/// direction along one coordinate, equivalent to a bias.
+pub(crate) const HARDLY: f64 = 0.02;
+
 /// Constraint on the parameters of a cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
@@ -153,6 +161,11 @@ impl Candidate {
         self
     }
 
+    /// The searched value of this name.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.searched.iter().find(|s| s.name == name).map(|s| s.value)
+    }
+
     /// True if it was searched for near these values.
     pub fn is_near(&self, values: &[Searched]) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
@@ -193,12 +206,6 @@ impl Candidate {
     /// True if the estimated values fit its name.
     pub fn admits(&self, values: &[f64]) -> bool {
         self.sign * values[0] >= 0.0 && values[0].abs() >= self.least && self.shape.admits(values)
-    }
-
-    /// True if its first value is a share of the model's dry friction.
-    pub fn is_share(&self) -> bool {
-        ["hysteresis", "friction-change"].contains(&self.id)
-            && self.linear.first().is_some_and(|(_, unit)| *unit == "1")
     }
 
     /// Penalty for values that make its name doubtful, in 2 ln(likelihood).

@@ -3,25 +3,6 @@ use haptics::law::{EccentricMass, Effect, Inertia, Law as _};
 
 /// Share of backward travel up to which a motion counts as one-way.
 pub(crate) const ONE_WAY: f64 = 0.02;
-/// Causes that only a force sensor or a driving force shows.
-pub(crate) const WITH_A_FORCE: [&str; 9] = [
-    "force-bias",
-    "force-drift",
-    "force-gain",
-    "force-cross-axis",
-    "force-saturation",
-    "time-delay",
-    "inertia",
-    "mass-change",
-    "backlash",
-];
-/// Causes that act like friction, or like its dependence on speed, in a one-way motion that slows down.
-pub(crate) const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
-
-/// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
-pub(crate) fn can_show(id: &str, both_ways: bool) -> bool {
-    !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
-}
 
 /// Ways forward and backward.
 pub(crate) fn ways(track: &Track) -> [f64; 2] {

@@ -1,23 +1,64 @@
+//! A tilt as a hypothesis: of a crank's plane, of an axis, or of a slope under a linear motion.
+
 use super::candidate::Candidate;
+use super::hypothesis::{Found, Hypothesis};
+use super::library::Dictionary;
+use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
 use crate::identify::linear::least_squares;
-use haptics::law::Kind;
+use haptics::law::{Coordinate, Effect, GravityTilt, Kind};
+
+pub(crate) const ID: &str = "gravity-tilt";
 
 /// Largest tried tilt, rad: a larger one would be noticed.
-pub(crate) const LARGEST_TILT: f64 = 1.4;
-pub(crate) const STEPS: i32 = 12;
+const LARGEST_TILT: f64 = 1.4;
+const STEPS: i32 = 12;
 /// Steepest tilt of a plane that was assumed to be level, as its sine.
-pub(crate) const STEEPEST: f64 = 0.6;
+const STEEPEST: f64 = 0.6;
+
+impl Hypothesis for GravityTilt {
+    fn id(&self) -> &'static str {
+        ID
+    }
+
+    fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
+        let turns = data.track.radius_m.and_then(|_| tilt(data.track));
+        turns.into_iter().chain(slope(data.track)).collect()
+    }
+
+    fn relations(&self) -> &'static [Relation] {
+        &[Relation::NeedsBothWays]
+    }
+
+    fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
+        let track = found.track;
+        if track.planar && found.weight_n > 0.0 {
+            return vec![Effect::new(&GravityTilt, &[found.weight_n, found.value(0), found.radius_m()])];
+        }
+        let of_slope = track.freely.map(|free| {
+            let sine = found.value(0).clamp(-1.0, 1.0);
+            Effect::new(&GravityTilt, &[free.inertia * free.gravity_m_s2, sine.asin(), 0.0])
+        });
+        of_slope.into_iter().collect()
+    }
+}
+
+/// Slope under a linear motion, as the sine of its angle. `None` if the object rotates or is driven.
+fn slope(track: &Track) -> Option<Candidate> {
+    let free = track.freely.filter(|_| track.coordinate == Coordinate::Linear)?;
+    let pull = free.inertia * free.gravity_m_s2;
+    Some(Candidate::one(ID, Kind::Plant, "angle", "rad", vec![pull; track.rows.len()]))
+}
 
 /// The tilt of the plane as a cause, if a hung weight separates it from an eccentric mass.
-pub fn tilt(track: &Track) -> Option<Candidate> {
+fn tilt(track: &Track) -> Option<Candidate> {
     let known = column(track)?;
     if track.planar { tilted_crank(track, &known) } else { tilted_axis(track, &known) }
 }
 
 /// Regressors of a plain fit, their rows, and the residual force beside the hung weight.
-pub(crate) struct Plain {
+struct Plain {
     columns: Vec<Vec<f64>>,
     y: Vec<f64>,
     used: Vec<f64>,
@@ -51,7 +92,7 @@ impl Plain {
 }
 
 /// Crank: the tilt rotates all weights, the object's own and the hung one.
-pub(crate) fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
+fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let turned = |tilt: f64| -> Vec<f64> {
         let along = |r: &Row| {
@@ -83,12 +124,12 @@ pub(crate) fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     // The model's own weight already contains the vertical part of the object's.
     let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));
     let column = own.zip(hung_on(&tilted)).map(|(own, hung)| (own + hung) / tilt).collect();
-    let found = Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", column);
+    let found = Candidate::one(ID, Kind::Plant, "angle", "rad", column);
     Some(found)
 }
 
 /// A mechanism whose axis was assumed to be vertical: the hung weight acts with the sine of the tilt only.
-pub(crate) fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
+fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();
     let waves = vec![column(&|r| r.motion.position.cos()), column(&|r| r.motion.position.sin())];
@@ -102,6 +143,6 @@ pub(crate) fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
     let own = waves[0].iter().zip(&waves[1]).map(|(c, s)| values[0] * c + values[1] * s);
     let along = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along)));
     let whole = own.zip(missing(sine)).zip(along).map(|((own, hung), along)| along * (own + hung)).collect();
-    let found = Candidate::one("gravity-tilt", Kind::Plant, "share", "1", whole).positive();
+    let found = Candidate::one(ID, Kind::Plant, "share", "1", whole).positive();
     Some(found.at("sine of the tilt", sine, "1"))
 }

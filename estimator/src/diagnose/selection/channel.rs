@@ -10,8 +10,10 @@ use super::normal_equations::{System, solve, uses};
 use super::prescreen::Rough;
 use super::pruning::leave_out_what_is_unsure;
 use super::rules::Rules;
-use super::stepwise::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
+use super::stepwise::Selection;
+use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::relations::Relation;
 use crate::estimate::EstimateError;
 
 /// Part of a cause beyond the model below which it counts as none.
@@ -55,7 +57,7 @@ impl Channel {
             // The dry friction beside which the change was found was removed: a change of friction without friction is
             // not possible.
             let Study { y, base, mut candidates, layout, rules, .. } = made;
-            candidates.retain(|c| !OF_DRY_FRICTION.contains(&c.id));
+            candidates.retain(|c| !relations(c.id).contains(&Relation::OfDryFriction));
             return Self::new(y, base, candidates, layout, rules).fit();
         }
         Ok(made)
@@ -89,8 +91,8 @@ impl Channel {
 
 /// True if a change of dry friction was chosen without any dry friction.
 fn lifts_nothing(study: &Study) -> bool {
-    let is = |all: &[&str]| study.picks().iter().any(|c| all.contains(&study.candidates[*c].id));
-    is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION)
+    let is = |relation: Relation| study.picks().iter().any(|c| relations(study.candidates[*c].id).contains(&relation));
+    is(Relation::OfDryFriction) && !is(Relation::DryFriction)
 }
 
 /// Autoregression of the residual after all likely causes together. Learnt from the model's residual, it would absorb

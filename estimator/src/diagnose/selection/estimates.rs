@@ -2,8 +2,9 @@ use super::comparison::Study;
 use super::profile_likelihood::{firsts, settled};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::Track;
-use crate::diagnose::extension::model::spring;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::pad_compliance;
+use crate::diagnose::hypotheses::return_spring::{self, about_its_rest};
 use haptics::law::{Coordinate, Law as _, ReturnSpring};
 
 pub(crate) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
@@ -19,7 +20,7 @@ pub(crate) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
             match own.id {
                 // The answer states the stiffness, while the estimate is a compliance.
                 _ if own.channel.is_some() => of_channel(own, name, value, error),
-                "pad-compliance" => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
+                pad_compliance::ID => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
                 _ => number(name, value, error, unit),
             }
         })
@@ -39,21 +40,21 @@ pub(crate) fn of_channel(candidate: &Candidate, name: &str, value: f64, std_erro
 /// cubics. Errors are to first order.
 pub(crate) fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<CauseParameter>> {
     let candidate = &study.candidates[study.chosen[k].candidate];
-    if candidate.id != "return-spring" || candidate.columns.len() != 4 {
+    if candidate.id != return_spring::ID || candidate.columns.len() != 4 {
         return None;
     }
     let solved = study.solved.as_ref()?;
     let first = firsts(study, &study.picks())[k];
     let values = &solved.values[first..first + 4];
     let variance = solved.variance(study.system.rows);
-    let found = spring(values, track);
+    let found = about_its_rest(values, track);
     let slopes: Vec<[f64; 4]> = (0..4)
         .map(|j| {
             let step =
                 1e-4 * values[j].abs().max((variance * solved.inverse[(first + j, first + j)]).sqrt()).max(1e-12);
             let mut moved = [values[0], values[1], values[2], values[3]];
             moved[j] += step;
-            let after = spring(&moved, track);
+            let after = about_its_rest(&moved, track);
             std::array::from_fn(|i| (after[i] - found[i]) / step)
         })
         .collect();

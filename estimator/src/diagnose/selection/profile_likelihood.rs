@@ -1,6 +1,7 @@
 //! Uncertainty of searched values, from the likelihood of their neighbours on the grid.
 
 use super::comparison::Study;
+use crate::diagnose::hypotheses::all::is_share;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use haptics::law::{Law, PositionRipple};
 
@@ -77,7 +78,7 @@ pub fn shares<'a>(study: &'a Study, picks: &'a [usize]) -> impl Iterator<Item = 
     firsts(study, picks)
         .into_iter()
         .zip(picks)
-        .filter(|(_, p)| study.candidates[**p].is_share())
+        .filter(|(_, p)| is_share(&study.candidates[**p]))
         .map(|(first, _)| first)
 }
 

@@ -1,8 +1,9 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::comparison::Study;
-use super::stepwise::{LOST_MOTION, Selection};
+use super::stepwise::Selection;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::relations::Relation;
 
 /// Number of causes, strongest alone, that are tried as the first of a pair.
 const FIRST: usize = 6;
@@ -61,7 +62,7 @@ impl Selection<'_> {
     /// this is the other one (they differ by less than half a step of the coarse grid). If many causes were chosen, the
     /// best pair is added.
     fn left_behind(&self, chosen: &[usize]) -> Vec<usize> {
-        let is_loss = |c: &usize| LOST_MOTION.contains(&self.candidates[*c].id);
+        let is_loss = |c: &usize| self.has(*c, Relation::LosesMotion);
         let mut others = Vec::new();
         if let Some(k) = chosen.iter().position(&is_loss) {
             let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k]).collect();

@@ -3,7 +3,9 @@
 use super::normal_equations::{Solved, System};
 use super::restarts::MANY;
 use super::rules::Rules;
+use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::relations::{Form, Relation};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -37,69 +39,27 @@ pub struct Selection<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
     pub rules: Rules,
+    /// Relations of each candidate.
+    relations: Vec<&'static [Relation]>,
     /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
     prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
 
-/// Causes with an empirical curve, and the variable of that curve. If the true curve has another form, the misfit looks
-/// like a weak cause over the same variable. Motion is lost at reversals, so lost motion also depends on their
-/// positions.
-const CURVES: [(&str, &[Over]); 10] = [
-    ("stribeck", &[Over::Motion]),
-    ("quadratic-drag", &[Over::Motion]),
-    ("hysteresis", &[Over::Motion, Over::Place]),
-    ("backlash", &[Over::Motion, Over::Place]),
-    ("friction-change", &[Over::Motion, Over::Time]),
-    ("local-resistance", &[Over::Place]),
-    ("added-constraint", &[Over::Place]),
-    ("return-spring", &[Over::Place]),
-    ("position-ripple", &[Over::Place]),
-    ("fingertip-slip", &[Over::Path]),
-];
-/// Causes over the same variables with an exact law.
-const LINES: [(&str, &[Over]); 10] = [
-    ("coulomb-friction", &[Over::Motion]),
-    ("load-friction", &[Over::Motion]),
-    ("viscous-friction", &[Over::Motion]),
-    ("friction-asymmetry", &[Over::Motion]),
-    ("eccentric-mass", &[Over::Place]),
-    ("mass-change", &[Over::Time]),
-    ("force-drift", &[Over::Time]),
-    ("joint-offset", &[Over::Path]),
-    ("length-scale", &[Over::Path]),
-    ("pad-compliance", &[Over::Path]),
-];
 /// Squared correlation of two causes' estimates from which they count as one.
 const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const TAKEN_BACK: f64 = 0.1;
 
-/// Variable of a curve.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Over {
-    Motion,
-    Place,
-    Time,
-    /// Path of the tip.
-    Path,
-}
-
 /// True if the cause has an empirical curve.
 pub fn is_curve(id: &str) -> bool {
-    CURVES.iter().any(|(curve, _)| *curve == id)
+    matches!(form(id), Form::Curve(_))
 }
-
-/// Causes of lost motion at a reversal.
-pub const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
-/// Causes that change dry friction, and need it.
-pub(crate) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
-/// Causes that are dry friction.
-pub(crate) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl<'a> Selection<'a> {
     /// A selection by these rules.
     pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
-        Self { system, candidates, rules: *rules, prices: RefCell::default() }
+        let relations = candidates.iter().map(|candidate| relations(candidate.id)).collect();
+        Self { system, candidates, rules: *rules, relations, prices: RefCell::default() }
     }
 
     /// Evidence of single candidates, whatever else the rules would exclude beside them.
@@ -126,8 +86,8 @@ impl Selection<'_> {
     }
 
     fn asked(&self, chosen: &[usize]) -> f64 {
-        let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
-        if !self.rules.has_dry_friction && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
+        let is = |relation: Relation| chosen.iter().any(|c| self.has(*c, relation));
+        if !self.rules.has_dry_friction && is(Relation::OfDryFriction) && !is(Relation::DryFriction) {
             return f64::INFINITY;
         }
         let Some((values, rss)) = self.system.least_sound(chosen) else { return f64::INFINITY };
@@ -168,16 +128,22 @@ impl Selection<'_> {
         generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
     }
 
-    /// True if two causes exclude each other.
-    fn excludes(&self, a: &str, b: &str) -> bool {
-        a == b || (self.rules.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
+    /// True if the cause of a candidate has a relation.
+    pub(crate) fn has(&self, candidate: usize, relation: Relation) -> bool {
+        self.relations[candidate].contains(&relation)
+    }
+
+    /// True if the causes of two candidates exclude each other.
+    fn excludes(&self, a: usize, b: usize) -> bool {
+        self.candidates[a].id == self.candidates[b].id
+            || self.rules.one_loss && [a, b].iter().all(|c| self.has(*c, Relation::LosesMotion))
     }
 
     /// Candidates that may join the chosen ones: supported, and of another cause.
     pub(crate) fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
         (0..self.candidates.len())
             .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
-            .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
+            .filter(|c| chosen.iter().all(|o| !self.excludes(*o, *c)))
     }
 
     /// Price of each candidate that may join the chosen ones.
@@ -199,7 +165,7 @@ impl Selection<'_> {
     /// Evidence of a candidate beside the chosen ones, penalised for its parameters. `None` if it cannot join them, or
     /// only with an impossible sign.
     pub fn score_beside(&self, chosen: &[usize], c: usize) -> Option<f64> {
-        let fits = chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[c].id));
+        let fits = chosen.iter().all(|o| !self.excludes(*o, c));
         let with = self.price(&[chosen, &[c]].concat());
         (fits && with.is_finite()).then_some(self.plain_price(chosen)? - with)
     }
@@ -322,12 +288,10 @@ impl Selection<'_> {
     fn remains(&self, chosen: &[usize], k: usize) -> bool {
         // Without the sign constraints of the others.
         let loss = |k: usize| Some(self.plain_price(&without(chosen, k))? - self.plain_price(chosen)?);
-        let over = |c: usize, all: &[(&str, &'static [Over])]| -> &'static [Over] {
-            all.iter().find(|(id, _)| *id == self.candidates[c].id).map_or(&[], |(_, over)| over)
-        };
-        let own = [over(chosen[k], &CURVES), over(chosen[k], &LINES)].concat();
+        let form = |k: usize| form(self.candidates[chosen[k]].id);
+        let own = form(k).over();
         (0..chosen.len())
-            .filter(|o| *o != k && over(chosen[*o], &CURVES).iter().any(|over| own.contains(over)))
+            .filter(|o| *o != k && form(*o).of_curve().iter().any(|over| own.contains(over)))
             .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < self.rules.remainder * strong))
     }
 

@@ -2,12 +2,13 @@
 //! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use crate::constraint::detect_in;
-use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Beside, Found, answer};
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::NO_CLOCK;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;

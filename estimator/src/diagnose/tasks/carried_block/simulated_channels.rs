@@ -1,8 +1,8 @@
 use super::net_force::Carry;
-use crate::diagnose::answer::atlas::Variable;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use std::collections::BTreeSet;
 
 impl Simulated for Carry {

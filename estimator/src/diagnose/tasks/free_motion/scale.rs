@@ -2,13 +2,14 @@
 
 use crate::diagnose::contract::{Diagnosis, NotExcited};
 use crate::diagnose::data::regression_data::{Freely, Track};
-use crate::diagnose::hypotheses::free_motion;
+use crate::diagnose::hypotheses::all::with_both_ways;
+use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::tasks::free_motion::Scale;
 use crate::identify::mechanism::Stated;
 use haptics::law::Coordinate;
 
 /// Causes that a motion without a force sensor never shows.
-const HIDDEN: [&str; 2] = ["force-gain", "force-bias"];
+const HIDDEN: [&str; 2] = [force_gain::ID, force_bias::ID];
 
 /// Adapts texts that were written for a driven motion.
 pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: bool) {
@@ -34,7 +35,7 @@ pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: 
         why: "the recording has no force column, so there is no force sensor whose gain or bias could show".to_owned(),
     }));
     if !both_ways {
-        found.not_excited.extend(free_motion::WITH_BOTH_WAYS.map(|id| NotExcited {
+        found.not_excited.extend(with_both_ways().map(|id| NotExcited {
             id: id.to_owned(),
             why: "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
                   go the other way, too"
@@ -113,7 +114,7 @@ fn known(by: Stated) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::hypotheses::free_motion::can_show;
+    use crate::diagnose::hypotheses::all::can_show;
     use haptics::law::entries;
 
     #[test]

@@ -2,10 +2,11 @@
 
 use super::held_needle::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
-use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;

@@ -1,8 +1,8 @@
 use super::hole::Shaft;
 use crate::diagnose::contract::parameter;
 use crate::diagnose::extension::hypothetical_worlds::{Act, Hypothesis, Simulated, of_channels};
-use crate::diagnose::extension::sensor_fault::SensorFault;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::selection::comparison::Compared;
 use haptics::Vec2;
 

@@ -3,10 +3,11 @@
 
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
-use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::Layout;

@@ -1,10 +1,11 @@
 //! Causes that slow a sliding body: dry friction, or a resistance that depends on the speed.
 
-use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
 use crate::diagnose::free_run::channel::{Forward, columns};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;

@@ -9,11 +9,12 @@ pub(crate) mod load_confounding;
 pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
-use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Beside, Found, answer};
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;

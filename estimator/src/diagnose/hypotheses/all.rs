@@ -1,0 +1,183 @@
+//! The list of all hypotheses, and the library of candidates that they make together.
+
+use super::axis_sign::AxisSign;
+use super::candidate::Candidate;
+use super::channel_fault::ChannelFault;
+use super::fingertip_slip::FingertipSlip;
+use super::force_cross_axis::ForceCrossAxis;
+use super::force_gain::ForceGain;
+use super::force_saturation::ForceSaturation;
+use super::free_motion::goes_both_ways;
+use super::grid::{Grid, Near, Ranges};
+use super::hypothesis::Hypothesis;
+use super::joint_offset::JointOffset;
+use super::length_scale::LengthScale;
+use super::library::Dictionary;
+use super::pad_compliance::PadCompliance;
+use super::relations::{Form, Relation};
+use super::sensor_fault::SensorFault;
+use super::stiffness_hardening::StiffnessHardening;
+use super::time_delay::TimeDelay;
+use super::variable::Variable;
+use super::velocity_loss::VelocityLoss;
+use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::data::regression_data::Track;
+use haptics::law::{
+    AddedConstraint, Backlash, CoulombFriction, EccentricMass, ForceBias, ForceDrift, FrictionAsymmetry,
+    FrictionChange, GravityTilt, Hysteresis, Inertia, LoadFriction, LocalResistance, MassChange, PositionRipple,
+    QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction,
+};
+
+/// All hypotheses. Their order is that of their candidates: of two equally good ones the first is chosen.
+pub(crate) static ALL: [&dyn Hypothesis; 31] = [
+    &CoulombFriction,
+    &ViscousFriction,
+    &LoadFriction,
+    &FrictionAsymmetry,
+    &Stribeck,
+    &QuadraticDrag,
+    &Inertia,
+    &TimeDelay,
+    &EccentricMass,
+    &GravityTilt,
+    &PositionRipple,
+    &ReturnSpring,
+    &LocalResistance,
+    &AddedConstraint,
+    &Hysteresis,
+    &Backlash,
+    &MassChange,
+    &FrictionChange,
+    &ForceGain,
+    &ForceBias,
+    &ForceDrift,
+    &ForceCrossAxis,
+    &ForceSaturation,
+    &ChannelFault,
+    &AxisSign,
+    &JointOffset,
+    &LengthScale,
+    &PadCompliance,
+    &StiffnessHardening,
+    &FingertipSlip,
+    &VelocityLoss,
+];
+
+/// The hypothesis of a cause; none for a regressor of the base model or a generic term.
+pub(crate) fn hypothesis(id: &str) -> Option<&'static dyn Hypothesis> {
+    ALL.iter().copied().find(|hypothesis| hypothesis.id() == id)
+}
+
+/// Exactness and variables of a cause's law.
+pub(crate) fn form(id: &str) -> Form {
+    hypothesis(id).map_or(Form::Exact(&[]), Hypothesis::form)
+}
+
+/// Relations of a cause.
+pub(crate) fn relations(id: &str) -> &'static [Relation] {
+    hypothesis(id).map_or(&[], Hypothesis::relations)
+}
+
+/// Variable that shows a cause best along one coordinate.
+pub(crate) fn best_seen_against(id: &str, planar: bool) -> Variable {
+    hypothesis(id).map_or(Variable::Place, |hypothesis| hypothesis.best_seen_against(planar))
+}
+
+/// Widens the standard errors of a cause's parameters by that which the rows cannot resolve.
+pub(crate) fn widen(id: &str, parameters: &mut [CauseParameter], track: &Track) {
+    if let Some(hypothesis) = hypothesis(id) {
+        hypothesis.widen(parameters, track);
+    }
+}
+
+/// Adds a candidate's estimate to a fault of the force sensors; false if it is no such fault.
+pub(crate) fn add_to_fault(fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {
+    hypothesis(candidate.id).is_some_and(|hypothesis| hypothesis.add_to_fault(fault, candidate, values))
+}
+
+/// True if the first value of a candidate is a share of the model's dry friction.
+pub(crate) fn is_share(candidate: &Candidate) -> bool {
+    relations(candidate.id).contains(&Relation::ShareOfDryFriction)
+        && candidate.linear.first().is_some_and(|(_, unit)| *unit == "1")
+}
+
+/// Pairs of causes with the same regressor for every motion, and the reason in words.
+pub(crate) fn twins() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    ALL.iter().flat_map(|hypothesis| {
+        hypothesis.relations().iter().filter_map(|relation| match relation {
+            Relation::SameAs(other, why) => Some((hypothesis.id(), *other, *why)),
+            _ => None,
+        })
+    })
+}
+
+/// Causes that a one-way motion that slows down cannot show.
+pub(crate) fn with_both_ways() -> impl Iterator<Item = &'static str> {
+    let needs = |hypothesis: &&&dyn Hypothesis| hypothesis.relations().contains(&Relation::NeedsBothWays);
+    ALL.iter().filter(needs).map(|hypothesis| hypothesis.id())
+}
+
+/// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
+pub(crate) fn can_show(id: &str, both_ways: bool) -> bool {
+    let relations = relations(id);
+    !relations.contains(&Relation::NeedsForce) && (both_ways || !relations.contains(&Relation::NeedsBothWays))
+}
+
+impl Grid {
+    /// Grid of the first round.
+    pub fn coarse(track: &Track) -> Self {
+        let ranges = Ranges::of(track);
+        let mut grid = Self::empty(&ranges);
+        for hypothesis in ALL {
+            grid.add(hypothesis.id(), hypothesis.coarse(&ranges));
+        }
+        grid
+    }
+
+    /// Values between those of the coarse grid, around the ones found; `step`: distance from them, 1 at first.
+    pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
+        let found = found.iter().map(|candidate| (*candidate, relations(candidate.id))).collect();
+        let near = Near { ranges: Ranges::of(track), found, step };
+        let mut grid = Self::empty(&near.ranges);
+        for hypothesis in ALL {
+            grid.add(hypothesis.id(), hypothesis.around(&near));
+        }
+        grid
+    }
+}
+
+impl Dictionary<'_> {
+    /// All candidates.
+    pub fn candidates(&self) -> Vec<Candidate> {
+        let mut all: Vec<Candidate> = ALL.iter().flat_map(|hypothesis| hypothesis.candidates(self)).collect();
+        all.retain(|c| !self.without.contains(&c.id));
+        if self.track.freely.is_some() {
+            let both_ways = goes_both_ways(self.track);
+            all.retain(|c| can_show(c.id, both_ways));
+        }
+        all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
+        all
+    }
+
+    /// Only the candidates that have searched values.
+    pub fn searched(&self) -> Vec<Candidate> {
+        let mut all = self.candidates();
+        all.retain(|c| !c.searched.is_empty());
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::law::causes;
+
+    #[test]
+    fn every_cause_of_the_catalogue_has_one_hypothesis() {
+        let mut of_catalogue: Vec<&str> = causes().map(|entry| entry.id).collect();
+        let mut own: Vec<&str> = ALL.iter().map(|hypothesis| hypothesis.id()).collect();
+        of_catalogue.sort_unstable();
+        own.sort_unstable();
+        assert_eq!(own, of_catalogue);
+    }
+}

@@ -1,0 +1,92 @@
+//! A change of friction as a hypothesis, in proportion to the model's own: slow, sudden, or with a recorded channel.
+
+use super::candidate::Candidate;
+use super::grid::{Near, Point, Ranges};
+use super::hypothesis::{Found, Hypothesis};
+use super::library::Dictionary;
+use super::relations::{Form, Over, Relation};
+use super::variable::Variable;
+use crate::diagnose::data::regression_data::Place;
+use haptics::law::{Effect, FrictionChange, Kind, LoadFrictionChange};
+
+pub(crate) const ID: &str = "friction-change";
+
+/// Time constants of a slow change, in shares of the recording.
+const WARMING_SHARES: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
+/// The same around one that was found, relative to it.
+const WARMING_AROUND: [f64; 7] = [0.58, 0.69, 0.83, 1.0, 1.2, 1.44, 1.7];
+/// Points: time constant.
+const WARMING: &str = "time constant";
+/// Points: start time of a sudden change.
+const STARTS: &str = "start";
+
+impl Hypothesis for FrictionChange {
+    fn id(&self) -> &'static str {
+        ID
+    }
+
+    fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
+        let warming = WARMING_SHARES.map(|share| Point::one(WARMING, share * ranges.track.span_s));
+        warming.into_iter().chain(ranges.starts().map(|start| Point::one(STARTS, start))).collect()
+    }
+
+    fn around(&self, near: &Near<'_>) -> Vec<Point> {
+        let taus = near.of(ID).filter_map(|found| found.value("tau"));
+        let warming = taus.flat_map(|tau| near.times(tau, WARMING_AROUND)).map(|tau| Point::one(WARMING, tau));
+        warming.chain(near.starts().into_iter().map(|start| Point::one(STARTS, start))).collect()
+    }
+
+    fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
+        let of_dry = |values: &[f64]| -> Vec<f64> {
+            data.law(&FrictionChange, values).iter().zip(data.dry).map(|(w, d)| w * d).collect()
+        };
+        let warm = |[tau, ..]: [f64; 3]| change(of_dry(&[0.0, 1.0, tau, 0.0, 0.0])).at("tau", tau, "s");
+        let step = |[start, ..]: [f64; 3]| change(of_dry(&[0.0, 1.0, 0.0, start, 0.0])).at("t0", start, "s");
+        let in_time = data.points(ID, WARMING).map(warm).chain(data.points(ID, STARTS).map(step));
+        in_time.chain(with_channels(data)).collect()
+    }
+
+    fn form(&self) -> Form {
+        Form::Curve(&[Over::Motion, Over::Time])
+    }
+
+    fn relations(&self) -> &'static [Relation] {
+        &[Relation::OfDryFriction, Relation::ShareOfDryFriction, Relation::NeedsBothWays]
+    }
+
+    fn best_seen_against(&self, _planar: bool) -> Variable {
+        Variable::Time
+    }
+
+    fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
+        // No law of a world depends on other recorded channels.
+        if found.candidate.channel.is_some() {
+            return Vec::new();
+        }
+        let starts = found.candidate.searched.first().is_some_and(|s| s.name == "t0");
+        let [tau, start] = if starts { [0.0, found.searched(0)] } else { [found.searched(0), 0.0] };
+        let of = |friction: f64| [0.0, found.value(0) * friction, tau, start];
+        let everywhere = Effect::new(&FrictionChange, &of(found.dry.level_n));
+        found.dry.parts(everywhere, Effect::new(&LoadFrictionChange, &of(found.dry.mu)))
+    }
+}
+
+fn change(column: Vec<f64>) -> Candidate {
+    Candidate::one(ID, Kind::Plant, "relative change", "1", column)
+}
+
+/// Friction that changes with another recorded channel: the dry part alone, or all of the resistance.
+fn with_channels(data: &Dictionary<'_>) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    for (name, unit, values) in data.track.extras() {
+        let goes = |level: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let rows = data.track.rows.iter().enumerate();
+            rows.map(|(i, r)| if r.place == Place::Along { level(i) * values[i] } else { 0.0 }).collect()
+        };
+        let channel = (name, unit);
+        let dry = goes(&|i| data.dry[i] * data.track.rows[i].motion.direction);
+        all.push(change(dry).with(channel.clone()));
+        all.push(change(goes(&|i| data.resisting[i])).with(channel));
+    }
+    all
+}

@@ -1,0 +1,68 @@
+//! A local resistance in both directions, or a push at a place, as a hypothesis: place and width are searched.
+
+use super::candidate::Candidate;
+use super::grid::{Near, Point, Ranges};
+use super::hypothesis::{Found, Hypothesis};
+use super::library::Dictionary;
+use super::relations::{Form, Over};
+use haptics::law::{Effect, Kind, Law, LocalPush, LocalResistance};
+use std::f64::consts::TAU;
+
+pub(crate) const ID: &str = "local-resistance";
+
+/// Number of tried places, and the widths as shares of the range.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
+/// Places around one that was found, in steps of the coarse grid, and widths relative to the one found.
+const PLACES_AROUND: [f64; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
+const WIDTHS_AROUND: [f64; 5] = [0.65, 0.8, 1.0, 1.25, 1.5];
+/// Points: place and width.
+const HUMP: &str = "place and width";
+
+impl Hypothesis for LocalResistance {
+    fn id(&self) -> &'static str {
+        ID
+    }
+
+    fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
+        let (from, span) = (if ranges.turn > 0.0 { 0.0 } else { ranges.low }, ranges.span());
+        let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
+        places.flat_map(|place| WIDTHS.map(|width| Point::two(HUMP, place, width * span))).collect()
+    }
+
+    fn around(&self, near: &Near<'_>) -> Vec<Point> {
+        let found = near.of(ID).filter_map(|found| found.value("place").zip(found.value("width")));
+        let refined = |(place, width): (f64, f64)| {
+            PLACES_AROUND.into_iter().flat_map(move |aside| {
+                let place = place + near.step * aside * near.ranges.span() / PLACES as f64;
+                near.times(width, WIDTHS_AROUND).map(|width| Point::two(HUMP, place, width))
+            })
+        };
+        found.flat_map(refined).collect()
+    }
+
+    fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
+        let units = data.units();
+        let both = |[place, width, _]: [f64; 3]| {
+            let values = [1.0, place, width, data.grid.turn];
+            let named = |law: &'static dyn Law| {
+                let linear = vec![(law.parameters()[0].name, units.force)];
+                let found = Candidate::of(ID, Kind::Plant, vec![data.law_of_place(law, &values)], linear);
+                found.at("place", place, units.length).at("width", width, units.length)
+            };
+            [named(&LocalResistance).positive(), named(&LocalPush)]
+        };
+        data.points(ID, HUMP).flat_map(both).collect()
+    }
+
+    fn form(&self) -> Form {
+        Form::Curve(&[Over::Place])
+    }
+
+    fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
+        let turn = if found.radius_m() > 0.0 { TAU * found.radius_m() } else { 0.0 };
+        let values = [found.value(0), found.searched(0), found.searched(1), turn];
+        let law: &'static dyn Law = if found.is_named("P") { &LocalPush } else { &LocalResistance };
+        vec![Effect::new(law, &values)]
+    }
+}

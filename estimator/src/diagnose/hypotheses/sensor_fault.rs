@@ -1,0 +1,57 @@
+//! Fault of the force sensors, which is no part of a world.
+
+use super::candidate::Candidate;
+use haptics::Vec2;
+
+/// Fault of the force sensors of both fingers, which is no part of the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorFault {
+    /// Constant offset, one per finger, N.
+    pub offset_n: [Vec2; 2],
+    /// Drift: initial rate, one per finger, N/s.
+    pub drift_n_s: [Vec2; 2],
+    /// Time constant of that drift, s; 0 if it never settles.
+    pub settles_s: f64,
+    /// True if the drift begins when an object is held, not at the start.
+    pub drifts_once_held: bool,
+    /// Constant offset of the force along the coordinate of a mechanism, N or N m.
+    pub offset_along: f64,
+    /// Drift along the coordinate: initial rate, N/s or N m/s.
+    pub drift_along_per_s: f64,
+    /// Cross-talk: share of the finger's y force that is read in x, and of its x force that is read in y, one per
+    /// finger.
+    pub cross: [Vec2; 2],
+    /// Relative gain error of the reading.
+    pub gain_error: f64,
+    /// Delay of the force after the motion, s.
+    pub delay_s: f64,
+}
+
+/// Fingers whose sensor a parameter is of, and the parameter's name without their number.
+pub(crate) fn fingers(name: &str) -> (std::ops::Range<usize>, &str) {
+    match (name.strip_suffix('1'), name.strip_suffix('2')) {
+        (Some(name), _) if name != "g - " => (0..1, name),
+        (_, Some(name)) => (1..2, name),
+        _ => (0..2, name),
+    }
+}
+
+/// Adds a vector to the faults of the fingers, if the parameter is one of its two components. A fault of the net force is
+/// halved between the fingers.
+pub(crate) fn add_halved(faults: &mut [Vec2; 2], [x, y]: [&str; 2], name: &str, value: f64) -> bool {
+    let (fingers, name) = fingers(name);
+    let half = value / fingers.len() as f64;
+    for fault in &mut faults[fingers] {
+        match name {
+            name if name == x => fault.x += half,
+            name if name == y => fault.y += half,
+            _ => return false,
+        }
+    }
+    true
+}
+
+/// Adds every estimate of a candidate; false if one of them is no fault of a force sensor. `add`: adds one, by its name.
+pub(crate) fn add_each(candidate: &Candidate, values: &[f64], mut add: impl FnMut(&str, f64) -> bool) -> bool {
+    candidate.linear.iter().zip(values).all(|((name, _), value)| add(name, *value))
+}
