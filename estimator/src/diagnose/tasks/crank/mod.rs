@@ -16,6 +16,7 @@ use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
@@ -173,7 +174,7 @@ fn turned(
     let mut offset = None;
     for chosen in &study.chosen {
         let candidate = &study.candidates[chosen.candidate];
-        if candidate.id == "joint-offset" {
+        if candidate.id == joint_offset::ID {
             offset = study.solved.as_ref().map(|s| s.values[at]);
         }
         at += candidate.columns.len();
@@ -196,13 +197,13 @@ fn turned(
 
 /// True if the forces seem rotated against the motion.
 fn is_turned(study: &comparison::Study) -> bool {
-    study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
+    study.chosen.iter().any(|c| study.candidates[c.candidate].id == force_cross_axis::ID)
 }
 
 /// Names the joint with the angle error, if the data tell.
 fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
     // With two fingers, the cause names the finger. The path shows no more.
-    let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
+    let of_the_finger = |c: &&mut Cause| c.id == joint_offset::ID && c.parameters.iter().any(|p| p.name == "delta");
     let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
     cause.evidence += match link {
         Some(Link::First) => "; it is the angle of the first link",
