@@ -2,6 +2,7 @@
 
 use crate::diagnose::contract::{Alternative, Cause, Diagnosis, NotExcited};
 use crate::diagnose::data::regression_data::Track;
+use crate::diagnose::hypotheses::{backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::entries;
 
@@ -45,8 +46,8 @@ fn without_reversals(track: &Track, causes: &[Cause]) -> Vec<NotExcited> {
     }
     let said = |id: &str| causes.iter().any(|c| c.id == id);
     // Along one coordinate, friction by direction then equals dry friction.
-    let by_direction = (!track.planar).then_some("friction-asymmetry");
-    let hidden = ["backlash", "hysteresis"].into_iter().chain(by_direction).filter(|id| !said(id));
+    let by_direction = (!track.planar).then_some(friction_asymmetry::ID);
+    let hidden = [backlash::ID, hysteresis::ID].into_iter().chain(by_direction).filter(|id| !said(id));
     hidden
         .map(|id| NotExcited {
             id: id.to_owned(),
@@ -58,9 +59,9 @@ fn without_reversals(track: &Track, causes: &[Cause]) -> Vec<NotExcited> {
 /// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
 pub fn without_known(found: &mut Diagnosis, weight: bool, length: bool) {
     let hidden = [
-        ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),
+        (force_gain::ID, weight, "no weight is known; state one in the sidecar, or hang one on"),
         (
-            "length-scale",
+            length_scale::ID,
             length,
             "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
         ),

@@ -6,6 +6,7 @@ use super::predicted_rows::imagine;
 use super::separation::{Imagined, separation};
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::{Model, Track};
+use crate::diagnose::hypotheses::{eccentric_mass, gravity_tilt};
 use crate::diagnose::selection::comparison::Study;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -35,7 +36,7 @@ pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]
     let pairs: Vec<(&str, &str)> = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str())).collect();
     pairs.first()?;
     let values = &solved.values[..study.base.len()];
-    if let Some(pair) = pairs.iter().find(|p| matches!(p, ("eccentric-mass", "gravity-tilt"))) {
+    if let Some(pair) = pairs.iter().find(|p| matches!(p, (eccentric_mass::ID, gravity_tilt::ID))) {
         return hang(track, model, study, *pair);
     }
     let mut best: Option<(f64, NextExperiment)> = None;

@@ -1,11 +1,12 @@
 use crate::diagnose::contract::{Alternative, NextExperiment};
+use crate::diagnose::hypotheses::{friction_asymmetry, gravity_tilt};
 
 /// Probability that turning a slope round settles the question: neither answer may be true.
 pub(crate) const SETTLES: f64 = 0.85;
 
 /// Next experiment in words: it cannot be driven.
 pub fn next(open: &[Alternative]) -> Option<NextExperiment> {
-    let pair = ["gravity-tilt", "friction-asymmetry"];
+    let pair = [gravity_tilt::ID, friction_asymmetry::ID];
     let asks = |a: &&Alternative| pair.contains(&a.id.as_str()) && pair.contains(&a.instead_of.as_str());
     open.iter().find(asks)?;
     Some(NextExperiment {

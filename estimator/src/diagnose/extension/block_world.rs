@@ -2,12 +2,16 @@
 
 use super::hypothetical_worlds::Act;
 use crate::diagnose::contract::{CauseParameter, Diagnosis};
+use crate::diagnose::hypotheses::{
+    added_constraint, friction_change, gravity_tilt, inertia, mass_change, pad_compliance, stiffness_hardening,
+    viscous_friction,
+};
 use haptics::Vec2;
 use haptics::world::{Cable, Content, World};
 
 /// Causes of the net-force channel: a hypothesis sets all of them again.
 const OF_THE_NET_FORCE: [&str; 6] =
-    ["inertia", "mass-change", "gravity-tilt", "added-constraint", "viscous-friction", "friction-change"];
+    [inertia::ID, mass_change::ID, gravity_tilt::ID, added_constraint::ID, viscous_friction::ID, friction_change::ID];
 
 /// Adds the found causes to a world.
 pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
@@ -32,16 +36,16 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
     let value = |name: &str| parameters.iter().find(|p| p.name == name).map(|p| p.value);
     let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
     match id {
-        "pad-compliance" => {
+        pad_compliance::ID => {
             world.pad.stiffness_n_m = value("k").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
             let shear = value("k_shear").filter(|k| *k > 0.0);
             world.pad.shear_stiffness_n_m = shear.unwrap_or(world.pad.shear_stiffness_n_m);
         }
-        "stiffness-hardening" => {
+        stiffness_hardening::ID => {
             world.pad.stiffness_n_m = value("k1").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
             world.pad.cubic_n_m3 = value("k3").map_or(world.pad.cubic_n_m3, |k| k.max(0.0));
         }
-        "gravity-tilt" => {
+        gravity_tilt::ID => {
             // The hand resists the lateral force: gravity points along (sin, −cos) of the tilt.
             world.tilt_rad -= value("angle").unwrap_or(0.0);
         }
@@ -51,7 +55,7 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
                 block.mass_kg = weight / gravity;
             }
         }
-        "mass-change" => {
+        mass_change::ID => {
             let leak_kg_s = value("rate").map(|rate| -rate / world.gravity_m_s2.max(1e-9)).filter(|leak| *leak > 0.0);
             let leaks_from_s = value("t0").or(Some(0.0));
             let of_all = value("block").is_none();
@@ -60,7 +64,7 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
                 block.content = Some(Content { mass_kg: 0.5 * block.mass_kg, leak_kg_s, leaks_from_s });
             }
         }
-        "added-constraint" => {
+        added_constraint::ID => {
             if let (Some(k), Some(x), Some(y), Some(length_m), Some(block)) =
                 (value("k"), value("anchor x"), value("anchor y"), value("length"), world.blocks.get_mut(number))
             {

@@ -2,6 +2,10 @@
 
 use super::hypothetical_worlds::Act;
 use crate::diagnose::contract::{CauseParameter, Diagnosis};
+use crate::diagnose::hypotheses::{
+    added_constraint, coulomb_friction, friction_asymmetry, local_resistance, pad_compliance, return_spring,
+    viscous_friction,
+};
 use haptics::law::object::CurvePoint;
 use haptics::law::{Effect, LocalResistance, Motion};
 use haptics::world::{Switch, World};
@@ -29,33 +33,33 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
     let Some(switch) = &mut world.switch else { return };
     let value = |name: &str| parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
     match id {
-        "pad-compliance" => {
+        pad_compliance::ID => {
             let softer = 1.0 / world.pad.stiffness_n_m.max(1e-9) + value("give");
             if softer > 0.0 {
                 world.pad.stiffness_n_m = 1.0 / softer;
             }
         }
-        "viscous-friction" => switch.damping_n_s_m += value("c").max(0.0),
-        "added-constraint" => {
+        viscous_friction::ID => switch.damping_n_s_m += value("c").max(0.0),
+        added_constraint::ID => {
             nearer(switch, value("left stop is nearer by").max(0.0), value("right stop is nearer by").max(0.0));
         }
-        "local-resistance" => bind(switch, [value("F"), value("place"), value("width")]),
+        local_resistance::ID => bind(switch, [value("F"), value("place"), value("width")]),
         _ => shift(&mut switch.curve.points, id, &value),
     }
 }
 
 fn shift(points: &mut [CurvePoint], id: &str, value: &dyn Fn(&str) -> f64) {
     match id {
-        "coulomb-friction" => points.iter_mut().for_each(|p| {
+        coulomb_friction::ID => points.iter_mut().for_each(|p| {
             p.forward_n += value("Fc").max(0.0);
             p.backward_n -= value("Fc").max(0.0);
         }),
-        "friction-asymmetry" => points.iter_mut().for_each(|p| {
+        friction_asymmetry::ID => points.iter_mut().for_each(|p| {
             // The curve stays above the other branch: a cycle generates no energy.
             p.forward_n = (p.forward_n + value("dFc to the right")).max(p.backward_n);
             p.backward_n = (p.backward_n - value("dFc to the left")).min(p.forward_n);
         }),
-        "return-spring" => points.iter_mut().for_each(|p| {
+        return_spring::ID => points.iter_mut().for_each(|p| {
             let more = value("k") * p.at_m + value("f0");
             p.forward_n += more;
             p.backward_n += more;

@@ -20,8 +20,8 @@ const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
 /// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
 const REACHES: [f64; 3] = [2.5, REACH, 20.0];
-/// Directions around one that was found, in steps of the coarse grid, and lengths in arms: at the distance that was found,
-/// and at another one.
+/// Directions around one that was found, in steps of the coarse grid, and lengths in arms: at the distance that was
+/// found, and at another one.
 const TURNS_AROUND: [f64; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
 const RESTS_AROUND: [f64; 5] = [-0.3, -0.15, 0.0, 0.15, 0.3];
 const RESTS_AT_OTHER_REACH: [f64; 3] = [-0.2, 0.0, 0.2];

@@ -17,8 +17,8 @@ impl DryFriction {
         Self { level_n: at(0.0).max(0.0), mu: (at(1.0) - at(0.0)).max(0.0) }
     }
 
-    /// The laws of a cause that is a share of it, of which each needs its part: of the constant part, and of the part in
-    /// proportion to the load.
+    /// The laws of a cause that is a share of it, of which each needs its part: of the constant part, and of the part
+    /// in proportion to the load.
     pub(crate) fn parts(&self, of_level: Effect, of_load: Effect) -> Vec<Effect> {
         let parts = [(of_level, self.level_n), (of_load, self.mu)];
         parts.into_iter().filter(|(_, size)| *size > 0.0).map(|(law, _)| law).collect()

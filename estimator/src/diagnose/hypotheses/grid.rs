@@ -6,8 +6,8 @@ use crate::diagnose::data::interpolation::FINE_HZ;
 use crate::diagnose::data::regression_data::{Place, Track};
 use std::f64::consts::TAU;
 
-/// Shortest distance that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the motion
-/// is slower.)
+/// Shortest distance that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the
+/// motion is slower.)
 const STEPS: f64 = 0.06;
 /// The same with inertia in the model: the filters of force and motion blur every reversal by as much.
 const STEPS_OF_MASS: f64 = 0.25;

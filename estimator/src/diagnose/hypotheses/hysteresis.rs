@@ -19,7 +19,8 @@ const LONG_BENT: f64 = 6.0;
 const STRAIGHT_SHAPE: f64 = 0.5;
 /// Points: presliding distance.
 const BENT: &str = "presliding distance";
-/// Points: the same of friction that springs back along a straight line (Bouc and Wen). Tried if a presliding was found.
+/// Points: the same of friction that springs back along a straight line (Bouc and Wen). Tried if a presliding was
+/// found.
 const STRAIGHT: &str = "presliding distance of a straight spring";
 
 impl Hypothesis for Hysteresis {

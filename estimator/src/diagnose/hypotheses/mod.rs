@@ -1,5 +1,5 @@
-//! Hypotheses: everything that a diagnosis knows of a cause, one file a law or sensor fault. `all` lists them; `hypothesis` is
-//! their trait; `library`, `grid` and `candidate` are that from which they make regressors.
+//! Hypotheses: everything that a diagnosis knows of a cause, one file a law or sensor fault. `all` lists them;
+//! `hypothesis` is their trait; `library`, `grid` and `candidate` are that from which they make regressors.
 
 pub(crate) mod added_constraint;
 pub(crate) mod all;

@@ -36,8 +36,8 @@ pub(crate) fn fingers(name: &str) -> (std::ops::Range<usize>, &str) {
     }
 }
 
-/// Adds a vector to the faults of the fingers, if the parameter is one of its two components. A fault of the net force is
-/// halved between the fingers.
+/// Adds a vector to the faults of the fingers, if the parameter is one of its two components. A fault of the net force
+/// is halved between the fingers.
 pub(crate) fn add_halved(faults: &mut [Vec2; 2], [x, y]: [&str; 2], name: &str, value: f64) -> bool {
     let (fingers, name) = fingers(name);
     let half = value / fingers.len() as f64;
@@ -51,7 +51,8 @@ pub(crate) fn add_halved(faults: &mut [Vec2; 2], [x, y]: [&str; 2], name: &str, 
     true
 }
 
-/// Adds every estimate of a candidate; false if one of them is no fault of a force sensor. `add`: adds one, by its name.
+/// Adds every estimate of a candidate; false if one of them is no fault of a force sensor. `add`: adds one, by its
+/// name.
 pub(crate) fn add_each(candidate: &Candidate, values: &[f64], mut add: impl FnMut(&str, f64) -> bool) -> bool {
     candidate.linear.iter().zip(values).all(|((name, _), value)| add(name, *value))
 }

@@ -2,6 +2,7 @@
 //! mirrored axes.
 
 use crate::diagnose::contract::{Cause, CauseParameter, Gain};
+use crate::diagnose::hypotheses::{axis_sign, channel_fault, force_saturation, length_scale};
 use crate::log;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -29,8 +30,8 @@ pub fn faults(recording: &Recording) -> Faults {
     let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
     for warning in log::check(recording) {
         let id = match warning.kind.as_str() {
-            "saturation" => "force-saturation",
-            kind if CHANNEL.contains(&kind) && is_sensed(&warning) => "channel-fault",
+            "saturation" => force_saturation::ID,
+            kind if CHANNEL.contains(&kind) && is_sensed(&warning) => channel_fault::ID,
             _ => continue,
         };
         if !WHOLE.contains(&warning.kind.as_str()) {
@@ -91,7 +92,7 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
     };
     let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
     let parameters = match (id, first, channel) {
-        ("force-saturation", Some(span), Some(channel)) => {
+        (force_saturation::ID, Some(span), Some(channel)) => {
             vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
         }
         (_, Some(span), _) => {
@@ -116,7 +117,7 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
 pub fn mirrored(which: &str, better: f64) -> Cause {
     let how = if which.contains("with") { "swapped" } else { "mirrored" };
     Cause {
-        id: "axis-sign".to_owned(),
+        id: axis_sign::ID.to_owned(),
         kind: Kind::Instrument,
         parameters: vec![CauseParameter {
             name: format!("which: {which}"),
@@ -167,5 +168,10 @@ pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
     let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
     let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);
     let parameter = CauseParameter { name: "epsilon".to_owned(), value: epsilon, std_error, unit: "1".to_owned() };
-    off.then(|| Cause { id: "length-scale".to_owned(), parameters: vec![parameter], evidence, ..mirrored(known, 1.0) })
+    off.then(|| Cause {
+        id: length_scale::ID.to_owned(),
+        parameters: vec![parameter],
+        evidence,
+        ..mirrored(known, 1.0)
+    })
 }

@@ -1,6 +1,7 @@
 //! Sub-sample offset between force and motion, which is no delay.
 
 use crate::diagnose::data::regression_data::Track;
+use crate::diagnose::hypotheses::time_delay;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::estimates::parameters;
 
@@ -14,7 +15,7 @@ const CLOCKS_DIFFER_S: f64 = 3e-4;
 /// Offset between force and motion if sampling alone can explain it, s. A commanded force is recorded when it is given
 /// and acts in the sample after. For a late force, only the difference of the clocks is allowed.
 pub fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
-    if study.candidates[study.chosen[k].candidate].id != "time-delay" {
+    if study.candidates[study.chosen[k].candidate].id != time_delay::ID {
         return None;
     }
     let delay = parameters(study, k);
@@ -44,7 +45,7 @@ pub fn apart(skew_s: f64) -> String {
 
 /// Delay estimated beside the causes found, and its standard error, s.
 pub fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
-    let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
+    let is_delay = |c: &usize| study.candidates[*c].id == time_delay::ID;
     let delay = (0..study.candidates.len()).find(is_delay)?;
     let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
     let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;

@@ -3,6 +3,7 @@
 use crate::diagnose::contract::{Baseline, Cause, CauseParameter, Gain, Verdict};
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
+use crate::diagnose::hypotheses::time_delay::ID;
 use crate::diagnose::recording::time_delay::put_back;
 use crate::estimate::EstimateError;
 use haptics::law::Kind;
@@ -12,8 +13,6 @@ use haptics::recording::Recording;
 pub(crate) const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
 pub(crate) const ROUNDS: usize = 5;
-/// The cause.
-pub(crate) const ID: &str = "time-delay";
 
 /// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
 pub fn undo(

@@ -10,6 +10,9 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::hypotheses::{
+    backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
+};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
@@ -122,13 +125,13 @@ fn correct_load(track: &mut Track, study: &Study) -> bool {
             let tau = candidate.searched.first().map_or(0.0, |s| s.value);
             let size = |law: &'static dyn Law| Effect::new(law, &[1.0, tau]).force(&row.motion);
             force -= match (candidate.id, candidate.linear[0].0) {
-                ("force-bias", _) => Vec2::new(values[0], values[1]),
-                ("force-drift", _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
-                ("force-cross-axis", "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
-                ("force-cross-axis", "kappa_turned") => Vec2::new(-row.force.y, row.force.x) * values[0],
-                ("force-cross-axis", _) => Vec2::new(0.0, values[0] * row.force.x),
-                ("force-gain", _) => row.force * (values[0] / (1.0 + values[0]).max(0.1)),
-                ("time-delay", _) => row.force_rate * -values[0],
+                (force_bias::ID, _) => Vec2::new(values[0], values[1]),
+                (force_drift::ID, _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
+                (force_cross_axis::ID, "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
+                (force_cross_axis::ID, "kappa_turned") => Vec2::new(-row.force.y, row.force.x) * values[0],
+                (force_cross_axis::ID, _) => Vec2::new(0.0, values[0] * row.force.x),
+                (force_gain::ID, _) => row.force * (values[0] / (1.0 + values[0]).max(0.1)),
+                (time_delay::ID, _) => row.force_rate * -values[0],
                 _ => Vec2::zeros(),
             };
         }
@@ -176,7 +179,7 @@ fn compare(
     };
     let mut candidates = dictionary(coarse).candidates();
     candidates.extend(dictionary(fine).searched());
-    let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
+    let losses = candidates.iter().filter(|c| [hysteresis::ID, backlash::ID].contains(&c.id));
     let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
     base.extend(stick_phases::creep(track, &y, &losses));
     base.extend(made.is_sharp.then(|| blurred(track, &dry)));

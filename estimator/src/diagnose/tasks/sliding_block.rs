@@ -17,6 +17,9 @@ use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_ONCE;
+use crate::diagnose::hypotheses::{
+    force_bias, force_gain, friction_asymmetry, gravity_tilt, length_scale, load_friction,
+};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Study;
@@ -82,7 +85,7 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Findings, Est
     scales(&mut found, &study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
     if weight_n.is_none() {
         let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
-        let ids = ["load-friction", "force-gain", "length-scale"];
+        let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
         found.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
     }
     Ok(found)
@@ -242,7 +245,7 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
 }
 
 /// Causes with a constant force at every position: during motion they are equivalent.
-const CONSTANT: [&str; 2] = ["force-bias", "friction-asymmetry"];
+const CONSTANT: [&str; 2] = [force_bias::ID, friction_asymmetry::ID];
 
 /// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
 /// tilted table or to friction by direction. It is ambiguous if the fingers were never empty.
@@ -264,7 +267,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
         unit: unit.to_owned(),
     };
     let of_sensor = |cause: &mut Cause| {
-        "force-bias".clone_into(&mut cause.id);
+        force_bias::ID.clone_into(&mut cause.id);
         cause.kind = Kind::Instrument;
         cause.parameters = vec![number("b", b.value, b.std_error, "N")];
     };
@@ -275,7 +278,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     } else if all_free {
         // The table's part is the difference from the reading of empty fingers.
         let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
-        "gravity-tilt".clone_into(&mut cause.id);
+        gravity_tilt::ID.clone_into(&mut cause.id);
         cause.kind = Kind::Plant;
         cause.parameters = vec![number("force", tilt_n, error, "N")];
         if let Some(weight_n) = weight_n.filter(|w| *w > tilt_n.abs()) {
@@ -286,13 +289,13 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
             tilt_n.abs()
         );
         (
-            &["friction-asymmetry"],
+            &[friction_asymmetry::ID],
             "turn the table by half a turn, with the block on it, and slide it again: what a tilt pulls changes its sign",
         )
     } else {
         of_sensor(cause);
         (
-            &["gravity-tilt", "friction-asymmetry"],
+            &[gravity_tilt::ID, friction_asymmetry::ID],
             "let go for two seconds before and after the sliding: a bias of the sensor stays, a tilt does not",
         )
     };
@@ -319,9 +322,9 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
 /// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
 fn let_go(found: &mut Diagnosis, track: &Track) {
     const FREE_BEFORE_S: f64 = 2.0;
-    let size = found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
+    let size = found.causes.iter().find(|c| c.id == force_bias::ID).and_then(|c| c.parameters.first()).map(|b| b.value);
     let (Some(next), Some(size)) = (&mut found.next_experiment, size) else { return };
-    if !next.separates.iter().any(|s| s == "gravity-tilt") {
+    if !next.separates.iter().any(|s| s == gravity_tilt::ID) {
         return;
     }
     let at = |share: f64| track.quantile(share, |r| r.motion.position);
@@ -355,7 +358,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
     }
     let why = "a mass that comes out wrong is a wrong scale of the forces, or the opposite one of the lengths";
     found.causes.push(Cause {
-        id: "force-gain".to_owned(),
+        id: force_gain::ID.to_owned(),
         kind: Kind::Instrument,
         parameters: vec![CauseParameter {
             name: "g - 1".to_owned(),
@@ -372,8 +375,8 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
         ),
     });
     found.alternatives.push(Alternative {
-        id: "length-scale".to_owned(),
-        instead_of: "force-gain".to_owned(),
+        id: length_scale::ID.to_owned(),
+        instead_of: force_gain::ID.to_owned(),
         posterior: 0.5,
         why: why.to_owned(),
     });
@@ -381,7 +384,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
     found.next_experiment.get_or_insert_with(|| NextExperiment {
         motion: "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone"
             .to_owned(),
-        separates: vec!["force-gain".to_owned(), "length-scale".to_owned()],
+        separates: vec![force_gain::ID.to_owned(), length_scale::ID.to_owned()],
         expected_power: 0.95,
         experiment: None,
     });

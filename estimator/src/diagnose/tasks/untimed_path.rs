@@ -9,6 +9,10 @@ use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::NO_CLOCK;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{
+    coulomb_friction, force_bias, force_cross_axis, force_gain, inertia, local_resistance, return_spring, time_delay,
+    viscous_friction,
+};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
@@ -63,7 +67,7 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
 
 /// Causes that depend on speed or time.
 fn without_a_clock() -> impl Iterator<Item = NotExcited> {
-    ["inertia", "viscous-friction", "time-delay"]
+    [inertia::ID, viscous_friction::ID, time_delay::ID]
         .into_iter()
         .map(|id| NotExcited { id: id.to_owned(), why: "there is no clock; give a t_s column or rate_hz".to_owned() })
 }
@@ -96,7 +100,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {
         let why = "no force was recorded: a path alone shows its shape".to_owned();
-        beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
         return Ok(answer(&[], beside, &|_| None));
     }
     if drives_backwards(&rows) {
@@ -147,8 +151,8 @@ fn view_of_both(rows: &[Row]) -> View {
 
 fn best_of_both(id: &str) -> Variable {
     match id {
-        "force-gain" => Variable::Force,
-        "force-cross-axis" => Variable::Across,
+        force_gain::ID => Variable::Force,
+        force_cross_axis::ID => Variable::Across,
         _ => Variable::Place,
     }
 }
@@ -233,7 +237,7 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
     for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
         let (place, width) = (low + range * (k as f64 + 0.5) / PLACES as f64, share * range);
         let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
-        let resists = Candidate::one("local-resistance", Kind::Plant, "F", units.force, column).positive();
+        let resists = Candidate::one(local_resistance::ID, Kind::Plant, "F", units.force, column).positive();
         candidates.push(resists.at("place", place, units.place).at("width", width, units.place));
     }
     candidates.extend((1..=4).map(|n| {
@@ -260,8 +264,8 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
 /// Sentence on how the residual shows a cause.
 fn shows(found: &Found<'_>, falls: &str) -> String {
     match found.candidate.id {
-        "local-resistance" => format!("the force goes with the place: a resistance that is passed ({falls})"),
-        "return-spring" => format!("the force changes evenly with the place ({falls})"),
+        local_resistance::ID => format!("the force goes with the place: a resistance that is passed ({falls})"),
+        return_spring::ID => format!("the force changes evenly with the place ({falls})"),
         other => format!("{other} shows in the force along the way"),
     }
 }
@@ -279,14 +283,14 @@ fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
     let only = |wanted: usize| each(&|_, a| f64::from(u8::from(a == wanted)));
     let mut candidates = vec![
         Candidate::several(
-            "force-bias",
+            force_bias::ID,
             Kind::Instrument,
             vec![only(0), only(1), only(2)],
             vec![("bx", "N"), ("by", "N"), ("bz", "N")],
         ),
-        Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", each(&|r, a| r.measured_n[a])),
+        Candidate::one(force_gain::ID, Kind::Instrument, "g - 1", "1", each(&|r, a| r.measured_n[a])),
         Candidate::one(
-            "force-cross-axis",
+            force_cross_axis::ID,
             Kind::Instrument,
             "turn about z",
             "rad",
@@ -316,13 +320,13 @@ fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {
         names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
     let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
     match found.candidate.id {
-        "force-bias" => format!(
+        force_bias::ID => format!(
             "the force by {which} lies ({:.1}, {:.1}, {:.1}) N beside the measured one, whatever that is",
             value(0),
             value(1),
             value(2)
         ),
-        "force-gain" => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
+        force_gain::ID => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
         other => format!("{other} between the force by {which} and the measured one"),
     }
 }

@@ -1,6 +1,7 @@
 //! Cables and walls that a carried block may meet: a search over all directions and distances, refined at the best.
 
 use super::rows::{Place, Rows};
+use crate::diagnose::hypotheses::added_constraint;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::comparison::Study;
 use crate::identify::linear::least_squares;
@@ -170,7 +171,7 @@ fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64>
 pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     const STEP_M: f64 = 1e-4;
-    let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == "added-constraint")?;
+    let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == added_constraint::ID)?;
     let cable = &study.candidates[pick];
     let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
     let at = [value(0), value(1), value(2)];
@@ -203,7 +204,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usiz
 fn one(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Candidate {
     let damping = pulls(rows, tied, &Cable { anchor_m: anchor, length_m, stiffness_n_m: 0.0, damping_n_s_m: 1.0 });
     let columns = vec![pull(rows, tied, anchor, length_m), damping];
-    Candidate::several("added-constraint", Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
+    Candidate::several(added_constraint::ID, Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
         .positive()
         .shaped(Shape::Damped)
         .at("anchor x", anchor.x, "m")

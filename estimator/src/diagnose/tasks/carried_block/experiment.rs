@@ -5,6 +5,7 @@ use super::net_force::Carry;
 use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};
 use crate::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
 
@@ -63,10 +64,10 @@ fn columns(id: &str, rows: &[Row], weight_n: f64) -> Option<Vec<Vec<f64>>> {
     };
     let all = |size: fn(f64) -> f64| [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(f, a)| channel(f, a, size)).to_vec();
     match id {
-        "mass-change" => Some(vec![of(&|_, place| if let Place::Carried(held) = place { held } else { 0.0 })]),
-        "force-drift" => Some(all(|t| t)),
-        "force-bias" => Some(all(|_| 1.0)),
-        "gravity-tilt" => Some(vec![of(&|_, place| if place == Place::Side { weight_n } else { 0.0 })]),
+        mass_change::ID => Some(vec![of(&|_, place| if let Place::Carried(held) = place { held } else { 0.0 })]),
+        force_drift::ID => Some(all(|t| t)),
+        force_bias::ID => Some(all(|_| 1.0)),
+        gravity_tilt::ID => Some(vec![of(&|_, place| if place == Place::Side { weight_n } else { 0.0 })]),
         _ => None,
     }
 }
@@ -118,7 +119,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
             for rival in &rivals {
                 // Either of the two may be true. A drift of one finger represents the drift of both.
                 for (a, b) in [(own.id, rival.id.as_str()), (rival.id.as_str(), own.id)] {
-                    let vertical = usize::from(a.starts_with("force") && b != "gravity-tilt");
+                    let vertical = usize::from(a.starts_with("force") && b != gravity_tilt::ID);
                     let effect = columns(a, &rows, weight_n)?.swap_remove(vertical);
                     let effect: Vec<f64> = weigh(effect).iter().map(|v| v * size).collect();
                     let mut beside: Vec<Vec<f64>> = columns(b, &rows, weight_n)?.into_iter().map(&weigh).collect();

@@ -7,6 +7,7 @@ use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::free_run::windows::NO_LAW;
+use crate::diagnose::hypotheses::{added_constraint, inertia, viscous_friction};
 use crate::diagnose::selection::comparison::Study;
 use haptics::Vec2;
 use haptics::law::{Effect, Inertia, Memories, Motion, ViscousFriction};
@@ -120,10 +121,10 @@ impl Forward for Airborne {
             let at = |name: &str| candidate.searched.iter().find(|s| s.name == name).map_or(0.0, |s| s.value);
             match candidate.id {
                 // One mass for all blocks, or each its own.
-                "inertia" => mass_kg += own.get(number - 1).filter(|_| own.len() > 1).unwrap_or(&own[0]),
-                "viscous-friction" => drag += own[0],
-                "added-constraint" if self.tied(&candidate.columns[0]) != number => {}
-                "added-constraint" => ties.push(Cable {
+                inertia::ID => mass_kg += own.get(number - 1).filter(|_| own.len() > 1).unwrap_or(&own[0]),
+                viscous_friction::ID => drag += own[0],
+                added_constraint::ID if self.tied(&candidate.columns[0]) != number => {}
+                added_constraint::ID => ties.push(Cable {
                     stiffness_n_m: own[0],
                     damping_n_s_m: own.get(1).copied().unwrap_or(0.0).max(0.0),
                     anchor_m: Vec2::new(at("anchor x"), at("anchor y")),

@@ -2,6 +2,7 @@
 
 use super::standing_height::{Rows, Stand};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::comparison::Study;
 use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
@@ -36,7 +37,7 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
         }
         let mut column = vec![0.0; rows.stand.len()];
         column[rests[slip.rest].rows.clone()].copy_from_slice(&shown);
-        let cause = Candidate::one("fingertip-slip", Kind::Plant, "dy", "m", column).at("t0", slip.start_s, "s");
+        let cause = Candidate::one(fingertip_slip::ID, Kind::Plant, "dy", "m", column).at("t0", slip.start_s, "s");
         found.push(cause.at("duration", slip.length_s, "s").within(slip.rest).at_least(LEAST_M));
     }
 }
@@ -47,7 +48,7 @@ pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) ->
     let rests = rests(stands);
     let heights = rows.heights(&rests);
     let chosen: Vec<&Candidate> = study.picks().into_iter().map(|p| &study.candidates[p]).collect();
-    let is_slip = |c: &&&Candidate| c.id == "fingertip-slip";
+    let is_slip = |c: &&&Candidate| c.id == fingertip_slip::ID;
     let variance_m2 = study.solved.as_ref().map_or(0.0, |s| s.variance(study.system.rows));
     let way = |own: &&Candidate| {
         let value = |name: &str| own.searched.iter().find(|s| s.name == name).map(|s| s.value);

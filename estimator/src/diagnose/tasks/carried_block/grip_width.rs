@@ -7,6 +7,7 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -110,7 +111,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let mut candidates = causes(&rows, modelled > 0.0);
     if known.iter().any(Option::is_some) {
         let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
-        candidates.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", column));
+        candidates.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", column));
     }
     candidates.extend(generic(seen, &rows));
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
@@ -134,7 +135,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
 
 /// Variable that best shows a cause in the grip width.
 pub fn best_seen(id: &str) -> Variable {
-    if id == "length-scale" { Variable::Width } else { Variable::Grip }
+    if id == length_scale::ID { Variable::Width } else { Variable::Grip }
 }
 
 fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
@@ -143,7 +144,7 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
     let mut found = Vec::new();
     if !has_pads {
         let column = rows.grip_n.iter().map(|f| -2.0 * f).collect();
-        found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", column).positive());
+        found.push(Candidate::one(pad_compliance::ID, Kind::Plant, "give", "m/N", column).positive());
     }
     if largest_n <= 0.0 {
         return found;
@@ -157,11 +158,11 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
         let bend = 0.01 * 300.0_f64.powf(share) / largest_n.powi(2);
         let linear = Cushion::linear(1.0);
         let harder = Cushion { spring: StiffnessHardening { k3: bend, ..linear.spring }, ..linear };
-        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&harder)).positive();
+        let cause = Candidate::one(stiffness_hardening::ID, Kind::Plant, "give", "m/N", less(&harder)).positive();
         found.push(cause.at("bend", bend, "1/N²"));
         let end_n = least_n + (0.3 + 0.65 * share) * (largest_n - least_n);
         let ending = Cushion { end: Densification::of(end_n / ONSET, 1.0), ..linear };
-        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&ending)).positive();
+        let cause = Candidate::one(stiffness_hardening::ID, Kind::Plant, "give", "m/N", less(&ending)).positive();
         found.push(cause.at("end", end_n, "N"));
     }
     found
@@ -205,7 +206,7 @@ impl Grasp {
     pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
         match candidate.id {
-            "stiffness-hardening" => {
+            stiffness_hardening::ID => {
                 let first = self.first_give();
                 let k1 = 1.0 / first.max(1e-12);
                 let mut all = vec![parameter("k1", k1, 0.0, "N/m")];
@@ -230,7 +231,7 @@ impl Grasp {
         let mut at = self.compared.study.base.len();
         for chosen in &self.compared.study.chosen {
             let candidate = &self.compared.study.candidates[chosen.candidate];
-            if candidate.id == "pad-compliance" {
+            if candidate.id == pad_compliance::ID {
                 return solved.values[at];
             }
             at += candidate.columns.len();
@@ -242,7 +243,7 @@ impl Grasp {
     pub fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
-            "pad-compliance" => {
+            pad_compliance::ID => {
                 let short: Vec<String> = self
                     .means
                     .iter()
@@ -259,10 +260,10 @@ impl Grasp {
                     short.join(", ")
                 )
             }
-            "stiffness-hardening" => {
+            stiffness_hardening::ID => {
                 "the harder the grip already is, the less the tips come together under more of it".to_owned()
             }
-            "length-scale" => format!("all distances are {:+.2} % off the widths that are known", 100.0 * value),
+            length_scale::ID => format!("all distances are {:+.2} % off the widths that are known", 100.0 * value),
             other => format!("{other} shows in the distance of the tips"),
         }
     }
@@ -270,14 +271,14 @@ impl Grasp {
     /// Sizes that could just matter.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
-            "pad-compliance" => Some((
+            pad_compliance::ID => Some((
                 USUAL_GIVE,
                 "the grip hardly varied while a block was held; squeeze softly and hard while it stands still",
             )),
-            "stiffness-hardening" => {
+            stiffness_hardening::ID => {
                 Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
             }
-            "length-scale" => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
+            length_scale::ID => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
             _ => None,
         }
     }

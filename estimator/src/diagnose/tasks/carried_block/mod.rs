@@ -27,6 +27,10 @@ use crate::diagnose::contract::{Alternative, CauseParameter, Final, NextExperime
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{
+    added_constraint, fingertip_slip, force_bias, force_cross_axis, force_drift, force_gain, friction_change,
+    gravity_tilt, length_scale, mass_change, pad_compliance,
+};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
@@ -53,10 +57,10 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, E
         ..Beside::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
-        let within = ground.compared.study.has("fingertip-slip");
-        let scaled = grasp.as_ref().is_some_and(|g| g.has("length-scale"));
+        let within = ground.compared.study.has(fingertip_slip::ID);
+        let scaled = grasp.as_ref().is_some_and(|g| g.has(length_scale::ID));
         match regrasp::moved(ground, &seen, world) {
-            Some(cause) if scaled || carry.has("force-cross-axis") => beside.warnings.push(format!(
+            Some(cause) if scaled || carry.has(force_cross_axis::ID) => beside.warnings.push(format!(
                 "{}; what is wrong with the sensors would do the same, so no slip is named",
                 cause.evidence
             )),
@@ -108,8 +112,11 @@ fn look(
     let carry = net_force::carry(seen, world, rules)?;
     let grasp = grip_width::grasp(seen, world, rules)?;
     // A block with a taut cable is supported by more than the ground.
-    let ground =
-        if carry.has("added-constraint") { None } else { standing_height::ground(seen, world, carry.cross(), rules)? };
+    let ground = if carry.has(added_constraint::ID) {
+        None
+    } else {
+        standing_height::ground(seen, world, carry.cross(), rules)?
+    };
     Ok((carry, grasp, ground))
 }
 
@@ -126,12 +133,12 @@ fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
     let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
     let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
     if !knows("weight_N") && !knows("mass_kg") {
-        add("force-gain", "no weight is known; state one in the sidecar");
+        add(force_gain::ID, "no weight is known; state one in the sidecar");
     }
     if !knows("width_m") {
-        add("length-scale", "no width is known; state one in the sidecar");
+        add(length_scale::ID, "no width is known; state one in the sidecar");
     }
-    add("friction-change", "the fingers hold the blocks and do not slide on them");
+    add(friction_change::ID, "the fingers hold the blocks and do not slide on them");
 }
 
 /// Recording that would settle the open questions.
@@ -139,13 +146,13 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
     let pair = [first.instead_of.as_str(), first.id.as_str()];
     let is = |a: &str, b: &str| pair.contains(&a) && pair.contains(&b);
-    let (motion, power) = if is("mass-change", "force-drift") {
+    let (motion, power) = if is(mass_change::ID, force_drift::ID) {
         ("let go for two seconds before and after the carry: a drift of the sensor stays, a lost weight does not", 0.95)
-    } else if is("mass-change", "force-bias") || is("force-bias", "force-drift") {
+    } else if is(mass_change::ID, force_bias::ID) || is(force_bias::ID, force_drift::ID) {
         ("start and end with two seconds of free motion", 0.95)
-    } else if is("pad-compliance", "length-scale") {
+    } else if is(pad_compliance::ID, length_scale::ID) {
         ("squeeze the standing block softly and hard, several times", 0.95)
-    } else if is("gravity-tilt", "force-cross-axis") {
+    } else if is(gravity_tilt::ID, force_cross_axis::ID) {
         ("turn the hand's base by a quarter turn and carry the same block again", 0.95)
     } else {
         (

@@ -12,6 +12,10 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{
+    added_constraint, force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change,
+    viscous_friction,
+};
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
@@ -105,11 +109,12 @@ fn without_remainders(mut channel: Channel) -> Result<Study, EstimateError> {
     let mut study = channel.clone().fit()?;
     for _ in 0..ROUNDS {
         let of = |c: &Chosen| &study.candidates[c.candidate];
-        let cable = study.chosen.iter().filter(|c| of(c).id == "added-constraint").map(|c| c.score).fold(0.0, f64::max);
+        let cable =
+            study.chosen.iter().filter(|c| of(c).id == added_constraint::ID).map(|c| c.score).fold(0.0, f64::max);
         let rests: Vec<(&str, Option<String>)> = study
             .chosen
             .iter()
-            .filter(|c| of(c).id != "added-constraint" && c.score < OF_A_CABLE * cable)
+            .filter(|c| of(c).id != added_constraint::ID && c.score < OF_A_CABLE * cable)
             .map(|c| (of(c).id, of(c).expression.clone()))
             .collect();
         if rests.is_empty() {
@@ -147,11 +152,11 @@ fn view(rows: &Rows<'_>) -> View {
 /// Variable that best shows a cause in the net force.
 pub fn best_seen(id: &str) -> Variable {
     match id {
-        "inertia" => Variable::Acceleration,
-        "viscous-friction" => Variable::Velocity,
-        "added-constraint" => Variable::Place,
-        "force-cross-axis" => Variable::Grip,
-        "force-gain" | "gravity-tilt" => Variable::Lift,
+        inertia::ID => Variable::Acceleration,
+        viscous_friction::ID => Variable::Velocity,
+        added_constraint::ID => Variable::Place,
+        force_cross_axis::ID => Variable::Grip,
+        force_gain::ID | gravity_tilt::ID => Variable::Lift,
         _ => Variable::Time,
     }
 }
@@ -187,7 +192,7 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
 /// regular part of the model, because its regressor contains noise of the forces.
 fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<Study, EstimateError> {
     let plain = without_remainders(channel.clone())?;
-    let has_mass = |study: &Study| study.has("inertia");
+    let has_mass = |study: &Study| study.has(inertia::ID);
     if !has_mass(&plain) {
         return Ok(plain);
     }
@@ -245,10 +250,10 @@ impl Carry {
         let number = touched(&self.numbers, column);
         // Without a block, the cause concerns all blocks.
         let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
-        if ["mass-change", "added-constraint"].contains(&candidate.id) && alone() {
+        if [mass_change::ID, added_constraint::ID].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
         }
-        if let ("added-constraint", Some(errors)) = (candidate.id, self.cable_errors) {
+        if let (added_constraint::ID, Some(errors)) = (candidate.id, self.cable_errors) {
             for (name, error) in ["k", "anchor x", "anchor y", "length"].into_iter().zip(errors) {
                 found.iter_mut().filter(|p| p.name == name).for_each(|p| p.std_error = p.std_error.max(error));
             }
@@ -260,7 +265,7 @@ impl Carry {
     pub fn shows(found: &Found<'_>) -> String {
         let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
         match found.candidate.id {
-            "inertia" => {
+            inertia::ID => {
                 let masses: Vec<String> = found
                     .parameters
                     .iter()
@@ -272,22 +277,22 @@ impl Carry {
                     masses.join(", ")
                 )
             }
-            "mass-change" => {
+            mass_change::ID => {
                 "the lift changes while a block is carried, and the forces of empty fingers do not".to_owned()
             }
-            "force-bias" => "empty fingers feel a force, and the same is missing while blocks are carried".to_owned(),
-            "force-drift" => {
+            force_bias::ID => "empty fingers feel a force, and the same is missing while blocks are carried".to_owned(),
+            force_drift::ID => {
                 "the forces of empty fingers go with time, and those of carried blocks with them".to_owned()
             }
-            "force-gain" => {
+            force_gain::ID => {
                 format!("carried blocks weigh {:+.1} % of what is known of them too much", 100.0 * value(0))
             }
-            "force-cross-axis" => "one axis of a finger's force follows the other".to_owned(),
-            "added-constraint" => {
+            force_cross_axis::ID => "one axis of a finger's force follows the other".to_owned(),
+            added_constraint::ID => {
                 "the net force on a carried block pulls towards one place from a distance on".to_owned()
             }
-            "gravity-tilt" => "a carried block pulls to one side in proportion to its weight".to_owned(),
-            "viscous-friction" => "the force follows the speed of the carried block".to_owned(),
+            gravity_tilt::ID => "a carried block pulls to one side in proportion to its weight".to_owned(),
+            viscous_friction::ID => "the force follows the speed of the carried block".to_owned(),
             other => format!("{other} shows in the net force"),
         }
     }
@@ -297,14 +302,14 @@ impl Carry {
         // One hundredth of a newton over the longest carry.
         let slow = 0.01 / self.longest_s.max(1.0);
         Some(match candidate.id {
-            "inertia" => (0.02, "blocks were carried too evenly; carry them fast, with stops"),
-            "mass-change" => (slow, "blocks were not carried for long; hold one still for some seconds"),
-            "force-bias" => (0.01, "nothing was ever let go; start and end with a second of free motion"),
-            "force-drift" => (slow, "the recording is too short, or nothing was let go at both ends"),
-            "force-cross-axis" => (0.03, "the grip hardly varied; squeeze softly and hard while a block is carried"),
-            "added-constraint" => (30.0, "blocks were hardly moved while they were carried"),
-            "gravity-tilt" => (0.03, "no block was carried for long enough"),
-            "viscous-friction" => (0.3, "blocks were carried too slowly"),
+            inertia::ID => (0.02, "blocks were carried too evenly; carry them fast, with stops"),
+            mass_change::ID => (slow, "blocks were not carried for long; hold one still for some seconds"),
+            force_bias::ID => (0.01, "nothing was ever let go; start and end with a second of free motion"),
+            force_drift::ID => (slow, "the recording is too short, or nothing was let go at both ends"),
+            force_cross_axis::ID => (0.03, "the grip hardly varied; squeeze softly and hard while a block is carried"),
+            added_constraint::ID => (30.0, "blocks were hardly moved while they were carried"),
+            gravity_tilt::ID => (0.03, "no block was carried for long enough"),
+            viscous_friction::ID => (0.3, "blocks were carried too slowly"),
             _ => return None,
         })
     }

@@ -3,6 +3,9 @@
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{
+    force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change, viscous_friction,
+};
 use haptics::law::Kind;
 
 /// Starts of a change of weight that are tried in every carry.
@@ -22,21 +25,21 @@ pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
             },
         )
     };
-    found.push(Candidate::one("inertia", Kind::Plant, "m", "kg", moved(None)).positive());
+    found.push(Candidate::one(inertia::ID, Kind::Plant, "m", "kg", moved(None)).positive());
     if (2..=NAMES.len()).contains(&blocks) {
         let linear = NAMES[..blocks].iter().map(|n| (*n, "kg")).collect();
         let columns = (1..=blocks).map(|k| moved(Some(k))).collect();
-        found.push(Candidate::several("inertia", Kind::Plant, columns, linear).positive());
+        found.push(Candidate::several(inertia::ID, Kind::Plant, columns, linear).positive());
     }
     let drag = rows.carried(|one, row, _, axis| one.velocity[axis][row.i]);
-    found.push(Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", drag).positive());
+    found.push(Candidate::one(viscous_friction::ID, Kind::Plant, "c", "N s/m", drag).positive());
     let tilted = rows.carried(|_, _, number, axis| if axis == 0 { rows.weight_n(number) } else { 0.0 });
-    found.push(Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", tilted));
+    found.push(Candidate::one(gravity_tilt::ID, Kind::Plant, "angle", "rad", tilted));
     for k in 1..=blocks {
         leaks(rows, k, &mut found);
     }
     if blocks > 1 {
-        found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", leaking(rows)));
+        found.push(Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", leaking(rows)));
     }
     found
 }
@@ -62,13 +65,13 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
         rows.carried(|_, row, number, axis| if number == k && axis == 1 { of(row.time_s) } else { 0.0 })
     };
     let rate = |from: f64| lift(&|t| (t - from).max(0.0));
-    found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(*first)));
+    found.push(Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(*first)));
     for s in 1..=STARTS {
         let start = first + (last - first) * s as f64 / (STARTS + 1) as f64;
-        let later = Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(start));
+        let later = Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(start));
         found.push(later.at("t0", start, "s"));
         let step = lift(&|t| f64::from(u8::from(t >= start)));
-        found.push(Candidate::one("mass-change", Kind::Plant, "step", "N", step).at("t0", start, "s"));
+        found.push(Candidate::one(mass_change::ID, Kind::Plant, "step", "N", step).at("t0", start, "s"));
     }
 }
 
@@ -96,8 +99,8 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
         made.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
         made
     };
-    found.extend(all("force-bias", &BIAS, &|_| 1.0));
-    found.extend(all("force-drift", &DRIFT, &|r| r.time_s));
+    found.extend(all(force_bias::ID, &BIAS, &|_| 1.0));
+    found.extend(all(force_drift::ID, &DRIFT, &|r| r.time_s));
     // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that
     // changes.
     let loaded_s = |r: &Row| {
@@ -109,7 +112,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     for (finger, axis) in [(0, 1), (1, 1), (0, 0), (1, 0)] {
         let (name, unit) = DRIFT[finger][axis];
         let column = rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
-        found.push(Candidate::one("force-drift", Kind::Instrument, name, unit, column));
+        found.push(Candidate::one(force_drift::ID, Kind::Instrument, name, unit, column));
     }
     // Effect on the carried rows of one finger's force along the other axis, of which only the sum is compared.
     let other = |row: &Row, finger: usize, to: usize| {
@@ -118,14 +121,14 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     };
     for (finger, to, name) in [(0, 1, "kappa_yx1"), (1, 1, "kappa_yx2"), (0, 0, "kappa_xy1"), (1, 0, "kappa_xy2")] {
         let column = rows.column(|r| other(r, finger, to));
-        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
+        found.push(Candidate::one(force_cross_axis::ID, Kind::Instrument, name, "1", column));
     }
     for (to, name) in [(1, "kappa_yx"), (0, "kappa_xy")] {
         let column = rows.column(|r| other(r, 0, to) + other(r, 1, to));
-        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
+        found.push(Candidate::one(force_cross_axis::ID, Kind::Instrument, name, "1", column));
     }
     if known.iter().any(Option::is_some) {
-        found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", given.to_vec()));
+        found.push(Candidate::one(force_gain::ID, Kind::Instrument, "g - 1", "1", given.to_vec()));
     }
     found
 }

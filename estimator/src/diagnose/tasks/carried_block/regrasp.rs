@@ -5,6 +5,7 @@ use super::signals::Seen;
 use super::standing_height::{Ground, Stand};
 use crate::diagnose::contract::{Cause, Gain, parameter};
 use crate::diagnose::free_run::windows::AT_ONCE;
+use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::identify::block::signals::object;
 use crate::identify::block::slip_detection::LEAST_M;
@@ -48,7 +49,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
         .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
     let share = 1.0 - (error / way).powi(2);
     Some(Cause {
-        id: "fingertip-slip".to_owned(),
+        id: fingertip_slip::ID.to_owned(),
         kind: Kind::Plant,
         parameters: vec![parameter("dy", way, error, "m")],
         p_value: chi_square_tail((way / error).powi(2), 1.0),

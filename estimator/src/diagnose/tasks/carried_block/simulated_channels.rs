@@ -3,6 +3,7 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{added_constraint, force_drift, gravity_tilt, mass_change};
 use std::collections::BTreeSet;
 
 impl Simulated for Carry {
@@ -20,12 +21,12 @@ impl Simulated for Carry {
         let mut found: Vec<CauseParameter> =
             linear.map(|((name, unit), value)| parameter(name, *value, 0.0, unit)).collect();
         match candidate.id {
-            "gravity-tilt" => {}
-            "added-constraint" => {
+            gravity_tilt::ID => {}
+            added_constraint::ID => {
                 found.extend(candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit)));
             }
             // The start of a leak does not carry over to another recording: there it leaks from the start.
-            "mass-change" if found.iter().any(|p| p.name == "rate" && p.value < 0.0) => {}
+            mass_change::ID if found.iter().any(|p| p.name == "rate" && p.value < 0.0) => {}
             _ => return None,
         }
         Some((candidate.id.to_owned(), self.states(candidate, found)))
@@ -34,7 +35,7 @@ impl Simulated for Carry {
     /// Such a drift leaves alone what its sensors read before.
     fn is_late(&self, candidate: &Candidate) -> bool {
         let Some((_, time_s)) = self.view.over.iter().find(|(v, _)| *v == Variable::Time) else { return false };
-        let drifts = candidate.id == "force-drift" && candidate.searched.is_empty();
+        let drifts = candidate.id == force_drift::ID && candidate.searched.is_empty();
         drifts
             && candidate.columns.iter().any(|column| {
                 let sensors: BTreeSet<usize> =

@@ -7,6 +7,7 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -107,7 +108,7 @@ pub fn ground(
     if world.is_some() {
         base.extend([give, contact]);
     } else {
-        let cause = |columns, linear| Candidate::several("pad-compliance", Kind::Plant, columns, linear).positive();
+        let cause = |columns, linear| Candidate::several(pad_compliance::ID, Kind::Plant, columns, linear).positive();
         candidates.push(cause(vec![give.clone()], vec![("give", "m/N")]));
         candidates.push(cause(vec![give, contact], vec![("give", "m/N"), ("give of a contact", "m/N")]));
     }
@@ -152,7 +153,7 @@ fn spread(along: &[bool]) -> Vec<f64> {
 
 /// Variable that best shows a cause in the grip height.
 pub fn best_seen(id: &str) -> Variable {
-    if id == "pad-compliance" { Variable::Lift } else { Variable::Time }
+    if id == pad_compliance::ID { Variable::Lift } else { Variable::Time }
 }
 
 fn add(
@@ -214,7 +215,7 @@ impl Ground {
     /// Parameters for the answer.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
-            "fingertip-slip" => {
+            fingertip_slip::ID => {
                 let at = candidate.searched.iter().find(|s| s.name == "t0").map(|s| s.value);
                 let open = self.ways.iter().find(|[t0, ..]| Some(*t0) == at);
                 for (way, [_, way_m, error_m]) in found.iter_mut().zip(open) {
@@ -223,7 +224,7 @@ impl Ground {
                 found
             }
             // Two pads act side by side. The compliance of one is twice that of the pair, so its stiffness is half.
-            "pad-compliance" => {
+            pad_compliance::ID => {
                 found.iter().take(1).map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m")).collect()
             }
             _ => found,
@@ -233,7 +234,7 @@ impl Ground {
     /// Sentence on how the residual shows a cause.
     pub fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
-        if found.candidate.id == "pad-compliance" {
+        if found.candidate.id == pad_compliance::ID {
             return "the grip sinks and rises with the load while a held block stands".to_owned();
         }
         let at = found.parameters.iter().find(|p| p.name == "t0").map_or(0.0, |p| p.value);
@@ -260,10 +261,10 @@ impl Ground {
     /// Sizes that could just matter.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
-            "fingertip-slip" => {
+            fingertip_slip::ID => {
                 Some((LEAST_M, "blocks were not held on the ground for long enough to see the fingers move on"))
             }
-            "pad-compliance" => {
+            pad_compliance::ID => {
                 Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))
             }
             _ => None,

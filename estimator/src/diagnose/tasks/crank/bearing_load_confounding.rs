@@ -4,6 +4,7 @@ use super::bearing_load::{known_n, put, weights};
 use crate::diagnose::answer::along_coordinate::strange;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::column;
+use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::tasks::one_coordinate;
@@ -12,7 +13,7 @@ use crate::identify::linear::least_squares_values;
 use haptics::law::{Law as _, LoadFriction, Weight};
 
 /// Causes that resemble a weight on the bearing if another cause hides it.
-const MISTAKEN: [&str; 4] = ["eccentric-mass", "gravity-tilt", "force-bias", "force-cross-axis"];
+const MISTAKEN: [&str; 4] = [eccentric_mass::ID, gravity_tilt::ID, force_bias::ID, force_cross_axis::ID];
 /// Margin by which the comparison with the weight on the bearing must win: −2 ln(likelihood) plus a penalty of ln(rows)
 /// for each parameter of a cause.
 const SIMPLER: f64 = 40.0;

@@ -16,6 +16,7 @@ use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
@@ -160,7 +161,7 @@ fn turned(
     rows: regression_data::Track,
 ) -> Result<Turned, EstimateError> {
     let found = circle.study.found();
-    let offset = found.iter().rfind(|(c, _)| c.id == "joint-offset").map(|(_, values)| values[0]);
+    let offset = found.iter().rfind(|(c, _)| c.id == joint_offset::ID).map(|(_, values)| values[0]);
     // With two fingers, the error is of one arm of two: the handle itself is not rotated.
     let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
         return Ok(Turned { rows, other: None, link: None });
@@ -179,13 +180,13 @@ fn turned(
 
 /// True if the forces seem rotated against the motion.
 fn is_turned(study: &comparison::Study) -> bool {
-    study.has("force-cross-axis")
+    study.has(force_cross_axis::ID)
 }
 
 /// Names the joint with the angle error, if the data tell.
 fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
     // With two fingers, the cause names the finger. The path shows no more.
-    let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
+    let of_the_finger = |c: &&mut Cause| c.id == joint_offset::ID && c.parameters.iter().any(|p| p.name == "delta");
     let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
     cause.evidence += match link {
         Some(Link::First) => "; it is the angle of the first link",

@@ -2,6 +2,7 @@
 
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::layout::{Blocks, Layout};
@@ -13,7 +14,7 @@ use haptics::Vec2;
 use haptics::law::Kind;
 
 /// Slip of the grasp on the handle, and the parameter of a slip along the arm.
-const SLIP: &str = "fingertip-slip";
+const SLIP: &str = fingertip_slip::ID;
 const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
@@ -180,14 +181,14 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
     let mut found = Vec::new();
     if !path.two_fingered {
         let normal = column(&|i| outward[i].dot(&points[i].force));
-        found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", normal).positive());
+        found.push(Candidate::one(pad_compliance::ID, Kind::Plant, "give", "m/N", normal).positive());
     }
     let names = if path.two_fingered { OF_FINGERS.as_slice() } else { &[OF_THE_FINGER] };
     for (finger, [delta, link_error]) in names.iter().enumerate() {
         if points.iter().all(|p| p.joints[finger].is_some()) {
             let of = |k: usize| column(&|i| points[i].joints[finger].map_or(0.0, |j| outward[i].dot(&j[k])));
-            found.push(Candidate::one("joint-offset", Kind::Instrument, delta, "rad", of(0)));
-            found.push(Candidate::one("length-scale", Kind::Instrument, link_error, "m", of(1)));
+            found.push(Candidate::one(joint_offset::ID, Kind::Instrument, delta, "rad", of(0)));
+            found.push(Candidate::one(length_scale::ID, Kind::Instrument, link_error, "m", of(1)));
         }
     }
     for course in courses {
@@ -225,14 +226,14 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
         for (candidate, values) in &found {
             let value = values[0];
             shift += match (candidate.id, point.joints[finger(candidate)]) {
-                ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
-                ("joint-offset", Some(joint)) => {
+                (pad_compliance::ID, _) => outward * (value * outward.dot(&point.force)),
+                (joint_offset::ID, Some(joint)) => {
                     // The second link rotates about its joint: its error moves the tip on an arc, not along the
                     // tangent.
                     bow += Vec2::new(joint[0].y, -joint[0].x) * (1.0 - value.cos()) + joint[0] * (value.sin() - value);
                     joint[0] * value
                 }
-                ("length-scale", Some(joint)) => joint[1] * value,
+                (length_scale::ID, Some(joint)) => joint[1] * value,
                 (SLIP, _) if candidate.columns.len() == 1 => {
                     outward * (value * Course::of(candidate).gone(point.time_s))
                 }

@@ -11,6 +11,7 @@ use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults, sample_offset, time_delay};
 use crate::diagnose::validation::on_other_recordings;
@@ -47,7 +48,9 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         let skew_s = found.skew_s + OF_SKEW * more_s;
         let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
         let Ok((mut again, rest)) = mechanism_as_it_is(&together, options) else { break };
-        if again.causes.iter().any(|c| c.id == "time-delay") || again.end.heldout_rms_n > found.end.heldout_rms_n {
+        if again.causes.iter().any(|c| c.id == hypotheses::time_delay::ID)
+            || again.end.heldout_rms_n > found.end.heldout_rms_n
+        {
             break;
         }
         again.skew_s = skew_s;

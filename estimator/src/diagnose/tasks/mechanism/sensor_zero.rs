@@ -8,6 +8,7 @@ use crate::diagnose::contract::{Alternative, Cause, Diagnosis, NextExperiment, V
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{force_bias, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::Study;
 use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
@@ -24,7 +25,7 @@ const SHARE: f64 = 0.15;
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
 pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
     let is_constant =
-        |c: &Candidate| matches!((c.id, c.linear[0].0), ("force-bias", "b") | ("friction-asymmetry", "dFc"));
+        |c: &Candidate| matches!((c.id, c.linear[0].0), (force_bias::ID, "b") | (friction_asymmetry::ID, "dFc"));
     let Some(constant) = study.found().iter().rfind(|(c, _)| is_constant(c)).map(|(_, values)| values[0]) else {
         return Zero::Open;
     };
@@ -46,13 +47,13 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
 pub fn ask(found: &mut Diagnosis, track: &Track) {
     const LEAST_POWER: f64 = 0.05;
     const FREE_S: f64 = 2.0;
-    let by_direction = |c: &&Cause| c.id == "friction-asymmetry" && c.parameters.iter().any(|p| p.name == "dFc");
+    let by_direction = |c: &&Cause| c.id == friction_asymmetry::ID && c.parameters.iter().any(|p| p.name == "dFc");
     if track.zero == Zero::OfThePlant && track.coordinate == Coordinate::Linear {
         let Some(posterior) = found.causes.iter().find(by_direction).map(|c| 0.5 * c.posterior) else { return };
         found.causes.iter_mut().filter(|c| by_direction(&&**c)).for_each(|c| c.posterior = posterior);
         found.alternatives.push(Alternative {
-            id: "gravity-tilt".to_owned(),
-            instead_of: "friction-asymmetry".to_owned(),
+            id: gravity_tilt::ID.to_owned(),
+            instead_of: friction_asymmetry::ID.to_owned(),
             posterior,
             why: "along a line a slope is the same constant force, and the sensor reads nothing of it where nobody holds on".to_owned(),
         });
@@ -60,16 +61,16 @@ pub fn ask(found: &mut Diagnosis, track: &Track) {
         let motion = "turn the track round and move along it again: what a slope pulls changes its sign";
         found.next_experiment.get_or_insert_with(|| NextExperiment {
             motion: motion.to_owned(),
-            separates: vec!["friction-asymmetry".to_owned(), "gravity-tilt".to_owned()],
+            separates: vec![friction_asymmetry::ID.to_owned(), gravity_tilt::ID.to_owned()],
             expected_power: SURE_HUNG,
             experiment: None,
         });
         return;
     }
     let constant =
-        found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
+        found.causes.iter().find(|c| c.id == force_bias::ID).and_then(|c| c.parameters.first()).map(|b| b.value);
     let (Some(next), Some(size)) = (&mut found.next_experiment, constant) else { return };
-    let of_both = ["force-bias", "friction-asymmetry"].iter().all(|id| next.separates.iter().any(|s| s == id));
+    let of_both = [force_bias::ID, friction_asymmetry::ID].iter().all(|id| next.separates.iter().any(|s| s == id));
     if of_both && next.expected_power < LEAST_POWER {
         let lambda = 2.0 * FREE_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);
         "let go of it for two seconds before and after moving it: a bias of the sensor is read then as well"

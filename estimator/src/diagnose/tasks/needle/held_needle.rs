@@ -10,6 +10,7 @@ use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::coulomb_friction;
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Effect, Inertia, Kind, Memories, Motion};
@@ -159,7 +160,7 @@ impl Forward for Sliding {
         let mut plant: Vec<(&Candidate, &[f64])> =
             study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
         // Friction that bends before it slides is subtracted from the dry friction, which must come first.
-        plant.sort_by_key(|(c, _)| c.id != "coulomb-friction");
+        plant.sort_by_key(|(c, _)| c.id != coulomb_friction::ID);
         // A hole that differs from one insertion to the next is no change in time.
         if plant.iter().any(|(c, _)| c.searched.iter().any(|s| s.name == "from insertion")) {
             return Err(no_law());

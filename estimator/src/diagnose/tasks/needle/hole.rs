@@ -13,6 +13,10 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::hypotheses::{
+    backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
+    viscous_friction,
+};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;
@@ -32,18 +36,18 @@ const NOISES: f64 = 3.0;
 /// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
 /// needle, because its position between their pads is not known well enough.
 const POSSIBLE: [&str; 9] = [
-    "coulomb-friction",
-    "viscous-friction",
-    "quadratic-drag",
-    "stribeck",
-    "hysteresis",
-    "backlash",
-    "local-resistance",
-    "friction-change",
-    "force-drift",
+    coulomb_friction::ID,
+    viscous_friction::ID,
+    quadratic_drag::ID,
+    stribeck::ID,
+    hysteresis::ID,
+    backlash::ID,
+    local_resistance::ID,
+    friction_change::ID,
+    force_drift::ID,
 ];
 /// Possible causes that need the points between the rows.
-const CLOSELY: [&str; 3] = ["stribeck", "backlash", "local-resistance"];
+const CLOSELY: [&str; 3] = [stribeck::ID, backlash::ID, local_resistance::ID];
 /// Friction of a shaft in proportion to the length in the hole. The catalogue has no law for it, and every needle shows
 /// it.
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
@@ -139,25 +143,25 @@ fn candidates(
         columns: &Columns::default(),
     };
     // A push at a place, in either direction, is the rim of the sheet.
-    let pushes = |c: &Candidate| c.id == "local-resistance" && (c.sign == 0.0 || needle.two_fingered);
+    let pushes = |c: &Candidate| c.id == local_resistance::ID && (c.sign == 0.0 || needle.two_fingered);
     // Motion within a filter's window at a reversal is known only between the rows.
     let unseen = |c: &Candidate| needle.joined && CLOSELY.contains(&c.id);
     let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c) && !unseen(c));
     // A rate is measured less well than a direction.
     let with_noise = |c: Candidate| {
-        if c.id == "viscous-friction" { c.noisy(needle.slope_noise_m_s) } else { c }
+        if c.id == viscous_friction::ID { c.noisy(needle.slope_noise_m_s) } else { c }
     };
     let mut candidates: Vec<Candidate> = possible.map(with_noise).collect();
     if law.is_some() {
         // The world's law already bends before it slides.
-        candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
+        candidates.retain(|c| ![hysteresis::ID, coulomb_friction::ID, viscous_friction::ID].contains(&c.id));
     }
     let longer = of(&|i| rows[i].depth_m * direction[i]);
     candidates.push(Candidate::one(ALONG_THE_SHAFT, Kind::Plant, "A", "N/m", longer).positive());
     for push in 1..=rows.iter().map(|r| r.push).max().unwrap_or(0) {
         let later = of(&|i| if rows[i].push >= push { dry_n * direction[i] } else { 0.0 });
         if rows.iter().any(|r| r.push < push) {
-            let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", later);
+            let change = Candidate::one(friction_change::ID, Kind::Plant, "relative change", "1", later);
             candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
         }
     }
@@ -233,7 +237,7 @@ fn closely(
 
 /// Estimated dry friction, N.
 fn sliding_n(study: &Study) -> Option<f64> {
-    study.found().into_iter().find(|(c, _)| c.id == "coulomb-friction").map(|(_, values)| values[0])
+    study.found().into_iter().find(|(c, _)| c.id == coulomb_friction::ID).map(|(_, values)| values[0])
 }
 
 /// A world's hole in a pierced sheet, without drag.
@@ -306,9 +310,9 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
 /// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
-        "stribeck" => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
-        "backlash" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
-        "hysteresis" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
+        stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
+        backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
+        hysteresis::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
         _ => return None,
     })
 }
@@ -316,18 +320,18 @@ pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
 /// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
-        "coulomb-friction" => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
-        "viscous-friction" => "in the hole the force follows the speed".to_owned(),
-        "hysteresis" => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
-        "backlash" => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
-        "stribeck" => "in the hole the friction falls with speed".to_owned(),
-        "local-resistance" => {
+        coulomb_friction::ID => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
+        viscous_friction::ID => "in the hole the force follows the speed".to_owned(),
+        hysteresis::ID => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+        backlash::ID => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
+        stribeck::ID => "in the hole the friction falls with speed".to_owned(),
+        local_resistance::ID => {
             "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
         }
         ALONG_THE_SHAFT => {
             "the friction grows with the length that is in the hole, which no known cause does".to_owned()
         }
-        "friction-change" => "the shaft rubs differently from one insertion to the next".to_owned(),
+        friction_change::ID => "the shaft rubs differently from one insertion to the next".to_owned(),
         other => format!("{other} shows in the force on the shaft"),
     }
 }

@@ -20,6 +20,7 @@ use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, NextEx
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{coulomb_friction, force_bias, friction_change, viscous_friction};
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -56,12 +57,12 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, E
     beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.study, p)));
     if shaft.is_none() {
         let why = "the needle hardly moved in a hole; push it through and draw it out";
-        let ids = ["coulomb-friction", "friction-change", "viscous-friction"];
+        let ids = [coulomb_friction::ID, friction_change::ID, viscous_friction::ID];
         beside.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
     }
     if !seen.two_fingered {
         let why = "a single tool is held all the time: a bias of its force passes for its weight";
-        beside.not_excited.push(NotExcited { id: "force-bias".to_owned(), why: why.to_owned() });
+        beside.not_excited.push(NotExcited { id: force_bias::ID.to_owned(), why: why.to_owned() });
     }
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| hole::shows(f));

@@ -7,6 +7,9 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{
+    coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
+};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;
@@ -99,10 +102,10 @@ impl Law {
     /// The law of a candidate, if it is one.
     pub fn of(candidate: &Candidate) -> Option<Self> {
         match (candidate.id, candidate.linear[0].0) {
-            ("stiffness-hardening", CUBIC) => Some(Self::Power(3.0)),
-            ("stiffness-hardening", HERTZ) => Some(Self::Power(1.5)),
-            ("viscous-friction", _) => Some(Self::Drag),
-            ("hysteresis", _) => candidate.searched.first().map(|s| Self::Dent(s.value)),
+            (stiffness_hardening::ID, CUBIC) => Some(Self::Power(3.0)),
+            (stiffness_hardening::ID, HERTZ) => Some(Self::Power(1.5)),
+            (viscous_friction::ID, _) => Some(Self::Drag),
+            (hysteresis::ID, _) => candidate.searched.first().map(|s| Self::Dent(s.value)),
             _ => None,
         }
     }
@@ -173,22 +176,22 @@ fn candidates(
         Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic))).positive()
     };
     let mut candidates = vec![
-        acts(Law::Power(3.0), "stiffness-hardening", CUBIC, "N/m³"),
-        acts(Law::Power(1.5), "stiffness-hardening", HERTZ, "N/m^1.5"),
-        acts(Law::Drag, "viscous-friction", "c", "N s/m"),
-        Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
+        acts(Law::Power(3.0), stiffness_hardening::ID, CUBIC, "N/m³"),
+        acts(Law::Power(1.5), stiffness_hardening::ID, HERTZ, "N/m^1.5"),
+        acts(Law::Drag, viscous_friction::ID, "c", "N s/m"),
+        Candidate::one(force_bias::ID, Kind::Instrument, "b", "N", of(&|_| 1.0)),
     ];
     // A sensor is zeroed before each recording.
     candidates.extend((0..needle.recordings).map(|k| {
         let since = of(&|r| owned(k, r) * (r.time_s - r.start_s));
-        let drift = Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", since);
+        let drift = Candidate::one(force_drift::ID, Kind::Instrument, "rate", "N/s", since);
         if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
     }));
     for dent in DENTS {
-        candidates.push(acts(Law::Dent(dent), "hysteresis", "share", "1").at("dent", dent, "1"));
+        candidates.push(acts(Law::Dent(dent), hysteresis::ID, "share", "1").at("dent", dent, "1"));
     }
     if law.is_some_and(|l| l.give > 0.0) {
-        candidates.retain(|c| c.id != "hysteresis");
+        candidates.retain(|c| c.id != hysteresis::ID);
     }
     let span = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     let term = |expression: &str, column: Vec<f64>| Candidate {
@@ -245,7 +248,7 @@ fn said_by_a_row(
     /// Standard errors from which a correlation is significant.
     const CLEAR: f64 = 3.0;
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
-    let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
+    let slow = candidates.iter().filter(|c| c.id == force_drift::ID || c.expression.is_some());
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
     let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns).map(|c| &**c)).map(here).collect();
     columns.retain(|column| column.iter().any(|v| *v != 0.0));
@@ -281,8 +284,8 @@ pub fn level_n(study: &Study, at: &Puncture) -> f64 {
     for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
         let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
         level += match candidate.id {
-            "force-bias" => solved.values[place],
-            "force-drift" if own => solved.values[place] * at.time_s,
+            force_bias::ID => solved.values[place],
+            force_drift::ID if own => solved.values[place] * at.time_s,
             _ => 0.0,
         };
         place += candidate.columns.len();
@@ -304,8 +307,8 @@ pub fn view(rows: &[Row]) -> View {
 /// Variable that best shows a cause on a needle.
 pub fn best_seen(id: &str) -> Variable {
     match id {
-        "stiffness-hardening" | "hysteresis" => Variable::Depth,
-        "viscous-friction" | "coulomb-friction" | "quadratic-drag" => Variable::Velocity,
+        stiffness_hardening::ID | hysteresis::ID => Variable::Depth,
+        viscous_friction::ID | coulomb_friction::ID | quadratic_drag::ID => Variable::Velocity,
         _ => Variable::Time,
     }
 }
@@ -333,11 +336,11 @@ fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
 /// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
-        "stiffness-hardening" => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
-        "hysteresis" => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
-        "viscous-friction" => "the force on the sheet follows the speed".to_owned(),
-        "force-bias" => "empty fingers feel a force along the needle".to_owned(),
-        "force-drift" => "the force of the needle outside the sheet goes with time".to_owned(),
+        stiffness_hardening::ID => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
+        hysteresis::ID => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
+        viscous_friction::ID => "the force on the sheet follows the speed".to_owned(),
+        force_bias::ID => "empty fingers feel a force along the needle".to_owned(),
+        force_drift::ID => "the force of the needle outside the sheet goes with time".to_owned(),
         other => format!("{other} shows in the force on the sheet"),
     }
 }
@@ -345,13 +348,13 @@ pub fn shows(found: &Found<'_>) -> String {
 /// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
-        "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
-        "hysteresis" => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
-        "viscous-friction" => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
-        "force-bias" => {
+        stiffness_hardening::ID if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
+        hysteresis::ID => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
+        viscous_friction::ID => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
+        force_bias::ID => {
             (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
         }
-        "force-drift" => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
+        force_drift::ID => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
         _ => return None,
     })
 }

@@ -3,6 +3,7 @@ use crate::diagnose::contract::parameter;
 use crate::diagnose::extension::hypothetical_worlds::{Act, Hypothesis, Simulated, of_channels};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::SensorFault;
+use crate::diagnose::hypotheses::{coulomb_friction, hysteresis, stiffness_hardening, viscous_friction};
 use crate::diagnose::selection::comparison::Compared;
 use haptics::Vec2;
 
@@ -26,8 +27,8 @@ impl Simulated for Channel {
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
         let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
         let known = match (self.name, candidate.id) {
-            ("sheet", "stiffness-hardening") => named("k3"),
-            ("sheet", "hysteresis") | ("hole", "coulomb-friction" | "viscous-friction" | "hysteresis") => true,
+            ("sheet", stiffness_hardening::ID) => named("k3"),
+            ("sheet", hysteresis::ID) | ("hole", coulomb_friction::ID | viscous_friction::ID | hysteresis::ID) => true,
             _ => false,
         };
         let linear =

@@ -12,6 +12,9 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{
+    coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
+};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -59,7 +62,7 @@ pub fn curve(
     rules: Rules,
 ) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
     let viscous =
-        push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
+        push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == viscous_friction::ID);
     let mut times = Vec::new();
     let mut points = Vec::new();
     for (row, found_n) in &push.rows {
@@ -141,8 +144,8 @@ pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = 
 /// Variable that best shows a cause beside the world's curve.
 pub fn best_seen(id: &str) -> Variable {
     match id {
-        "viscous-friction" => Variable::Velocity,
-        "force-gain" => Variable::Force,
+        viscous_friction::ID => Variable::Velocity,
+        force_gain::ID => Variable::Force,
         _ => Variable::Place,
     }
 }
@@ -153,28 +156,28 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     let half = known.half_way_m();
     let on = |side: usize| move |p: &Point| f64::from(u8::from(p.side == side));
     let mut found = vec![
-        one("coulomb-friction", "Fc", "N", vec![1.0; points.len()]).positive(),
-        one("friction-asymmetry", "dFc to the right", "N", of(&on(0))),
-        one("friction-asymmetry", "dFc to the left", "N", of(&on(1))),
+        one(coulomb_friction::ID, "Fc", "N", vec![1.0; points.len()]).positive(),
+        one(friction_asymmetry::ID, "dFc to the right", "N", of(&on(0))),
+        one(friction_asymmetry::ID, "dFc to the left", "N", of(&on(1))),
     ];
     if !viscous {
-        found.push(one("viscous-friction", "c", "N s/m", of(&|p| p.speed_m_s)).positive());
+        found.push(one(viscous_friction::ID, "c", "N s/m", of(&|p| p.speed_m_s)).positive());
     }
     let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
     let names = vec![("k", "N/m"), ("f0", "N")];
-    found.push(Candidate::several("return-spring", Kind::Plant, spring, names).shaped(Shape::Spring { half }));
+    found.push(Candidate::several(return_spring::ID, Kind::Plant, spring, names).shaped(Shape::Spring { half }));
     for k in 1..PLACES {
         let place = half * (2.0 * k as f64 / PLACES as f64 - 1.0);
         for width in WIDTHS.map(|share| 2.0 * half * share) {
-            let bind = one("local-resistance", "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
+            let bind = one(local_resistance::ID, "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
             if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
             }
         }
     }
-    found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", of(&|p| p.asked_n)));
+    found.push(Candidate::one(force_gain::ID, Kind::Instrument, "g - 1", "1", of(&|p| p.asked_n)));
     let scaled = of(&|p| -direction(p.side) * p.slope_n_m * p.at_m);
-    found.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", scaled));
+    found.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", scaled));
     for k in 1..=3 {
         let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
         for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
@@ -200,21 +203,23 @@ pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
     match found.candidate.id {
-        "coulomb-friction" => format!("the knob asks for {value:.2} N more than the world's in both directions"),
-        "friction-asymmetry" => format!("the knob asks for {value:+.2} N more than the world's in one direction alone"),
-        "viscous-friction" => "what the knob asks for beyond the world's goes with its speed".to_owned(),
-        "return-spring" => "the knob is drawn to one place, the same in both directions".to_owned(),
-        "local-resistance" => {
+        coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+        friction_asymmetry::ID => {
+            format!("the knob asks for {value:+.2} N more than the world's in one direction alone")
+        }
+        viscous_friction::ID => "what the knob asks for beyond the world's goes with its speed".to_owned(),
+        return_spring::ID => "the knob is drawn to one place, the same in both directions".to_owned(),
+        local_resistance::ID => {
             format!(
                 "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
                 1e3 * at("place")
             )
         }
-        "force-gain" => format!(
+        force_gain::ID => format!(
             "all forces are {:+.1} % of the world's too large; a switch that is harder by as much would look the same",
             100.0 * value
         ),
-        "length-scale" => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
+        length_scale::ID => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
         other => format!("{other} shows beside the world's curve"),
     }
 }

@@ -8,6 +8,7 @@ use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{local_resistance, return_spring, viscous_friction};
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::object::ToggleCurve;
 use haptics::law::{Effect, Inertia, Memories, Motion};
@@ -105,7 +106,7 @@ impl Forward for Thrown {
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let side = self.travel.side[window[0]].unwrap_or(0);
         let curve = self.curve(side, values);
-        let is_drag = |c: &Candidate| c.id == "viscous-friction";
+        let is_drag = |c: &Candidate| c.id == viscous_friction::ID;
         let drag: f64 = study.with_values(picks, values).filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
         let drive = |i: usize| {
             let beside = study.with_values(picks, values).filter(|(c, _)| !is_drag(c));
@@ -152,7 +153,7 @@ impl Forward for Captured {
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let side = self.points[window[0]].side;
         let goes_with_motion =
-            |c: &Candidate| ["viscous-friction", "return-spring", "local-resistance"].contains(&c.id);
+            |c: &Candidate| [viscous_friction::ID, return_spring::ID, local_resistance::ID].contains(&c.id);
         let drive = |i: usize| {
             let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
             let beside = study.with_values(picks, values).filter(|(c, _)| !goes_with_motion(c));
@@ -165,8 +166,8 @@ impl Forward for Captured {
         let acts = |motion: &Motion| {
             let at_m = direction(side) * motion.position;
             let law = |(candidate, own): &(&Candidate, &[f64])| match (candidate.id, candidate.searched.as_slice()) {
-                ("viscous-friction", _) => own[0] * motion.velocity,
-                ("return-spring", _) => direction(side) * (own[0] * at_m + own[1]),
+                (viscous_friction::ID, _) => own[0] * motion.velocity,
+                (return_spring::ID, _) => direction(side) * (own[0] * at_m + own[1]),
                 (_, [place, width]) => own[0] * bind_n(at_m, place.value, width.value),
                 _ => 0.0,
             };

@@ -19,6 +19,10 @@ use crate::diagnose::contract::{Alternative, CauseParameter, NextExperiment, Not
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{
+    added_constraint, backlash, coulomb_friction, force_gain, friction_asymmetry, friction_change, hysteresis,
+    length_scale, local_resistance, return_spring,
+};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
@@ -48,7 +52,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
         None => None,
     };
     // With another knob force or a sensor error, the knob rests at another position in its stops.
-    let has_changed = push.compared.study.has("friction-change");
+    let has_changed = push.compared.study.has(friction_change::ID);
     let other = has_changed || curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty());
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), rules)? };
     Ok(Look { seen, push, curve, stop })
@@ -104,12 +108,13 @@ fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
     };
     if !has_world {
         let why = "the curve is the recording's own; name a world that was captured before to compare it with";
-        let ids = ["coulomb-friction", "friction-asymmetry", "return-spring", "local-resistance", "force-gain"];
+        let ids =
+            [coulomb_friction::ID, friction_asymmetry::ID, return_spring::ID, local_resistance::ID, force_gain::ID];
         add(&ids, why);
-        add(&["length-scale", "added-constraint"], why);
+        add(&[length_scale::ID, added_constraint::ID], why);
     }
     add(
-        &["hysteresis", "backlash"],
+        &[hysteresis::ID, backlash::ID],
         "the motion turned at the stops only; turn round in the middle of the way, in touch",
     );
     for (side, way) in [(0, "right"), (1, "left")] {

@@ -1,17 +1,21 @@
 use crate::diagnose::contract::parameter;
 use crate::diagnose::extension::hypothetical_worlds::{Act, Hypothesis, Simulated, of_channels};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{
+    added_constraint, coulomb_friction, friction_asymmetry, local_resistance, pad_compliance, return_spring,
+    viscous_friction,
+};
 use crate::diagnose::selection::comparison::Study;
 
 /// Causes that a world's switch or its pads can have. A world has no change of friction over time and no length scale.
 pub(crate) const POSSIBLE: [&str; 7] = [
-    "viscous-friction",
-    "coulomb-friction",
-    "friction-asymmetry",
-    "return-spring",
-    "local-resistance",
-    "added-constraint",
-    "pad-compliance",
+    viscous_friction::ID,
+    coulomb_friction::ID,
+    friction_asymmetry::ID,
+    return_spring::ID,
+    local_resistance::ID,
+    added_constraint::ID,
+    pad_compliance::ID,
 ];
 
 /// Effects of a switch's channel. Its base model is already in the world.

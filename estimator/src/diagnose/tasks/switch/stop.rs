@@ -8,6 +8,7 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{added_constraint, pad_compliance, stiffness_hardening};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::Layout;
@@ -60,10 +61,10 @@ pub fn stop(
             whole: f64::NEG_INFINITY,
             most: f64::INFINITY,
         };
-        candidates.push(plant("pad-compliance", "give", "m/N", force).at_least(least).shaped(shape));
+        candidates.push(plant(pad_compliance::ID, "give", "m/N", force).at_least(least).shaped(shape));
         for (wanted, name) in [(0, "right stop is nearer by"), (1, "left stop is nearer by")] {
             let nearer = on(wanted).iter().map(|v| -v).collect();
-            let wall = plant("added-constraint", name, "m", nearer).positive();
+            let wall = plant(added_constraint::ID, name, "m", nearer).positive();
             candidates.push(wall.at_least(ERRORS * known.end_error_m));
             let expression = Some(["the right stop, farther away", "the left stop, farther away"][wanted].to_owned());
             let farther = Candidate { expression, ..plant("other", "way", "m", on(wanted)).positive() };
@@ -72,7 +73,7 @@ pub fn stop(
     } else {
         base.extend([0, 1].map(on).into_iter().filter(|c| c.iter().any(|v| *v != 0.0)));
         base.push(force);
-        candidates.push(plant("stiffness-hardening", "bend", "m/N", bend).positive());
+        candidates.push(plant(stiffness_hardening::ID, "bend", "m/N", bend).positive());
     }
     let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     for k in 1..=3 {
@@ -103,11 +104,11 @@ pub fn best_seen(_: &str) -> Variable {
 pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     match found.candidate.id {
-        "pad-compliance" => {
+        pad_compliance::ID => {
             format!("pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give", 1e3 * value)
         }
-        "stiffness-hardening" => "pressed harder against a stop, the pads give less and less".to_owned(),
-        "added-constraint" => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
+        stiffness_hardening::ID => "pressed harder against a stop, the pads give less and less".to_owned(),
+        added_constraint::ID => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
         other => format!("{other} shows on the stops"),
     }
 }

@@ -9,6 +9,7 @@ use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;
@@ -217,8 +218,8 @@ fn view(rows: &[Row]) -> View {
 /// Variable that best shows a cause on the travel of the throws.
 pub fn best_seen(id: &str) -> Variable {
     match id {
-        "viscous-friction" => Variable::Velocity,
-        "time-delay" => Variable::Place,
+        viscous_friction::ID => Variable::Velocity,
+        time_delay::ID => Variable::Place,
         _ => Variable::Time,
     }
 }
@@ -238,7 +239,7 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let pushed = |f: &dyn Fn(&Row) -> f64| of(&|r| if matches!(r.place, Place::Push(_)) { f(r) } else { 0.0 });
     let mut found = vec![
-        Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", pushed(&|r| r.speed_m_s()))
+        Candidate::one(viscous_friction::ID, Kind::Plant, "c", "N s/m", pushed(&|r| r.speed_m_s()))
             .positive()
             .at_least(LEAST_VISCOUS_N_S_M),
     ];
@@ -247,19 +248,19 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         -slope * r.speed_m_s()
     };
     // Damping of the pads puts the force slightly ahead, which is no fault of the clocks.
-    found.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", pushed(&late)).positive());
+    found.push(Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", pushed(&late)).positive());
     let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     if seen.recordings == 1 {
-        found.push(Candidate::one("friction-change", Kind::Plant, "rate", "N/s", pushed(&|r| r.time_s)));
+        found.push(Candidate::one(friction_change::ID, Kind::Plant, "rate", "N/s", pushed(&|r| r.time_s)));
         for k in 1..CHANGES {
             let t0 = span_s * k as f64 / CHANGES as f64;
             let column = pushed(&|r| f64::from(u8::from(r.time_s >= t0)));
-            found.push(Candidate::one("friction-change", Kind::Plant, "change", "N", column).at("t0", t0, "s"));
+            found.push(Candidate::one(friction_change::ID, Kind::Plant, "change", "N", column).at("t0", t0, "s"));
         }
     }
     for recording in 1..seen.recordings {
         let column = pushed(&|r| f64::from(u8::from(r.recording >= recording)));
-        let change = Candidate::one("friction-change", Kind::Plant, "change", "N", column);
+        let change = Candidate::one(friction_change::ID, Kind::Plant, "change", "N", column);
         found.push(change.at("from recording", (recording + 1) as f64, "1"));
     }
     sensors(rows, &mut found);
@@ -288,8 +289,8 @@ fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
         let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
         found.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
     };
-    all("force-bias", &BIAS, &|_| 1.0);
-    all("force-drift", &DRIFT, &|r| r.time_s);
+    all(force_bias::ID, &BIAS, &|_| 1.0);
+    all(force_drift::ID, &DRIFT, &|r| r.time_s);
 }
 
 impl Push {
@@ -313,18 +314,18 @@ impl Push {
     pub fn shows(found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
-            "viscous-friction" => {
+            viscous_friction::ID => {
                 format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
             }
-            "friction-change" => {
+            friction_change::ID => {
                 "at the same place the knob asks for another force, the same way in both directions, as time goes on"
                     .to_owned()
             }
-            "time-delay" => {
+            time_delay::ID => {
                 format!("the force comes {:.1} ms after the motion: fast throws have their peak elsewhere", 1e3 * value)
             }
-            "force-bias" => "fingers that touch nothing feel a force".to_owned(),
-            "force-drift" => "the forces of fingers that touch nothing go with time".to_owned(),
+            force_bias::ID => "fingers that touch nothing feel a force".to_owned(),
+            force_drift::ID => "the forces of fingers that touch nothing go with time".to_owned(),
             other => format!("{other} shows on the way of the throws"),
         }
     }
@@ -332,10 +333,10 @@ impl Push {
     /// Smallest sizes that matter, with the experiment that would show them.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         Some(match (candidate.id, candidate.linear[0].0) {
-            ("viscous-friction", _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
-            ("friction-change", "change") => (0.05, "there were few throws; go on for longer"),
-            ("time-delay", _) => (5e-3, "the throws were all of one speed; throw it slowly and fast"),
-            ("force-bias", _) => (0.01, "no finger was ever free; start and end with a second of free motion"),
+            (viscous_friction::ID, _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
+            (friction_change::ID, "change") => (0.05, "there were few throws; go on for longer"),
+            (time_delay::ID, _) => (5e-3, "the throws were all of one speed; throw it slowly and fast"),
+            (force_bias::ID, _) => (0.01, "no finger was ever free; start and end with a second of free motion"),
             _ => return None,
         })
     }

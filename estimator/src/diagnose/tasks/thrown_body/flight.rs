@@ -2,6 +2,7 @@
 
 use crate::diagnose::contract::{Alternative, Cause, Gain, RolloutOf, parameter};
 use crate::diagnose::free_run::windows::{Compared, told};
+use crate::diagnose::hypotheses::{channel_fault, length_scale};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::identify::tossed::Tossed;
@@ -32,7 +33,7 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     let (length, clock) = (likely(LENGTHS, value), likely(CLOCKS, 0.5 * value));
     let posterior = length / (length + clock);
     let cause = Cause {
-        id: "length-scale".to_owned(),
+        id: length_scale::ID.to_owned(),
         kind: Kind::Instrument,
         parameters: vec![parameter("epsilon", value, error, "1")],
         p_value: chi_square_tail(lambda, 1.0),
@@ -47,8 +48,8 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
         ),
     };
     let other = Alternative {
-        id: "channel-fault".to_owned(),
-        instead_of: "length-scale".to_owned(),
+        id: channel_fault::ID.to_owned(),
+        instead_of: length_scale::ID.to_owned(),
         posterior: 1.0 - posterior,
         why: format!(
             "a clock that is {:+.2} % off makes the same fall; clocks are rarely off by so much (0.1 % was assumed, 2 % for lengths)",

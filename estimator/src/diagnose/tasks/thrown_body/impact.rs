@@ -7,6 +7,7 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::velocity_loss;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::layout::Layout;
@@ -72,7 +73,7 @@ pub fn blow(
     let pushed = UNSEEN * seen.fall.down_m_s2 * step_s / speed;
     let y: Vec<f64> = pairs.iter().map(|(before, after)| after + restitution * before).collect();
     let column: Vec<f64> = pairs.iter().map(|(before, _)| -before).collect();
-    let lost = Candidate::one("velocity-loss", Kind::Plant, "change of e", "1", column);
+    let lost = Candidate::one(velocity_loss::ID, Kind::Plant, "change of e", "1", column);
     let along = vec![true; n];
     let layout = Layout::of((0..n).collect(), &along, 1.0);
     let study = Channel::new(y, Vec::new(), vec![lost], layout, Rules::of_observations()).fit()?;

@@ -10,6 +10,7 @@ use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, NextExpe
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{channel_fault, coulomb_friction, length_scale, load_friction, velocity_loss};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::estimate::EstimateError;
@@ -51,16 +52,16 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let mut unseen =
         |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
     if half_width_m.is_some() && blow.is_none() {
-        unseen("velocity-loss", "too few impacts on one corner, with free flight before and after, were seen");
+        unseen(velocity_loss::ID, "too few impacts on one corner, with free flight before and after, were seen");
     }
     if half_width_m.is_none() {
-        unseen("velocity-loss", "the places of the corners are not known; state half_width_m in the sidecar");
+        unseen(velocity_loss::ID, "the places of the corners are not known; state half_width_m in the sidecar");
     }
     if sliding.is_none() {
-        unseen("load-friction", "the body does not slide flat for long enough; throw it flatter");
+        unseen(load_friction::ID, "the body does not slide flat for long enough; throw it flatter");
     }
     unseen(
-        "coulomb-friction",
+        coulomb_friction::ID,
         "the body slides under its own weight only: friction in proportion to the load and a constant one are the same",
     );
     let mean = mean_friction(seen);
@@ -88,7 +89,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
 /// Takes the figures from the falls if nothing else could be compared.
 fn of_falls(found: &mut Diagnosis, seen: &Tossed, gravity_m_s2: f64) {
     let [before_m, after_m, own_m] = flight::left_m(seen, gravity_m_s2);
-    let is_named = found.causes.iter().any(|c| c.id == "length-scale");
+    let is_named = found.causes.iter().any(|c| c.id == length_scale::ID);
     let baseline = &mut found.baseline;
     (baseline.rms_n, baseline.heldout_rms_n) = (before_m, before_m);
     (baseline.of, baseline.unit) = (Some("height of the flights".to_owned()), Some("m".to_owned()));
@@ -117,7 +118,7 @@ fn mean_friction(seen: &Tossed) -> f64 {
 
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
-    let motion = if first.id == "channel-fault" {
+    let motion = if first.id == channel_fault::ID {
         "drop the body beside a scale of known length, or film a clock: a wrong clock leaves lengths at rest as they are"
     } else {
         "let the body slide flat from several speeds, and load it with a known weight"

@@ -6,6 +6,7 @@ use crate::diagnose::contract::{CauseParameter, RolloutOf};
 use crate::diagnose::free_run::channel::{Forward, columns};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
 use crate::diagnose::selection::layout::Layout;
@@ -66,14 +67,14 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         Candidate::one(id, Kind::Plant, name, unit, all(of)).positive().at_least(least(of))
     };
     let mut candidates = vec![
-        Candidate::one("load-friction", Kind::Plant, "mu", "1", dry).at_least(LEAST_MU),
-        follows("viscous-friction", "c/m", "1/s", &|v| v),
-        follows("quadratic-drag", "k/m", "1/m", &|v| v * v),
+        Candidate::one(load_friction::ID, Kind::Plant, "mu", "1", dry).at_least(LEAST_MU),
+        follows(viscous_friction::ID, "c/m", "1/s", &|v| v),
+        follows(quadratic_drag::ID, "k/m", "1/m", &|v| v * v),
     ];
     for share in STRIBECK {
         let vs = share * usual;
         let falls_off = |v: f64| fall * (-(v / vs).powi(2)).exp();
-        let bent = Candidate::one("stribeck", Kind::Plant, "dmu", "1", all_dry(&falls_off));
+        let bent = Candidate::one(stribeck::ID, Kind::Plant, "dmu", "1", all_dry(&falls_off));
         candidates.push(bent.positive().at_least(least(&falls_off)).at("vs", vs, "m/s"));
     }
     let stretch: Vec<usize> = ways.iter().enumerate().flat_map(|(k, w)| w.time_s.iter().map(move |_| k)).collect();
@@ -125,7 +126,7 @@ impl Forward for Slides<'_> {
 
 /// Variable that best shows a cause in the slides.
 pub fn best_seen(id: &str) -> Variable {
-    if id == "load-friction" { Variable::Time } else { Variable::Velocity }
+    if id == load_friction::ID { Variable::Time } else { Variable::Velocity }
 }
 
 fn way(seen: &Tossed, slide: &Slide) -> Option<Way> {
@@ -212,7 +213,7 @@ fn floor(ways: &[Way]) -> f64 {
 
 /// Parameters for the answer. Slides scatter more than their samples do: `scatter` is the standard error from it.
 pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
-    if candidate.id == "load-friction" {
+    if candidate.id == load_friction::ID {
         for p in &mut found {
             p.std_error = p.std_error.hypot(scatter);
         }
@@ -223,15 +224,15 @@ pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f6
 /// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
-        "load-friction" => {
+        load_friction::ID => {
             let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
             format!(
                 "the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}"
             )
         }
-        "viscous-friction" => "the faster the body slides, the more it slows down".to_owned(),
-        "quadratic-drag" => "the body slows down with the square of its speed".to_owned(),
-        "stribeck" => "the body slows down more just before it stops".to_owned(),
+        viscous_friction::ID => "the faster the body slides, the more it slows down".to_owned(),
+        quadratic_drag::ID => "the body slows down with the square of its speed".to_owned(),
+        stribeck::ID => "the body slows down more just before it stops".to_owned(),
         other => format!("{other} shows in the slides"),
     }
 }

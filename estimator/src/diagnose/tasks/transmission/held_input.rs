@@ -7,6 +7,9 @@ use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
 use crate::diagnose::free_run::windows::NO_LAW;
+use crate::diagnose::hypotheses::{
+    coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
+};
 use crate::diagnose::selection::comparison::Study;
 use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
@@ -33,10 +36,10 @@ impl Input {
     /// Law of a friction of this size, or of a cause that is a law by itself.
     fn law(&self, id: &str, value: f64) -> Option<Effect> {
         Some(match id {
-            "load-friction" => Effect::new(&LoadFriction, &[value]),
-            "viscous-friction" => Effect::new(&ViscousFriction, &[value]),
-            "quadratic-drag" => Effect::new(&QuadraticDrag, &[value]),
-            "return-spring" => Effect::new(&ReturnSpring, &[value, 0.0, 0.0, self.middle]),
+            load_friction::ID => Effect::new(&LoadFriction, &[value]),
+            viscous_friction::ID => Effect::new(&ViscousFriction, &[value]),
+            quadratic_drag::ID => Effect::new(&QuadraticDrag, &[value]),
+            return_spring::ID => Effect::new(&ReturnSpring, &[value, 0.0, 0.0, self.middle]),
             _ => return None,
         })
     }
@@ -46,9 +49,9 @@ impl Input {
         let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
         for (candidate, own) in study.with_values(picks, values) {
             match candidate.id {
-                "coulomb-friction" => dry += own[0],
+                coulomb_friction::ID => dry += own[0],
                 // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
-                "hysteresis" => {
+                hysteresis::ID => {
                     let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
                     dry -= own[0];
                     effects.push(Effect::new(&Hysteresis, &[own[0], own[0] / way]));

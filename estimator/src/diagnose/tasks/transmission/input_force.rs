@@ -6,6 +6,9 @@ use super::held_input::Input;
 use super::load_confounding::Told;
 use super::rows::{Columns, Row, Seen, constants, stretches_of};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{
+    coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
+};
 use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
@@ -55,26 +58,26 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
     let (low, high) = seen.ends();
     let middle = 0.5 * (low + high);
     let mut plain = vec![
-        Candidate::one("coulomb-friction", Kind::Plant, "Fc", names.force_unit, direction.clone()).positive(),
-        Candidate::one("viscous-friction", Kind::Plant, "c", "", of(&|r| r.rate)).positive(),
-        Candidate::one("return-spring", Kind::Plant, "k", "", of(&|r| r.input - middle)),
-        Candidate::one("quadratic-drag", Kind::Plant, "k", "", of(&|r| r.rate * r.rate.abs())).positive(),
+        Candidate::one(coulomb_friction::ID, Kind::Plant, "Fc", names.force_unit, direction.clone()).positive(),
+        Candidate::one(viscous_friction::ID, Kind::Plant, "c", "", of(&|r| r.rate)).positive(),
+        Candidate::one(return_spring::ID, Kind::Plant, "k", "", of(&|r| r.input - middle)),
+        Candidate::one(quadratic_drag::ID, Kind::Plant, "k", "", of(&|r| r.rate * r.rate.abs())).positive(),
     ];
     if is_loaded {
         let column = rows.iter().zip(&direction).map(|(r, d)| r.load.map_or(0.0, f64::abs) * d).collect();
-        plain.push(Candidate::one("load-friction", Kind::Plant, "mu", "1", column).positive());
+        plain.push(Candidate::one(load_friction::ID, Kind::Plant, "mu", "1", column).positive());
     }
     plain.extend(generic(&rows, low, high));
     let once = |tried: &[Tried]| {
         let bend = |way: &f64| {
             let bent = seen.column(&kept, &|f| f.bent(*way)).iter().zip(&direction).map(|(z, d)| z - d).collect();
-            let cause = Candidate::one("hysteresis", Kind::Plant, "Fc", names.force_unit, bent).positive();
+            let cause = Candidate::one(hysteresis::ID, Kind::Plant, "Fc", names.force_unit, bent).positive();
             cause.at("way", *way, names.unit)
         };
         let candidates = tried[0].values().iter().map(bend).chain(plain.iter().cloned()).collect();
         fit(of(&|r| r.force.unwrap_or(0.0)), &base, candidates, &rows)
     };
-    let study = closer(&mut [Tried::new("hysteresis", high - low)], &once)?;
+    let study = closer(&mut [Tried::new(hysteresis::ID, high - low)], &once)?;
     let told = if is_loaded { Told::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
     let input = Input::new((&rows, &stretch), names.force_unit, inertia, seen);

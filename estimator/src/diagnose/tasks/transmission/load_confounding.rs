@@ -2,6 +2,7 @@
 
 use super::rows::Row;
 use crate::diagnose::contract::Alternative;
+use crate::diagnose::hypotheses::{coulomb_friction, force_gain};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::{Use, solve};
 use crate::signal::noise::white_noise;
@@ -62,8 +63,8 @@ impl Told {
     /// Alternative explanation of that friction by the load.
     pub fn alternative(&self) -> Option<Alternative> {
         self.is_one().then(|| Alternative {
-            id: "force-gain".to_owned(),
-            instead_of: "coulomb-friction".to_owned(),
+            id: force_gain::ID.to_owned(),
+            instead_of: coulomb_friction::ID.to_owned(),
             posterior: 0.5,
             why: WHY.to_owned(),
         })

@@ -5,6 +5,7 @@ use super::grid::{Tried, closer};
 use super::rows::{Columns, Row, Seen, constants, ratio, spread};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
@@ -42,7 +43,7 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
             for sign in [1.0, -1.0] {
                 let column = of(&|r| sign * f(r).unwrap_or(0.0));
                 let least = least(&column);
-                let gives = Candidate::one("pad-compliance", Kind::Plant, "give", names.give, column);
+                let gives = Candidate::one(pad_compliance::ID, Kind::Plant, "give", names.give, column);
                 plain.push(gives.positive().at_least(least));
             }
         }
@@ -50,7 +51,9 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     let late = of(&|r| -r.rate);
     let least_late = least(&late).max(CLOCKS_DIFFER_S * lever.abs());
     let rate_noise = seen.fine.iter().map(Fine::rate_noise).fold(0.0, f64::max);
-    plain.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", late).at_least(least_late).noisy(rate_noise));
+    plain.push(
+        Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late).at_least(least_late).noisy(rate_noise),
+    );
     plain.extend(generic(rows, low, high).into_iter().map(|term| {
         let least = least(&term.columns[0]);
         term.at_least(least)
@@ -58,19 +61,19 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     let once = |tried: &[Tried]| {
         let gap = |half: &f64| {
             let lost = seen.column(&kept, &|f| f.lost(*half));
-            let cause = Candidate::one("backlash", Kind::Plant, "share", "1", lost).positive().shaped(share);
+            let cause = Candidate::one(backlash::ID, Kind::Plant, "share", "1", lost).positive().shaped(share);
             cause.at("delta", *half, names.unit)
         };
         let bend = |way: &f64| {
             let bent = seen.column(&kept, &|f| f.bent(*way)).iter().map(|z| -way * z).collect();
-            let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", bent).positive().shaped(share);
+            let cause = Candidate::one(hysteresis::ID, Kind::Plant, "share", "1", bent).positive().shaped(share);
             cause.at("way", *way, names.unit)
         };
         let searched = tried[0].values().iter().map(gap).chain(tried[1].values().iter().map(bend));
         let candidates = searched.chain(plain.iter().cloned()).collect();
         fit(of(&|r| r.output), &base, candidates, &rows)
     };
-    let mut tried = ["backlash", "hysteresis"].map(|id| Tried::new(id, high - low));
+    let mut tried = [backlash::ID, hysteresis::ID].map(|id| Tried::new(id, high - low));
     let study = closer(&mut tried, &once)?;
     Ok(Side::new(study, rows.clone(), ("output's place", names.unit), noise))
 }
@@ -100,7 +103,7 @@ pub fn as_of_input(
                 let small = place.map_or(0.0, |k| p.value * noise_of_own(study, study.chosen[k].candidate));
                 (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
             }
-            "k" if own.id == "pad-compliance" => p.unit = format!("{}/{}", names.force_unit, names.unit),
+            "k" if own.id == pad_compliance::ID => p.unit = format!("{}/{}", names.force_unit, names.unit),
             _ => {}
         }
     }

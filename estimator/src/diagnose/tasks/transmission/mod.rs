@@ -15,6 +15,9 @@ use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::hypotheses::{
+    backlash, coulomb_friction, hysteresis, load_friction, pad_compliance, quadratic_drag, time_delay, viscous_friction,
+};
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -69,7 +72,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let force = input_force::force(&seen, names)?;
     if force.is_none() {
         let why = "no force at the input was recorded".to_owned();
-        beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
     }
     if seen.rows.iter().all(|r| r.load.is_none()) {
         beside
@@ -78,18 +81,18 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     }
     let told = force.as_ref().and_then(|f| f.told.as_ref());
     if let (Some(force), Some(told)) = (&force, told.filter(|t| t.is_one())) {
-        if force.side.compared.study.has("coulomb-friction") {
+        if force.side.compared.study.has(coulomb_friction::ID) {
             beside.alternatives.extend(told.alternative());
         } else {
             let why = load_confounding::WHY.to_owned();
-            beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+            beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
         }
     }
     let way_states = |c: &Candidate, found: Vec<CauseParameter>| {
         lost_motion::as_of_input(&way.compared.study, c, found, (names, seen.step))
     };
     let force_states = |c: &Candidate, mut found: Vec<CauseParameter>| {
-        if let (Some(told), true) = (told, c.id == "coulomb-friction") {
+        if let (Some(told), true) = (told, c.id == coulomb_friction::ID) {
             for p in &mut found {
                 p.std_error = p.std_error.hypot(told.error(p.value));
             }
@@ -161,8 +164,8 @@ fn view(rows: &[Row], names: &Columns) -> View {
 /// Variable that best shows a cause of a transmission.
 fn best_seen(id: &str) -> Variable {
     match id {
-        "coulomb-friction" | "viscous-friction" | "quadratic-drag" | "time-delay" => Variable::Velocity,
-        "pad-compliance" | "load-friction" => Variable::Load,
+        coulomb_friction::ID | viscous_friction::ID | quadratic_drag::ID | time_delay::ID => Variable::Velocity,
+        pad_compliance::ID | load_friction::ID => Variable::Load,
         _ => Variable::Place,
     }
 }
@@ -193,7 +196,7 @@ fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
 fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     match found.candidate.id {
-        "backlash" => {
+        backlash::ID => {
             let half = found.candidate.searched.first().map_or(0.0, |s| s.value);
             format!(
                 "after each reversal the output waits until the input has gone {:.4} {}",
@@ -201,12 +204,12 @@ fn shows(found: &Found<'_>) -> String {
                 found.candidate.searched[0].unit
             )
         }
-        "hysteresis" => "after each reversal the output follows more and more, not at once".to_owned(),
-        "pad-compliance" => "the output gives way under the load".to_owned(),
-        "coulomb-friction" => {
+        hysteresis::ID => "after each reversal the output follows more and more, not at once".to_owned(),
+        pad_compliance::ID => "the output gives way under the load".to_owned(),
+        coulomb_friction::ID => {
             format!("the force turns round with the direction of motion, whatever the speed ({value:.4})")
         }
-        "load-friction" => "the force turns round with the direction of motion, in proportion to the load".to_owned(),
+        load_friction::ID => "the force turns round with the direction of motion, in proportion to the load".to_owned(),
         other => format!("{other} shows in the transmission"),
     }
 }
