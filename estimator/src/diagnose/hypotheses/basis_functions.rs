@@ -17,6 +17,16 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     generic_of(track, WAVES, SLOW)
 }
 
+/// Half waves over the duration of these times, s: generic terms of a channel in this unit.
+pub fn slow_waves(time_s: &[f64], count: u32, unit: &'static str) -> impl Iterator<Item = Candidate> {
+    let span_s = time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
+    (1..=count).map(move |k| {
+        let wave = time_s.iter().map(|t| (std::f64::consts::PI * f64::from(k) * t / span_s).cos()).collect();
+        let expression = Some(format!("cos({k} pi t/T)"));
+        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", unit, wave) }
+    })
+}
+
 /// The same with this number of waves over the range, and in time.
 pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     let mut all = Vec::new();

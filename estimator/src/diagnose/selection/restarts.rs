@@ -1,15 +1,12 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::comparison::Study;
-use super::stepwise::Selection;
+use super::stepwise::{MANY, Selection};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
 
 /// Number of causes, strongest alone, that are tried as the first of a pair.
 const FIRST: usize = 6;
-/// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
-/// of two.
-pub const MANY: usize = 2;
 
 impl Selection<'_> {
     /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the

@@ -1,7 +1,6 @@
 //! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
 
 use super::normal_equations::{Solved, System};
-use super::restarts::MANY;
 use super::rules::Rules;
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -9,6 +8,9 @@ use crate::diagnose::hypotheses::relations::{Form, Relation};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
+/// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
+/// of two.
+pub const MANY: usize = 2;
 /// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
 const MOST_CAUSES: usize = 4;
 const FRICTIONS: usize = 2;

@@ -5,6 +5,7 @@ use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
@@ -170,17 +171,11 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
 
 /// Generic terms of the residual: waves over time, and positions.
 fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
-    let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
     let term = |expression: String, column: Vec<f64>| Candidate {
         expression: Some(expression),
         ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
     };
-    let mut found: Vec<Candidate> = (1..=4)
-        .map(|k| {
-            let wave = rows.time_s.iter().map(|t| (std::f64::consts::PI * f64::from(k) * t / span).cos()).collect();
-            term(format!("cos({k} pi t/T)"), wave)
-        })
-        .collect();
+    let mut found: Vec<Candidate> = slow_waves(&rows.time_s, 4, "").collect();
     let mut places = [Vec::new(), Vec::new()];
     for one in seen {
         for number in 1..=one.count {

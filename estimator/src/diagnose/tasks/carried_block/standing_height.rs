@@ -5,6 +5,7 @@ use super::signals::Seen;
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
@@ -113,12 +114,7 @@ pub fn ground(
         candidates.push(cause(vec![give, contact], vec![("give", "m/N"), ("give of a contact", "m/N")]));
     }
     slips(&rows, &stands, &model, &mut candidates);
-    let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
-    candidates.extend((1..=3).map(|k| {
-        let wave = of(&|i| (std::f64::consts::PI * f64::from(k) * rows.time_s[i] / span).cos());
-        let expression = Some(format!("cos({k} pi t/T)"));
-        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
-    }));
+    candidates.extend(slow_waves(&rows.time_s, 3, ""));
     let stretch = segments(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
     let since = |i: usize| i - stands[rows.stand[i]].first;
     let along: Vec<bool> = (0..n).map(|i| since(i) >= FIRST && since(i) % HELD_OUT == 0).collect();

@@ -124,23 +124,9 @@ impl Made {
             position,
             hidden,
         ]);
-        let fill = (FINE_HZ * self.period_s).round().max(1.0) as usize;
-        let skip = skip(self.period_s);
+        let (fill, skip) = (self.fill(), skip(self.period_s));
         let first_fine = self.fine.len();
-        for (k, i) in range.clone().enumerate().step_by(skip) {
-            let point = Fine {
-                stretch: number,
-                time_s: raw.time_s[i],
-                position: raw.position[i],
-                velocity: calm[k],
-                direction: 0.0,
-                open: 0.0,
-            };
-            if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
-                self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
-            }
-            self.fine.push(point);
-        }
+        self.add_points(raw, &calm, range.clone(), number);
         let mean = |values: &[f64], from: usize| trapezoid(&values[from..=from + block]);
         let blocks = (range.len() - 1) / block;
         for b in 1..blocks {
@@ -174,6 +160,30 @@ impl Made {
                 span: Span { start, len: end - start, weighing: Weighing::Hat },
                 open: 0.0,
             });
+        }
+    }
+
+    /// Number of points for one sample.
+    fn fill(&self) -> usize {
+        (FINE_HZ * self.period_s).round().max(1.0) as usize
+    }
+
+    /// Adds the points of a segment with this `number`, with the smoothed velocities `calm`.
+    fn add_points(&mut self, raw: &Raw, calm: &[f64], range: std::ops::Range<usize>, number: usize) {
+        let fill = self.fill();
+        for (k, i) in range.enumerate().step_by(skip(self.period_s)) {
+            let point = Fine {
+                stretch: number,
+                time_s: raw.time_s[i],
+                position: raw.position[i],
+                velocity: calm[k],
+                direction: 0.0,
+                open: 0.0,
+            };
+            if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
+                self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
+            }
+            self.fine.push(point);
         }
     }
 

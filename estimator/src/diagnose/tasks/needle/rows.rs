@@ -178,10 +178,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let stride = 2 * half;
     let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
     let between = Between::new(&time, &depth, surface_m, &in_hole, half);
-    let step_s = match time.as_slice() {
-        [first, .., last] => (last - first) / (time.len() - 1) as f64,
-        _ => 1.0,
-    };
+    let step_s = mean_step_s(&time);
     let (mut rows, mut of_row): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
     for (i, of) in phases.iter().enumerate().step_by(stride) {
         let Some((phase, hold, push, deepest)) = *of else { continue };
@@ -204,14 +201,8 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         });
     }
     let period_s = stride as f64 * step_s;
-    let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-    let numbers = segments(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
-    rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
+    number_segments(&mut rows, period_s);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
-    // Noise of the slope of a line through the window.
-    let half = half as f64;
-    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
-    let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
     let punctures = pushes.iter().filter_map(|p| Some((p, p.puncture?))).map(|(push, i)| {
         let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
         let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
@@ -227,12 +218,34 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         two_fingered: along.two_fingered,
         stiffness_n_m: sheet.loading.stiffness_n_m,
         rate_noise_m_s,
-        slope_noise_m_s,
+        slope_noise_m_s: slope_noise(&own, half, step_s),
         punctures: punctures.collect(),
         late: None,
     };
     seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
     Ok(seen)
+}
+
+/// Mean time between samples, s.
+fn mean_step_s(time: &[f64]) -> f64 {
+    match time {
+        [first, .., last] => (last - first) / (time.len() - 1) as f64,
+        _ => 1.0,
+    }
+}
+
+/// Noise of the slope of a line through a window of `half` samples to either side, a second.
+fn slope_noise(values: &[f64], half: usize, step_s: f64) -> f64 {
+    let half = half as f64;
+    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
+    white_noise(values) / (spread.sqrt() * step_s.max(1e-9))
+}
+
+/// Numbers the segments: rows of one phase and one hold, without a gap.
+fn number_segments(rows: &mut [Row], period_s: f64) {
+    let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+    let numbers = segments(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
+    rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
 }
 
 type Of = Option<(Phase, usize, usize, f64)>;

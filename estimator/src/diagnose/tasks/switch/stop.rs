@@ -6,6 +6,7 @@ use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{added_constraint, pad_compliance, stiffness_hardening};
@@ -50,37 +51,16 @@ pub fn stop(
     let force = of(&pressed);
     let on = |wanted: usize| rows.iter().map(|r| f64::from(u8::from(side(r) == wanted))).collect::<Vec<f64>>();
     let mut candidates = Vec::new();
-    let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     if let Some(known) = known {
         // The position of the switch is estimated: it may have been moved.
         base.push(of(&|r| direction(side(r))));
-        let least = ERRORS * known.give_error_m_n;
-        // However stiff other pads are, their compliance is not negative.
-        let shape = Shape::Share {
-            least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
-            whole: f64::NEG_INFINITY,
-            most: f64::INFINITY,
-        };
-        candidates.push(plant(pad_compliance::ID, "give", "m/N", force).at_least(least).shaped(shape));
-        for (wanted, name) in [(0, "right stop is nearer by"), (1, "left stop is nearer by")] {
-            let nearer = on(wanted).iter().map(|v| -v).collect();
-            let wall = plant(added_constraint::ID, name, "m", nearer).positive();
-            candidates.push(wall.at_least(ERRORS * known.end_error_m));
-            let expression = Some(["the right stop, farther away", "the left stop, farther away"][wanted].to_owned());
-            let farther = Candidate { expression, ..plant("other", "way", "m", on(wanted)).positive() };
-            candidates.push(farther.at_least(ERRORS * known.end_error_m));
-        }
+        candidates.extend(beside_a_world(known, force, [0, 1].map(on)));
     } else {
         base.extend([0, 1].map(on).into_iter().filter(|c| c.iter().any(|v| *v != 0.0)));
         base.push(force);
-        candidates.push(plant(stiffness_hardening::ID, "bend", "m/N", bend).positive());
+        candidates.push(Candidate::one(stiffness_hardening::ID, Kind::Plant, "bend", "m/N", bend).positive());
     }
-    let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
-    for k in 1..=3 {
-        let wave = of(&|r| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos());
-        let expression = Some(format!("cos({k} pi t/T)"));
-        candidates.push(Candidate { expression, ..plant("other", "amplitude", "m", wave) }.at_least(STRANGE_M));
-    }
+    candidates.extend(slow_waves(&of(&|r| r.time_s), 3, "m").map(|wave| wave.at_least(STRANGE_M)));
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let floor = white_noise(&y);
     let layout = Layout::of(stretch.clone(), &along, seen.period_s);
@@ -93,6 +73,32 @@ pub fn stop(
     // Pads have damping: the first regressor is the rate.
     let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, state }, view, pads)))
+}
+
+/// Candidates beside a world's switch: pads of another stiffness, and stops at other positions. `on`: rows on the right
+/// and on the left stop, as regressors.
+fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<Candidate> {
+    let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
+    // However stiff other pads are, their compliance is not negative.
+    let shape = Shape::Share {
+        least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
+        whole: f64::NEG_INFINITY,
+        most: f64::INFINITY,
+    };
+    let give = plant(pad_compliance::ID, "give", "m/N", force);
+    let mut found = vec![give.at_least(ERRORS * known.give_error_m_n).shaped(shape)];
+    let least_m = ERRORS * known.end_error_m;
+    let names = [
+        ("right stop is nearer by", "the right stop, farther away"),
+        ("left stop is nearer by", "the left stop, farther away"),
+    ];
+    for (rows, (nearer, farther)) in on.into_iter().zip(names) {
+        let wall = rows.iter().map(|v| -v).collect();
+        found.push(plant(added_constraint::ID, nearer, "m", wall).positive().at_least(least_m));
+        let expression = Some(farther.to_owned());
+        found.push(Candidate { expression, ..plant("other", "way", "m", rows).positive() }.at_least(least_m));
+    }
+    found
 }
 
 /// Variable that best shows a cause on the stops: the force on the knob.
