@@ -7,7 +7,7 @@ use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Number of recordings above which they are repetitions, not answers to each other.
-const MOST: usize = 8;
+const MOST_RECORDINGS: usize = 8;
 
 /// Named cause and its alternative.
 type Pair = (String, String);
@@ -24,7 +24,7 @@ pub fn settled(
     ask: &dyn Fn(&[Recording]) -> Result<Findings, EstimateError>,
 ) -> Vec<Settled> {
     let mut all = Vec::new();
-    if !(2..=MOST).contains(&recordings.len()) {
+    if !(2..=MOST_RECORDINGS).contains(&recordings.len()) {
         return all;
     }
     let mut unsettled: Vec<Pair> = Vec::new();

@@ -15,7 +15,7 @@ const CLOCKS_S: f64 = 1e-3;
 /// Speed, in units of the velocity blur, below which the object may stick: its friction is then undetermined.
 const STICKS: f64 = 1.0;
 /// Number of sticking rows that count as one observation. Rows of a mechanism overlap, and none of them sticks alone.
-pub const TOGETHER: f64 = 3.0;
+pub const STICKING_ROWS_TOGETHER: f64 = 3.0;
 /// Uncertainty of the direction above which a row counts as standing.
 pub const STANDS: f64 = 0.4;
 /// Share of the squared friction that stays uncertain in a row with a reversal at a known position.
@@ -26,7 +26,7 @@ const REVERSAL: f64 = 0.05;
 pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
-    let together = if track.planar { TOGETHER } else { 1.0 };
+    let together = if track.planar { STICKING_ROWS_TOGETHER } else { 1.0 };
     let (share, clocks_s) = match (track.freely, track.planar) {
         (Some(_), _) => (BLUR_OF_FREE, 0.0),
         (None, true) => (BLUR, CLOCKS_S),

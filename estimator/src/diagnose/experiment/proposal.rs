@@ -11,16 +11,16 @@ use crate::diagnose::selection::comparison::Study;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
-const LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
+const RECORDING_LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
 pub(crate) const LIKELY: f64 = 0.8;
 /// Evidence that settles a question, as a log likelihood ratio.
 const SETTLED: f64 = 5.0;
 /// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
 /// one because neither answer may be true (measured, `docs/diagnosis.md`).
-pub(crate) const SURE: f64 = 0.85;
+pub(crate) const SURE_BY_MOTION: f64 = 0.85;
 pub(crate) const SURE_HUNG: f64 = 0.95;
 /// Evidence from which a question counts as settled.
-const MOST: f64 = 1e6;
+const SETTLED_EVIDENCE: f64 = 1e6;
 /// Largest turn of a crank to either side, rad.
 const TURN_RAD: f64 = 7.0;
 /// Weight to hang on, as a multiple of the object's, and the heaviest, N, which fingers can still lift.
@@ -40,14 +40,14 @@ pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]
         return hang(track, model, study, *pair);
     }
     let mut best: Option<(f64, NextExperiment)> = None;
-    for seconds in LENGTHS_S {
+    for seconds in RECORDING_LENGTHS_S {
         for excitation in LIBRARY.iter().filter(|e| track.planar || e.free_s == 0.0) {
             let asked = asked(track, excitation, seconds);
             let imagined = Imagined::along(&imagine(track, model, values, excitation, &asked), model, study);
             let least =
                 pairs.iter().filter_map(|pair| separation(&imagined, study, *pair)).fold(f64::INFINITY, f64::min);
             if least.is_finite() && best.as_ref().is_none_or(|(most, _)| least > *most) {
-                let next = proposal(excitation.words.to_owned(), &pairs, SURE * power(least), asked);
+                let next = proposal(excitation.words.to_owned(), &pairs, SURE_BY_MOTION * power(least), asked);
                 best = Some((least, next));
             }
         }
@@ -92,7 +92,7 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
 fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
-    let mut asked = asked(track, &HANG, LENGTHS_S[0]);
+    let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S[0]);
     let in_steps = |weight: f64| (20.0 * weight.clamp(0.1, HEAVIEST_N)).round() / 20.0;
     if track.planar {
         let own = model.iter().zip(&solved.values).filter(|(e, _)| e.role() == haptics::law::Role::Gravity);
@@ -102,7 +102,8 @@ fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Opti
         // Factor by which the weight enlarges the sine of a tilt.
         let times = 1.0 + asked.added_weight_n / own_n.max(0.02);
         let share = asked.seconds / track.span_s.max(1.0);
-        let lambda = chosen.lambda.min(MOST) * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
+        let lambda =
+            chosen.lambda.min(SETTLED_EVIDENCE) * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
         return Some(hung_proposal(&asked, &[pair], power(lambda), "the handle"));
     }
     let before = study.chosen.iter().take_while(|c| c.candidate != chosen.candidate);
@@ -135,7 +136,7 @@ fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &st
 
 /// Probability that a log likelihood ratio of mean λ/2 and variance λ settles it.
 pub(crate) fn power(lambda: f64) -> f64 {
-    let lambda = lambda.clamp(0.0, MOST);
+    let lambda = lambda.clamp(0.0, SETTLED_EVIDENCE);
     let sure = (0.5 * lambda - SETTLED) / lambda.max(1e-9).sqrt();
     Normal::new(0.0, 1.0).map_or(0.0, |n| n.cdf(sure))
 }

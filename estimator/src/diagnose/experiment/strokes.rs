@@ -4,9 +4,9 @@ use super::motions::{Excitation, HANG, LIBRARY};
 use crate::diagnose::contract::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
-const PEAK: f64 = 1.875;
+pub(crate) const PEAK: f64 = 1.875;
 /// Shortest duration of a back-and-forth movement, s.
-const SHORTEST_S: f64 = 0.25;
+const SHORTEST_STROKE_S: f64 = 0.25;
 
 /// Position and push across, in units of the experiment, at a time.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ impl Course {
         let mut k = 0;
         while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
             let step = (excitation.step)(k);
-            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_S);
+            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_STROKE_S);
             knots.push((time_s + takes_s, step.to, step.across));
             if step.rest_s > 0.0 {
                 knots.push((time_s + takes_s + step.rest_s, step.to, step.across));

@@ -1,19 +1,18 @@
 //! Motions of needles and switches: from one turning point to the next, smooth between them.
 
+use super::strokes::PEAK;
 use crate::diagnose::contract::Experiment;
 
 /// Ids of the motions.
 pub const PIERCE: &str = "pierce-slow-fast";
 pub const THROW: &str = "throw-slow-fast";
-/// Peak over mean speed of a movement from rest to rest.
-const PEAK: f64 = 1.875;
 /// Shortest duration of a back-and-forth movement, s.
-const SHORTEST_S: f64 = 0.15;
+const SHORTEST_TURN_S: f64 = 0.15;
 /// Distance of a resting needle from its sheet, m, and duration of a change of place, s.
-const OUTSIDE_M: f64 = 4e-3;
+const RESTING_NEEDLE_M: f64 = 4e-3;
 const OVER_S: f64 = 1.0;
 /// Depth of the presses before a puncture, as a share of the puncture depth.
-const PRESSED: f64 = 0.6;
+const PRESS_DEPTH_SHARE: f64 = 0.6;
 /// Paces of throws, in turn; two throws per pace, one to either side.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];
 /// Duration of the press against a stop, of the release, and of the rest after it, s.
@@ -44,7 +43,7 @@ impl Turns {
     /// Adds a movement to a position, with this peak speed.
     fn go(&mut self, to: f64, fastest: f64) {
         let (now_s, from) = self.end();
-        self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_S), to));
+        self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_TURN_S), to));
     }
 
     fn at(&self, time_s: f64) -> f64 {
@@ -75,18 +74,18 @@ impl Insertions {
         if asked.id != PIERCE || !sane {
             return None;
         }
-        let (mut depth, mut begin_s) = (Turns(vec![(0.0, -OUTSIDE_M)]), Vec::new());
+        let (mut depth, mut begin_s) = (Turns(vec![(0.0, -RESTING_NEEDLE_M)]), Vec::new());
         while depth.end().0 < asked.seconds {
             begin_s.push(depth.end().0);
-            depth.go(PRESSED * puncture_m, 0.2 * asked.fast);
-            depth.go(-OUTSIDE_M, asked.fast);
+            depth.go(PRESS_DEPTH_SHARE * puncture_m, 0.2 * asked.fast);
+            depth.go(-RESTING_NEEDLE_M, asked.fast);
             depth.go(full_m, 0.5 * asked.fast);
             for pace in [0.15, 1.0, 1.0] {
                 for place in [puncture_m, full_m, puncture_m, full_m] {
                     depth.go(place, pace * asked.fast);
                 }
             }
-            depth.go(-OUTSIDE_M, 0.5 * asked.fast);
+            depth.go(-RESTING_NEEDLE_M, 0.5 * asked.fast);
             depth.rest(OVER_S);
         }
         Some(Self { depth, begin_s, puncture_m })

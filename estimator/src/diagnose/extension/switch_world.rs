@@ -11,7 +11,7 @@ use haptics::law::{Effect, LocalResistance, Motion};
 use haptics::world::{Switch, World};
 
 /// Number of linear parts of a local resistance in a world's curve.
-const PIECES: usize = 8;
+const LINEAR_PARTS: usize = 8;
 
 /// Adds the found causes to a world.
 pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
@@ -91,8 +91,8 @@ fn bind(switch: &mut Switch, [force_n, place_m, width_m]: [f64; 3]) {
     let law = Effect::new(&LocalResistance, &[force_n.max(0.0), place_m, width_m, 0.0]);
     let more = |at_m: f64| law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() });
     let (low, high) = (first.at_m, last.at_m);
-    let apart_m = 2.0 * width_m / PIECES as f64;
-    let mut places: Vec<f64> = (0..=PIECES).map(|k| place_m - width_m + apart_m * k as f64).collect();
+    let apart_m = 2.0 * width_m / LINEAR_PARTS as f64;
+    let mut places: Vec<f64> = (0..=LINEAR_PARTS).map(|k| place_m - width_m + apart_m * k as f64).collect();
     places.retain(|at| *at > low && *at < high && curve.points.iter().all(|p| (p.at_m - at).abs() > 0.1 * apart_m));
     places.extend(curve.points.iter().map(|p| p.at_m));
     places.sort_by(f64::total_cmp);

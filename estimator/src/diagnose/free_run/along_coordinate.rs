@@ -1,7 +1,7 @@
 //! Laws along one coordinate, over the locked blocks.
 
 use super::integrate::{Moment, Side as Driven, run};
-use super::windows::{Compared, LEAST_WINDOWS, NO_LAW, NOT_FAITHFUL, TOO_FEW, WINDOW_S, told};
+use super::windows::{Compared, LEAST_WINDOWS, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, TOO_FEW, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
@@ -49,7 +49,7 @@ pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<
         (false, Coordinate::Angular) => "N m",
     };
     let of = if driven { RolloutOf::Position } else { RolloutOf::Force };
-    told(&Compared { of, unit, window_s: WINDOW_S, in_turn: false }, &errors(&without), &errors(&with))
+    told(&Compared { of, unit, window_s: ROLLOUT_WINDOW_S, in_turn: false }, &errors(&without), &errors(&with))
 }
 
 fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
@@ -99,7 +99,7 @@ fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
 
 /// Segments of the locked blocks.
 fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
-    let rows = (WINDOW_S / track.period_s).round().max(4.0) as usize;
+    let rows = (ROLLOUT_WINDOW_S / track.period_s).round().max(4.0) as usize;
     let mut found = Vec::new();
     for stretch in stretches(track) {
         let mut start = stretch.start;

@@ -2,7 +2,7 @@
 //! no window is left that took part in nothing. Each window is left out of the fit in turn; its rows took part in the
 //! choice.
 
-use super::windows::{Compared, WINDOW_S, told};
+use super::windows::{Compared, ROLLOUT_WINDOW_S, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::selection::comparison::Study;
 
@@ -11,9 +11,9 @@ const MOST_WINDOWS: usize = 60;
 /// Least share of a window's rows in which a cause acts.
 const ACTS: f64 = 0.5;
 /// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
-const LEAST_ROWS: usize = 5;
+const LEAST_WINDOW_ROWS: usize = 5;
 /// Largest time step, in row periods, within one window.
-const NEXT: f64 = 1.6;
+const CONSECUTIVE_PERIODS: f64 = 1.6;
 
 /// A channel with a free-run simulation.
 pub trait Forward {
@@ -23,7 +23,7 @@ pub trait Forward {
     fn windows(&self) -> Vec<Vec<usize>>;
     /// Longest window, s.
     fn window_s(&self) -> f64 {
-        WINDOW_S
+        ROLLOUT_WINDOW_S
     }
     /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
     /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
@@ -43,13 +43,14 @@ pub fn consecutive(
     period_s: f64,
     same: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<Vec<usize>> {
-    let goes_on =
-        |a: usize, b: usize| same(a, b) && (0.0..NEXT * period_s).contains(&(time_s(b) - time_s(a))) && a != b;
-    let most = ((WINDOW_S / period_s).round() as usize).max(LEAST_ROWS) + 1;
+    let goes_on = |a: usize, b: usize| {
+        same(a, b) && (0.0..CONSECUTIVE_PERIODS * period_s).contains(&(time_s(b) - time_s(a))) && a != b
+    };
+    let most = ((ROLLOUT_WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW_ROWS) + 1;
     order
         .chunk_by(|a, b| goes_on(*a, *b))
         .flat_map(|run| run.chunks(most))
-        .filter(|w| w.len() >= LEAST_ROWS)
+        .filter(|w| w.len() >= LEAST_WINDOW_ROWS)
         .map(<[usize]>::to_vec)
         .collect()
 }

@@ -4,7 +4,7 @@ use haptics::device::HandImpedance;
 use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
 
 /// Longest integration steps, s: of a coordinate with its own inertia, and of one that a hand holds.
-const STEP_S: f64 = 1e-3;
+const INTEGRATION_STEP_S: f64 = 1e-3;
 const HELD_STEP_S: f64 = 2.5e-4;
 /// Mass of the fingertips that move a handle without inertia, kg: negligible beside every force here, large enough for
 /// the step.
@@ -57,7 +57,7 @@ pub fn run(moments: &[Moment], side: Side<'_>) -> (f64, f64) {
     for pair in moments.windows(2) {
         let (from, to) = (&pair[0].motion, &pair[1].motion);
         let span_s = (to.time_s - from.time_s).max(1e-9);
-        let parts = (span_s / if driven { STEP_S } else { HELD_STEP_S }).ceil().max(1.0);
+        let parts = (span_s / if driven { INTEGRATION_STEP_S } else { HELD_STEP_S }).ceil().max(1.0);
         let mut held_n = 0.0;
         for part in 0..parts as usize {
             let x = (part as f64 + 0.5) / parts;

@@ -6,15 +6,14 @@
 
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::selection::held_out_gain;
+use crate::diagnose::selection::held_out_gain::DRAWS;
 
 /// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
-pub const WINDOW_S: f64 = 0.5;
+pub const ROLLOUT_WINDOW_S: f64 = 0.5;
 /// Fewer windows say nothing.
 pub(crate) const LEAST_WINDOWS: usize = 3;
 /// Relative difference of errors up to which they count as equal.
 const DIFFER: f64 = 1e-3;
-/// Draws of the bootstrap over windows.
-const DRAWS: usize = 400;
 /// Reasons why there is no free run.
 pub const NO_LAW: &str = "no law of a world runs it";
 pub const TOO_FEW: &str = "too few uninterrupted pieces were there to run it over";

@@ -5,16 +5,16 @@ use crate::diagnose::data::regression_data::{Place, Row, Track};
 use haptics::law::{Coordinate, Kind};
 
 /// Waves round a turn, or over the range.
-const WAVES: u32 = 6;
+const COORDINATE_WAVES: u32 = 6;
 /// Slow waves in time.
-const SLOW: u32 = 6;
+const SLOW_WAVES: u32 = 6;
 
 /// Factor of a wave, with its name.
 type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 
 /// All of them.
 pub fn generic(track: &Track) -> Vec<Candidate> {
-    generic_of(track, WAVES, SLOW)
+    generic_of(track, COORDINATE_WAVES, SLOW_WAVES)
 }
 
 /// Half waves over the duration of these times, s: generic terms of a channel in this unit.

@@ -15,7 +15,7 @@ pub struct Searched {
 }
 
 /// Largest distance of a spring's rest position from the middle, in half ranges.
-const RESTS_WITHIN: f64 = 3.0;
+const FARTHEST_REST: f64 = 3.0;
 
 /// Largest share of the dry friction that a law may replace. Beyond it, another presliding distance or gap would fit
 /// better.
@@ -51,11 +51,11 @@ impl Shape {
     fn admits(self, values: &[f64]) -> bool {
         match (self, values) {
             (Self::Share { least, most, .. }, [share, ..]) => *share > least && *share < most,
-            (Self::Spring { half }, [k, f0]) => *k > 0.0 && f0.abs() < RESTS_WITHIN * k * half,
+            (Self::Spring { half }, [k, f0]) => *k > 0.0 && f0.abs() < FARTHEST_REST * k * half,
             (Self::Hardening { half }, [k, f0, here, there]) => {
                 let cube = half.powi(3);
                 let [k, f0, k3, place] = about_its_zero([k * half, *f0, here * cube, there * cube]);
-                k3 > 0.0 && k > -0.5 * k3 && place.abs() < RESTS_WITHIN && f0.abs() < 2.0 * (k.abs() + k3)
+                k3 > 0.0 && k > -0.5 * k3 && place.abs() < FARTHEST_REST && f0.abs() < 2.0 * (k.abs() + k3)
             }
             (Self::Stiffening, [k, k3]) => *k > 0.0 && *k3 > 0.0,
             (Self::Damped, [k, c]) => *c > -NEARLY_UNDAMPED_S * k,

@@ -13,7 +13,7 @@ pub(crate) const ID: &str = "gravity-tilt";
 
 /// Largest tried tilt, rad: a larger one would be noticed.
 const LARGEST_TILT: f64 = 1.4;
-const STEPS: i32 = 12;
+const TILT_STEPS: i32 = 12;
 /// Steepest tilt of a plane that was assumed to be level, as its sine.
 const STEEPEST: f64 = 0.6;
 
@@ -109,7 +109,7 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     };
     // Steps around a tilt: the one with the smallest residual, and its weight.
     let best = |around: f64, step: f64| {
-        let tried = (-STEPS..=STEPS).filter_map(|k| {
+        let tried = (-TILT_STEPS..=TILT_STEPS).filter_map(|k| {
             // The tilt is never exactly zero, because the regressor is the effect per radian.
             let tilt = around + step * (f64::from(k) + 0.05);
             let tilted = turned(tilt);
@@ -118,8 +118,8 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
         });
         tried.min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let rough = best(0.0, LARGEST_TILT / f64::from(STEPS))?;
-    let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(STEPS))?;
+    let rough = best(0.0, LARGEST_TILT / f64::from(TILT_STEPS))?;
+    let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(TILT_STEPS))?;
     let tilted = turned(tilt);
     // The model's own weight already contains the vertical part of the object's.
     let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));

@@ -23,7 +23,7 @@ const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Number of rows, on either side, over which an acceleration is evaluated.
 const RATE_ROWS: f64 = 2.0;
 /// Share of the rows that count as slow.
-const SLOW_SHARE: f64 = 0.25;
+const SLOW_ROWS_SHARE: f64 = 0.25;
 /// Ratio by which a narrower peak is higher at equal area.
 const HIGHER: f64 = 1.5;
 /// Points: speed and exponent.
@@ -97,7 +97,7 @@ impl Hypothesis for Stribeck {
 
 /// Speed that a slow motion reaches within the time over which its acceleration is evaluated, m/s or rad/s.
 fn told_from(track: &Track) -> f64 {
-    let slow = track.quantile(SLOW_SHARE, |r| r.motion.velocity.abs());
+    let slow = track.quantile(SLOW_ROWS_SHARE, |r| r.motion.velocity.abs());
     let is_slow = |r: &&Row| r.place == Place::Along && r.motion.velocity.abs() <= slow;
     let mut rates: Vec<f64> = track.rows.iter().filter(is_slow).map(|r| r.motion.acceleration.abs()).collect();
     rates.sort_by(f64::total_cmp);

@@ -1,6 +1,9 @@
 //! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
 //! step.
 
+/// Step of the tried delays, s, or one sample if that is longer.
+pub(crate) const STEP_S: f64 = 2e-3;
+
 /// Result of the search for a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {

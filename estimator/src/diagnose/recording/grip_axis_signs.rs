@@ -18,9 +18,9 @@ const PRESSING: f64 = 0.3;
 /// Least force of each finger in a grip, in standard deviations of the noise.
 const OVER_NOISE: f64 = 10.0;
 /// Least number of samples of a grip.
-const LEAST_SAMPLES: usize = 20;
+const LEAST_GRIP_SAMPLES: usize = 20;
 /// Correlation of the two forces from which nothing is held between the fingers.
-const TOGETHER: f64 = 0.8;
+const NOTHING_HELD_CORRELATION: f64 = 0.8;
 /// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
 const TRAVEL_M: f64 = 2e-3;
 const STAYS: f64 = 0.1;
@@ -101,7 +101,7 @@ impl Grips {
                 _ => spans.push(i..i + 1),
             }
         }
-        spans.retain(|s| s.len() >= LEAST_SAMPLES);
+        spans.retain(|s| s.len() >= LEAST_GRIP_SAMPLES);
         let [x, y] = [place(|p| p.x), place(|p| p.y)];
         (least_n > 0.0).then_some(Self { spans, least_n, x, y, fx, fy })
     }
@@ -167,12 +167,12 @@ impl Grips {
             let samples: Vec<usize> = (0..recording.len()).filter(pushes).collect();
             let sum = |f: &dyn Fn(usize) -> f64| samples.iter().map(|i| f(*i)).sum::<f64>();
             let [along, across] = [&self.fx[k], &self.fy[k]].map(|f| sum(&|i| f[i].abs()));
-            if samples.len() < LEAST_SAMPLES || across > 0.5 * along {
+            if samples.len() < LEAST_GRIP_SAMPLES || across > 0.5 * along {
                 continue;
             }
             let outwards = if k == 0 { sum(&|i| self.fx[k][i]) } else { -sum(&|i| self.fx[k][i]) };
             let name = k + 1;
-            if outwards < -TOGETHER * along {
+            if outwards < -NOTHING_HELD_CORRELATION * along {
                 let why = format!("finger {name} pushes alone, and fx{name}_N pulls: a finger can only push");
                 return Some(Found { axes: vec![format!("fx{name}_N")], why });
             }
@@ -196,7 +196,7 @@ impl Grips {
         let [one, two] = &self.fx;
         let size = |f: &[f64]| self.mean(|i| f[i] * f[i]).sqrt();
         let together = self.mean(|i| one[i] * two[i]) / (size(one) * size(two)).max(f64::MIN_POSITIVE);
-        if together.abs() < TOGETHER {
+        if together.abs() < NOTHING_HELD_CORRELATION {
             return None;
         }
         let pulls = [self.mean(|i| one[i]) < 0.0, self.mean(|i| two[i]) > 0.0];

@@ -17,7 +17,7 @@ pub(crate) const RATES: [(&str, &str); 12] = [
     ("dqt1_rad_s", "qt1_rad"),
 ];
 /// Time over which differences are taken, s.
-pub(crate) const WINDOW_S: f64 = 0.03;
+pub(crate) const DIFFERENCE_S: f64 = 0.03;
 /// Correlation with the motion's rate at or below which a rate is mirrored.
 pub(crate) const AGAINST: f64 = -0.8;
 
@@ -36,7 +36,7 @@ pub(crate) fn correlation(recording: &Recording, rate: &str, of: &str) -> Option
     let time_s = recording.time_s.as_ref()?;
     let n = time_s.len();
     let period_s = (time_s.last()? - time_s.first()?) / n.max(2) as f64;
-    let half = ((0.5 * WINDOW_S / period_s).round() as usize).max(1);
+    let half = ((0.5 * DIFFERENCE_S / period_s).round() as usize).max(1);
     let (mut across, mut of_rate, mut of_slope) = (0.0_f64, 0.0_f64, 0.0_f64);
     for i in (half..n.saturating_sub(half)).step_by(half) {
         let slope = (place[i + half] - place[i - half]) / (time_s[i + half] - time_s[i - half]).max(1e-9);

@@ -23,7 +23,7 @@ const CHANNEL: [&str; 7] =
 /// Kinds of them that concern all samples, so that none can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 /// Number of places with lost samples up to which the data remain usable.
-const MANY: usize = 3;
+const USABLE_GAPS: usize = 3;
 
 /// Looks at the raw samples.
 pub fn faults(recording: &Recording) -> Faults {
@@ -70,7 +70,7 @@ fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [
 fn is_sensed(warning: &Warning) -> bool {
     let Some(column) = &warning.column else { return true };
     // Recorders occasionally lose a single sample.
-    let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= MANY);
+    let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= USABLE_GAPS);
     clock || ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
 }
 

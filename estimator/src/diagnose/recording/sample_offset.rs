@@ -10,7 +10,7 @@ const LARGEST_SKEW_S: f64 = 2e-3;
 /// Delay of a command that is held until the next sample, in samples: half a sample with some margin.
 const HELD_COMMAND: f64 = 0.7;
 /// Difference of the clocks and filters of two instruments, s: a smaller delay of the force is none.
-const CLOCKS_DIFFER_S: f64 = 3e-4;
+pub(crate) const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// Offset between force and motion if sampling alone can explain it, s. A commanded force is recorded when it is given
 /// and acts in the sample after. For a late force, only the difference of the clocks is allowed.

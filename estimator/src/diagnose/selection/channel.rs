@@ -17,7 +17,7 @@ use crate::diagnose::hypotheses::relations::Relation;
 use crate::estimate::EstimateError;
 
 /// Part of a cause beyond the model below which it counts as none.
-const LEAST_OWN: f64 = 1e-4;
+const LEAST_OWN_PART: f64 = 1e-4;
 
 /// One measured quantity and all that may explain it.
 #[derive(Clone)]
@@ -112,7 +112,7 @@ fn whitening(
     let rough = rough.system();
     let own = |k: &usize| {
         let others: Vec<usize> = causes.iter().filter(|c| *c != k).copied().collect();
-        rough.distinct(*k, &others).max(LEAST_OWN)
+        rough.distinct(*k, &others).max(LEAST_OWN_PART)
     };
     let mut kept_out: Vec<f64> =
         causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].columns.len()]).collect();

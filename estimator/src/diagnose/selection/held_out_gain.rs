@@ -7,16 +7,16 @@ use crate::diagnose::hypotheses::candidate::Column;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Draws of the bootstrap over locked blocks.
-const DRAWS: usize = 400;
+pub(crate) const DRAWS: usize = 400;
 /// Number of parts into which each locked block is cut for the bootstrap.
-const PARTS: usize = 4;
+const PARTS_OF_A_BLOCK: usize = 4;
 /// Lags of the test for whiteness.
 const LAGS: usize = 10;
 /// Least change by a cause on held-out rows, 2 ln(likelihood), for them to count for or against it. A true cause gains
 /// about as much there, ± twice its root.
 const TESTED: f64 = 3.0;
 /// Share of the residual power below which a change is noise.
-const LEAST_SHARE: f64 = 1e-3;
+const LEAST_CHANGE_SHARE: f64 = 1e-3;
 
 /// Sums of squares over parts of the locked blocks, and rows.
 #[derive(Default)]
@@ -80,10 +80,10 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     if parts.changed.iter().sum::<f64>() < TESTED * a.min(b) {
         return Gain { no_share: Some("nothing that was held out could show it".to_owned()), ..measured };
     }
-    if least < LEAST_SHARE * b {
+    if least < LEAST_CHANGE_SHARE * b {
         return Gain { no_share: Some("what was held out is left with no more than its noise".to_owned()), ..measured };
     }
-    let share = |b: f64, a: f64| ((b - a) / (b - noise).max(LEAST_SHARE * b)).min(1.0);
+    let share = |b: f64, a: f64| ((b - a) / (b - noise).max(LEAST_CHANGE_SHARE * b)).min(1.0);
     let shares = |drawn: &[usize]| {
         let [b, a] = means(&parts, drawn);
         share(b, a)
@@ -108,7 +108,7 @@ fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
         };
         let (Some(before), Some(after)) = (left(rest), left(picks)) else { continue };
         let own: Vec<usize> = (0..before.len()).filter(|i| study.system.uses[*i] == Use::Fold(fold)).collect();
-        let pieces = PARTS.min(*rows as usize).max(1);
+        let pieces = PARTS_OF_A_BLOCK.min(*rows as usize).max(1);
         own.chunks(own.len().div_ceil(pieces).max(1)).for_each(|part| parts.add(part, &before, &after));
     }
     parts
@@ -202,7 +202,7 @@ fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Par
     let mut parts = Parts::default();
     for block in locked.chunk_by(|a, b| a.0 == b.0) {
         let rows: Vec<usize> = block.iter().map(|(_, i)| *i).collect();
-        rows.chunks(rows.len().div_ceil(PARTS).max(1)).for_each(|part| parts.add(part, before, after));
+        rows.chunks(rows.len().div_ceil(PARTS_OF_A_BLOCK).max(1)).for_each(|part| parts.add(part, before, after));
     }
     parts
 }

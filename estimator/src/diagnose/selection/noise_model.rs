@@ -71,13 +71,13 @@ fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
 /// White noise added to that of the differences, as shares of its power.
 const WHITE_BESIDE: [f64; 8] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 100.0];
 /// Restoring terms of a swinging position: second differences plus this share of the noise itself.
-const TAKEN_BACK: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
+const RESTORING_SHARES: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
 
 /// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from
 /// few rows would fill up the gap that the noise has at low frequencies, where everything that swings is.
 fn whitener_of_differences(residual: &[f64], layout: &Layout, used: &[Use]) -> Vec<f64> {
     let order = (residual.len() / SHARE_OF_DIFFERENCES).min(ORDER_OF_DIFFERENCES);
-    let second = TAKEN_BACK.map(|back| vec![1.0, back - 2.0, 1.0]);
+    let second = RESTORING_SHARES.map(|back| vec![1.0, back - 2.0, 1.0]);
     let kinds = second.into_iter().chain([vec![1.0, -1.0]]);
     let flat = vec![1.0; residual.len()];
     let mut best: (f64, Vec<f64>) = (f64::INFINITY, Vec::new());

@@ -267,10 +267,10 @@ impl System {
 
     /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.
     pub fn supported(&self, candidate: usize) -> bool {
-        const LEAST_SHARE: f64 = 0.3;
+        const LEAST_SUPPORT_SHARE: f64 = 0.3;
         self.places[candidate]
             .clone()
-            .all(|c| self.energy[c].0 > LEAST_SHARE * self.energy[c].1 && self.energy[c].1 > 0.0)
+            .all(|c| self.energy[c].0 > LEAST_SUPPORT_SHARE * self.energy[c].1 && self.energy[c].1 > 0.0)
     }
 
     /// Least squares on the rows that train.
@@ -353,12 +353,12 @@ pub(crate) struct Scaled {
 
 /// Factors the normal equations. A small ridge keeps them regular for equal columns.
 pub(crate) fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
-    const RIDGE: f64 = 1e-10;
+    const NUMERICAL_RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =
         columns.iter().map(|c| gram[(*c, *c)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
     let normal = DMatrix::from_fn(p, p, |i, j| {
-        gram[(columns[i], columns[j])] / (scale[i] * scale[j]) + if i == j { RIDGE } else { 0.0 }
+        gram[(columns[i], columns[j])] / (scale[i] * scale[j]) + if i == j { NUMERICAL_RIDGE } else { 0.0 }
     });
     Some(Scaled { cholesky: normal.cholesky()?, scale })
 }

@@ -8,7 +8,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::DMatrix;
 
 /// Number of columns up to which all are multiplied at once.
-const MANY: usize = 64;
+const MULTIPLIED_AT_ONCE: usize = 64;
 /// Number of causes for which products are computed ahead.
 const AHEAD: usize = 6;
 
@@ -27,7 +27,7 @@ pub struct Rough<'a> {
 impl<'a> Rough<'a> {
     pub fn new(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64], layout: &'a Layout) -> Self {
         let columns = columns_of(base, candidates, y);
-        if columns.len() < MANY {
+        if columns.len() < MULTIPLIED_AT_ONCE {
             let system = System::new(base, candidates, y, layout, Vec::new());
             return Self { system, candidates, columns, weight: &layout.weight, parts: Vec::new() };
         }

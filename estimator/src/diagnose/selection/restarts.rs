@@ -6,7 +6,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
 
 /// Number of causes, strongest alone, that are tried as the first of a pair.
-const FIRST: usize = 6;
+const FIRST_OF_A_PAIR: usize = 6;
 
 impl Selection<'_> {
     /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the
@@ -17,7 +17,8 @@ impl Selection<'_> {
         alone.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut firsts: Vec<usize> = Vec::new();
         for (_, c) in alone {
-            if firsts.len() < FIRST && firsts.iter().all(|f| self.candidates[*f].id != self.candidates[c].id) {
+            if firsts.len() < FIRST_OF_A_PAIR && firsts.iter().all(|f| self.candidates[*f].id != self.candidates[c].id)
+            {
                 firsts.push(c);
             }
         }

@@ -1,7 +1,7 @@
 //! Limits that decide which causes an answer names, side by side for the two kinds of channels.
 
 /// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200.
-const THRESHOLD: f64 = 20.0;
+pub(crate) const THRESHOLD: f64 = 20.0;
 /// The same for slow rows, whose noise averages out less.
 const THRESHOLD_SLOW: f64 = 25.0;
 /// Row period from which rows count as slow, s.

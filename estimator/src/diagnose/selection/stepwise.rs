@@ -50,7 +50,7 @@ pub struct Selection<'a> {
 /// Squared correlation of two causes' estimates from which they count as one.
 const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
-const TAKEN_BACK: f64 = 0.1;
+const CANCELLED_SHARE: f64 = 0.1;
 
 /// True if the cause has an empirical curve.
 pub fn is_curve(id: &str) -> bool {
@@ -312,7 +312,7 @@ impl Selection<'_> {
         let taken_back = |o: usize| {
             let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
             let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
-            self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
+            self.power(&solved, &[one, other].concat()) < CANCELLED_SHARE * weaker
         };
         let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
         // A joint effect beyond doubt is real, even if it is small beside either of the two.
@@ -405,14 +405,14 @@ impl Selection<'_> {
     /// poor measurement does not speak against a cause.
     fn forgiven(&self, chosen: &[usize], c: usize) -> f64 {
         /// Largest share of the residual that this noise may account for.
-        const MOST: f64 = 0.9;
+        const LARGEST_NOISE_SHARE: f64 = 0.9;
         let noise = self.candidates[c].noise;
         let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
         let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>()
             - self.candidates[c].columns.len();
         let whitened = 1.0 + self.system.coefficients.iter().map(|a| a * a).sum::<f64>();
         let share = (solved.values[own] * noise).powi(2) * whitened * self.system.rows / solved.rss;
-        -self.system.rows * (1.0 - share.min(MOST)).ln()
+        -self.system.rows * (1.0 - share.min(LARGEST_NOISE_SHARE)).ln()
     }
 
     /// The best candidate of every other cause with nearly the same evidence in this one's place.

@@ -12,7 +12,7 @@ use haptics::recording::Recording;
 /// Delay up to which a linear regressor is accurate, s.
 pub(crate) const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
-pub(crate) const ROUNDS: usize = 5;
+pub(crate) const DELAY_ROUNDS: usize = 5;
 
 /// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
 pub fn undo(
@@ -27,7 +27,7 @@ pub fn undo(
     let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
     let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
     let mut found = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..DELAY_ROUNDS {
         let back_s = whole(late_s);
         if back_s == 0.0 {
             return first;
@@ -43,7 +43,8 @@ pub fn undo(
     }
     // A delay that was not named must improve the residual clearly.
     let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
-    let sure = |found: &Findings| found.delay.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
+    let sure =
+        |found: &Findings| found.delay.rest_s.is_none_or(|[_, error]| late_s.abs() > UNNAMED_DELAY_STD_ERRORS * error);
     match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
         Some(found) => with_delay(found, &first, late_s, whole(late_s)),
         None => first,
@@ -66,7 +67,7 @@ pub(crate) fn period_s(recording: &Recording) -> Option<f64> {
 }
 
 /// Standard errors that a delay must have if it was not named at first.
-pub(crate) const SURE: f64 = 5.0;
+pub(crate) const UNNAMED_DELAY_STD_ERRORS: f64 = 5.0;
 /// Largest ratio of residuals, after over before the shift, if the delay was named.
 pub(crate) const AS_GOOD: f64 = 1.1;
 /// The same ratio if the delay was not named.

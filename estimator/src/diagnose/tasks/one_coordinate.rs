@@ -1,6 +1,6 @@
 //! Force along one coordinate: its residual, and the causes that explain it.
 
-use crate::diagnose::data::direction::{TOGETHER, blur, blurred};
+use crate::diagnose::data::direction::{STICKING_ROWS_TOGETHER, blur, blurred};
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::data::stick_phases::Load;
@@ -307,7 +307,7 @@ fn first_look(
     noise: Option<f64>,
 ) -> Result<Look, EstimateError> {
     let mut columns = base.to_vec();
-    let together = if track.planar { TOGETHER } else { 1.0 };
+    let together = if track.planar { STICKING_ROWS_TOGETHER } else { 1.0 };
     let has = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
     let has_dry = has(&CoulombFriction);
     // Resistance that the model lacks. With dry friction alone, viscous friction would be attributed to it.

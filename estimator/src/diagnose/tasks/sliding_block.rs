@@ -34,18 +34,18 @@ use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
 /// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
-const TOUCH_SHARE: f64 = 0.1;
-const TOUCH_NOISES: f64 = 6.0;
+const SLIDER_TOUCH_SHARE: f64 = 0.1;
+const SLIDER_TOUCH_NOISES: f64 = 6.0;
 /// Margin at the slow closing and opening of fingers, s.
-const CLOSING_S: f64 = 0.15;
+const GRIP_CLOSING_MARGIN_S: f64 = 0.15;
 /// Least speed of sliding, m/s, and its least total duration, s.
 const SLIDES_M_S: f64 = 5e-3;
 const LEAST_S: f64 = 2.0;
 /// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
-const FREE_S: f64 = 1.0;
+const EMPTY_FINGERS_S: f64 = 1.0;
 const PART_S: f64 = 0.25;
 /// Standard errors by which a constant force is attributed to the sensor or to the table.
-const ERRORS: f64 = 4.0;
+const CONSTANT_STD_ERRORS: f64 = 4.0;
 /// Relative error of a known mass from which a scale is wrong.
 const MASS_SHARE: f64 = 0.08;
 
@@ -211,7 +211,7 @@ fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> 
     let x: Vec<f64> = force.iter().map(|f| f.x - levels.bias_n[finger].x).collect();
     let pressed: Vec<f64> = smooth(&signals.time_s, &x).value.iter().map(|f| f.abs()).collect();
     let usual = percentile(&mut pressed.clone(), 0.95);
-    let least = (TOUCH_SHARE * usual).max(TOUCH_NOISES * levels.force_noise_n);
+    let least = (SLIDER_TOUCH_SHARE * usual).max(SLIDER_TOUCH_NOISES * levels.force_noise_n);
     pressed.iter().map(|f| *f > least).collect()
 }
 
@@ -221,15 +221,15 @@ fn widen(bad: &mut [bool], time_s: &[f64]) {
     let edge = |i: usize| i == 0 || i + 1 == bad.len() || !bad[i - 1] || !bad[i + 1];
     let edges: Vec<usize> = flagged.into_iter().filter(|i| edge(*i)).collect();
     for i in edges {
-        let from = time_s.partition_point(|t| *t < time_s[i] - CLOSING_S);
-        let to = time_s.partition_point(|t| *t <= time_s[i] + CLOSING_S);
+        let from = time_s.partition_point(|t| *t < time_s[i] - GRIP_CLOSING_MARGIN_S);
+        let to = time_s.partition_point(|t| *t <= time_s[i] + GRIP_CLOSING_MARGIN_S);
         bad[from..to].fill(true);
     }
 }
 
 /// Mean total force on empty fingers along the table, and its standard error, N.
 fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64)> {
-    if (levels.free.len() as f64) * step_s < FREE_S {
+    if (levels.free.len() as f64) * step_s < EMPTY_FINGERS_S {
         return None;
     }
     let part = (PART_S / step_s).round().max(1.0) as usize;
@@ -259,7 +259,8 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
     // One sensor, one bias: a single recording with empty fingers determines it for all.
     let all_free = !free.is_empty();
-    let felt = mean.abs() > ERRORS * error && (b.value - mean).abs() < ERRORS * error.hypot(b.std_error);
+    let felt = mean.abs() > CONSTANT_STD_ERRORS * error
+        && (b.value - mean).abs() < CONSTANT_STD_ERRORS * error.hypot(b.std_error);
     let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
         name: name.to_owned(),
         value,
@@ -353,7 +354,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
     let variance = solved.variance(study.system.rows);
     let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
     let off = (ratio - 1.0).abs();
-    if off < MASS_SHARE.max((ERRORS + 1.0) * error) {
+    if off < MASS_SHARE.max((CONSTANT_STD_ERRORS + 1.0) * error) {
         return;
     }
     let why = "a mass that comes out wrong is a wrong scale of the forces, or the opposite one of the lengths";

@@ -28,12 +28,12 @@ use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
 
 /// Number of equal parts of the path, with the mean force of each.
-const PARTS: usize = 160;
+const PATH_PARTS: usize = 160;
 /// Least mean number of samples per part.
-const LEAST_SAMPLES: usize = 3;
+const LEAST_PART_SAMPLES: usize = 3;
 /// Number of tried places of a local resistance, and its widths as shares of the range.
-const PLACES: usize = 24;
-const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
+const PATH_PLACES: usize = 24;
+const PATH_WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
 
 /// Units of force and place.
 struct Units {
@@ -176,7 +176,7 @@ fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Ro
         })
         .collect();
     let Some(whole) = travelled.last().copied().filter(|w| *w > 0.0) else { return Vec::new() };
-    let count = (n / LEAST_SAMPLES).clamp(1, PARTS);
+    let count = (n / LEAST_PART_SAMPLES).clamp(1, PATH_PARTS);
     let axes = |names: [&str; 3]| names.map(|name| recording.channel(name).map(<[f64]>::to_vec));
     let measured = axes(["fx_N", "fy_N", "fz_N"]);
     let second = second_names(recording).map(|names| names.map(|n| recording.channel(&n).map(<[f64]>::to_vec)));
@@ -234,8 +234,8 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
         Candidate::one(id, Kind::Plant, "k", units.per_place, spring.clone()),
         Candidate::several(id, Kind::Plant, vec![spring, harder], vec![("k", units.per_place), ("k3", units.per_cube)]),
     ];
-    for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
-        let (place, width) = (low + range * (k as f64 + 0.5) / PLACES as f64, share * range);
+    for (k, share) in (0..PATH_PLACES).flat_map(|k| PATH_WIDTHS.map(|w| (k, w))) {
+        let (place, width) = (low + range * (k as f64 + 0.5) / PATH_PLACES as f64, share * range);
         let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
         let resists = Candidate::one(local_resistance::ID, Kind::Plant, "F", units.force, column).positive();
         candidates.push(resists.at("place", place, units.place).at("width", width, units.place));

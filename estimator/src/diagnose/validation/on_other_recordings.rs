@@ -9,18 +9,17 @@ use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::law_forces::needed;
 use crate::diagnose::hypotheses::library::{Dictionary, dry_of};
 use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::selection::held_out_gain::DRAWS;
 use crate::diagnose::selection::held_out_gain::bootstrap;
 use haptics::law::{Effect, Kind, Memories};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.
-const PIECES: usize = 32;
-/// Draws of the bootstrap over these blocks.
-const DRAWS: usize = 400;
+const BOOTSTRAP_BLOCKS: usize = 32;
 
 /// Residual RMS before and after, and the share of the power that is explained. All in row order, with the rows'
 /// weights.
 pub fn compared(before: &[f64], after: &[f64], weight: &[f64]) -> Validation {
-    let long = before.len().div_ceil(PIECES).max(1);
+    let long = before.len().div_ceil(BOOTSTRAP_BLOCKS).max(1);
     let sum = |left: &[f64], weight: &[f64]| left.iter().zip(weight).map(|(l, w)| w * l * l).sum::<f64>();
     let pieces: Vec<[f64; 2]> = before
         .chunks(long)

@@ -16,10 +16,10 @@ use std::f64::consts::TAU;
 const DIRECTIONS: u32 = 20;
 const NEARNESS: [f64; 3] = [0.0, 0.25, 0.6];
 /// Tried shares of the carries in which the cable is slack.
-const SLACK: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
+const SLACK_SHARES: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
 /// Number of starting points that are refined, and of halvings of their step.
 const REFINED: usize = 4;
-const HALVINGS: usize = 9;
+const CABLE_HALVINGS: usize = 9;
 /// Most moves with one step size. Without a cable the search does not converge.
 const MOVES: usize = 15;
 /// Distance of the anchor, in half ranges, from which a cable is a wall.
@@ -78,7 +78,7 @@ fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64])
         let (anchor, away) = field.anchor_and_length(Tie([direction, nearness, 0.0]));
         let mut lengths: Vec<f64> = places.iter().map(|p| ((p - anchor).norm() - away) / range_m).collect();
         lengths.sort_by(f64::total_cmp);
-        for slack in SLACK {
+        for slack in SLACK_SHARES {
             let tie = Tie([direction, nearness, lengths[(slack * (lengths.len() - 1) as f64) as usize]]);
             tried.push((worth(tie), tie));
         }
@@ -96,7 +96,7 @@ fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64])
 fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
     let mut best = (worth(start), start);
     let mut steps = [0.15, 0.15, 0.15];
-    for _ in 0..HALVINGS {
+    for _ in 0..CABLE_HALVINGS {
         for _ in 0..MOVES {
             let before = best.0;
             for (k, step) in steps.into_iter().enumerate() {

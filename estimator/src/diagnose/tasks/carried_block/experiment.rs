@@ -4,7 +4,7 @@
 use super::net_force::Carry;
 use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
-use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};
 use crate::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
@@ -127,7 +127,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
                     least = least.min(unexplained(&effect, &beside) * slow * slow / variance.max(1e-24));
                 }
             }
-            let power = SURE * power(least);
+            let power = SURE_BY_MOTION * power(least);
             if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
                 let separates = std::iter::once(own.id.to_owned()).chain(rivals.iter().map(|r| r.id.clone())).collect();
                 let experiment = Some(asked(id, seconds, free_s, seen));

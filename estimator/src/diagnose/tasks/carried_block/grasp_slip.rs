@@ -8,14 +8,14 @@ use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is
 use haptics::law::Kind;
 
 /// Number of tried starts in every rest, besides its beginning.
-const STARTS: usize = 10;
+const REST_SLIP_STARTS: usize = 10;
 /// Durations of a slip that are tried in every rest, s.
-const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
+const SLIP_DURATIONS_S: [f64; 3] = [0.0, 0.1, 0.3];
 /// Refinement around the best slip: steps of its start, in rows, and factors of its duration.
-const STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
-const SHARES: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
+const START_STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
+const DURATION_FACTORS: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
 /// Durations, s, tried beside a slip without duration.
-const SHORT_S: [f64; 3] = [0.0, 0.01, 0.02];
+const SHORT_SLIPS_S: [f64; 3] = [0.0, 0.01, 0.02];
 
 /// Candidate slips in every rest, and finer ones around the best. `model`: regressors of the height beside them.
 pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<Candidate>) {
@@ -25,8 +25,8 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
     // The rest of the best slip gets refined neighbours instead.
     let others = (0..rests.len()).filter(|rest| best.is_none_or(|b| b.rest != *rest));
     let all = others.flat_map(|rest| {
-        let starts = heights.starts(rest, STARTS);
-        starts.into_iter().flat_map(move |start_s| LENGTHS_S.map(|length_s| Slip { rest, start_s, length_s }))
+        let starts = heights.starts(rest, REST_SLIP_STARTS);
+        starts.into_iter().flat_map(move |start_s| SLIP_DURATIONS_S.map(|length_s| Slip { rest, start_s, length_s }))
     });
     let mut slips: Vec<Slip> = all.collect();
     slips.extend(best.map(|best| around(&heights, best)).unwrap_or_default());
@@ -79,8 +79,9 @@ fn around(heights: &Heights<'_>, best: Slip) -> Vec<Slip> {
     let (first_s, last_s) = heights.bounds(best.rest);
     let rows = &heights.rests[best.rest].rows;
     let step_s = (last_s - heights.time_s[rows.start]) / (rows.len() - 1).max(1) as f64;
-    let lengths = if best.length_s > 0.0 { SHARES.map(|s| s * best.length_s).to_vec() } else { SHORT_S.to_vec() };
-    let mut starts = STEPS.map(|s| (best.start_s + s * step_s).clamp(first_s, last_s)).to_vec();
+    let lengths =
+        if best.length_s > 0.0 { DURATION_FACTORS.map(|s| s * best.length_s).to_vec() } else { SHORT_SLIPS_S.to_vec() };
+    let mut starts = START_STEPS.map(|s| (best.start_s + s * step_s).clamp(first_s, last_s)).to_vec();
     starts.dedup();
     let with = |start_s: f64| lengths.iter().map(move |length_s| Slip { start_s, length_s: *length_s, ..best });
     starts.into_iter().flat_map(with).collect()

@@ -86,10 +86,10 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
 
 /// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
 pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Option<Grasp>, EstimateError> {
-    const LEAST_ROWS: usize = 30;
+    const LEAST_GRIP_ROWS: usize = 30;
     let rows = rows(seen);
     let n = rows.number.len();
-    if n < LEAST_ROWS {
+    if n < LEAST_GRIP_ROWS {
         return Ok(None);
     }
     let blocks = rows.number.iter().copied().max().unwrap_or(0);

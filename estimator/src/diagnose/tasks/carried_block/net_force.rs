@@ -49,18 +49,18 @@ pub struct Carry {
 
 /// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
 pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Carry, EstimateError> {
-    const LEAST_ROWS: usize = 30;
+    const LEAST_CARRY_ROWS: usize = 30;
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
     // Every other row is testable, so a short effect has rows both in the fit and among the held-out ones.
     let testable: Vec<bool> = (0..rows.all.len()).map(|i| i % 2 == 0).collect();
     let carried = rows.all.iter().filter(|r| is_carried(r)).count();
-    if carried < LEAST_ROWS {
+    if carried < LEAST_CARRY_ROWS {
         return Err(EstimateError::TooFewSamples {
             recording: seen.first().map(|s| s.blocks.recording.name.clone()).unwrap_or_default(),
             samples: carried,
             what: " of carried blocks, a filter window apart".to_owned(),
-            needed: LEAST_ROWS,
+            needed: LEAST_CARRY_ROWS,
         });
     }
     let known: Vec<Option<f64>> =
@@ -102,12 +102,12 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<C
 /// with a damper, but a real cable turns in the grip and sags.
 const OF_A_CABLE: f64 = 0.05;
 /// Most rounds of removal: without one misfit term another one may appear.
-const ROUNDS: usize = 4;
+const REMOVAL_ROUNDS: usize = 4;
 
 /// Comparison without causes that may be misfit of a cable or wall.
 fn without_remainders(mut channel: Channel) -> Result<Study, EstimateError> {
     let mut study = channel.clone().fit()?;
-    for _ in 0..ROUNDS {
+    for _ in 0..REMOVAL_ROUNDS {
         let of = |c: &Chosen| &study.candidates[c.candidate];
         let cable =
             study.chosen.iter().filter(|c| of(c).id == added_constraint::ID).map(|c| c.score).fold(0.0, f64::max);

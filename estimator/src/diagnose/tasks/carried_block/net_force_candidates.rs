@@ -9,7 +9,7 @@ use crate::diagnose::hypotheses::{
 use haptics::law::Kind;
 
 /// Starts of a change of weight that are tried in every carry.
-const STARTS: usize = 6;
+const WEIGHT_CHANGE_STARTS: usize = 6;
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
 
@@ -66,8 +66,8 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     };
     let rate = |from: f64| lift(&|t| (t - from).max(0.0));
     found.push(Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(*first)));
-    for s in 1..=STARTS {
-        let start = first + (last - first) * s as f64 / (STARTS + 1) as f64;
+    for s in 1..=WEIGHT_CHANGE_STARTS {
+        let start = first + (last - first) * s as f64 / (WEIGHT_CHANGE_STARTS + 1) as f64;
         let later = Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(start));
         found.push(later.at("t0", start, "s"));
         let step = lift(&|t| f64::from(u8::from(t >= start)));

@@ -24,16 +24,16 @@ use haptics::law::Kind;
 use haptics::world::World;
 
 /// Least number of rows of a rest.
-const LEAST_ROWS: usize = 8;
+const LEAST_REST_ROWS: usize = 8;
 /// Least number of rows in all, for folds.
 const LEAST_IN_ALL: usize = 24;
 /// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
 /// ones never are: when a slip at the very contact began shows in nothing else.
-const HELD_OUT: usize = 2;
-const FIRST: usize = 4;
+const HELD_OUT_RESTS: usize = 2;
+const RESTS_NEVER_HELD_OUT: usize = 4;
 /// Testable rows per held-out block, and the largest number of such blocks, as in the comparison.
 const BLOCK: usize = 12;
-const MOST_BLOCKS: usize = 20;
+const MOST_REST_BLOCKS: usize = 20;
 
 /// One end of a carry.
 pub struct Stand {
@@ -117,7 +117,7 @@ pub fn ground(
     candidates.extend(slow_waves(&rows.time_s, 3, ""));
     let stretch = segments(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
     let since = |i: usize| i - stands[rows.stand[i]].first;
-    let along: Vec<bool> = (0..n).map(|i| since(i) >= FIRST && since(i) % HELD_OUT == 0).collect();
+    let along: Vec<bool> = (0..n).map(|i| since(i) >= RESTS_NEVER_HELD_OUT && since(i) % HELD_OUT_RESTS == 0).collect();
     let layout = Layout { time_s: spread(&along), ..Layout::of(stretch, &along, period_s) };
     let floor_m = white_noise(&rows.height_m);
     let study = Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?;
@@ -139,7 +139,7 @@ pub fn ground(
 /// Order in which rows are held out together: each held-out block takes rows from all rests. The effect of a slip needs
 /// rows before and after it, and a rest is shorter than a block of consecutive rows.
 fn spread(along: &[bool]) -> Vec<f64> {
-    let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_BLOCKS);
+    let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_REST_BLOCKS);
     let before = along.iter().scan(0, |count, testable| {
         *count += usize::from(*testable);
         Some(*count)
@@ -166,7 +166,7 @@ fn add(
         (begins_s.unwrap_or(0.0), rest.samples.clone())
     };
     let picked = one.every(samples.into_iter());
-    if picked.len() < LEAST_ROWS || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
+    if picked.len() < LEAST_REST_ROWS || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
         return;
     }
     let half = half_width(&one.blocks.signals.time_s);

@@ -2,13 +2,12 @@
 //! explain most.
 
 use super::rows::{Place, Row, Rows};
+use crate::diagnose::recording::delay_scan::STEP_S;
 use crate::diagnose::recording::delay_scan::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
 /// Limits of a delay: beyond the longest one a hand is already at another movement.
 const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };
-/// Step of the tried delays, s, or one sample if that is longer.
-const STEP_S: f64 = 2e-3;
 
 /// Delay with the smallest residual of weights, their inertia and constant sensor errors. `known`: weights that the
 /// sidecar states, N.

@@ -117,10 +117,10 @@ const MIRRORED_SHARE: f64 = 0.5;
 /// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
 /// change of sign reduces an effect that is large beside the noise.
 const SENSE: f64 = 4.0;
-const NEARLY_ALL: f64 = 0.1;
+const MIRRORED_RESIDUAL_SHARE: f64 = 0.1;
 
 fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
-    !track.noise_is_measured || after < SENSE * track.force_noise || after < NEARLY_ALL * before
+    !track.noise_is_measured || after < SENSE * track.force_noise || after < MIRRORED_RESIDUAL_SHARE * before
 }
 
 /// Ratio of residual to noise up to which the recorded axes are plausible.

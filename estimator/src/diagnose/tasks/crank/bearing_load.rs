@@ -12,7 +12,7 @@ use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 /// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
 const LIKELIER: f64 = 60.0;
 /// Rounds in which weight and load converge.
-const ROUNDS: usize = 3;
+const LOAD_ROUNDS: usize = 3;
 /// Evidence by which a free force of gravity, of any direction, may beat the weight on the bearing. On a load in one
 /// direction only, that weight acts like a force of gravity a quarter turn ahead.
 const AS_LIKELY: f64 = 25.0;
@@ -27,7 +27,7 @@ pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) 
     let (before, mut weight_n) = plain(track, model, fixed)?;
     let mut other = track.clone();
     let mut after = before;
-    for _ in 0..ROUNDS {
+    for _ in 0..LOAD_ROUNDS {
         put(&mut other, weight_n, gravity_m_s2);
         (after, weight_n) = plain(&other, model, fixed)?;
     }

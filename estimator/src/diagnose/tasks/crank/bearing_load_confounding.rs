@@ -21,7 +21,7 @@ const SIMPLER: f64 = 40.0;
 /// is made.
 const NEARLY: f64 = 1.25;
 /// Rounds in which the weight converges beside the causes.
-const ROUNDS: usize = 2;
+const CONFOUNDING_ROUNDS: usize = 2;
 
 /// Comparison with the weight on the bearing, and that weight, N, if its residual is smaller or it needs fewer causes.
 /// `looked_at`: rows and result of the first comparison; `track`: rows as measured. Other hidden causes can keep
@@ -38,7 +38,7 @@ pub fn beside_causes(
         return Ok(None);
     }
     let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);
-    for _ in 0..ROUNDS {
+    for _ in 0..CONFOUNDING_ROUNDS {
         if weight_n <= 0.0 {
             return Ok(None);
         }

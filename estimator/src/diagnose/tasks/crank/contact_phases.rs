@@ -10,7 +10,7 @@ const MARGIN_S: f64 = 0.06;
 /// The same for free samples, s.
 const GROWING_S: f64 = 0.25;
 /// Least duration of a free rest, s: a shorter one may be a zero crossing of the force.
-const LEAST_FREE_S: f64 = 0.25;
+const LEAST_FREE_REST_S: f64 = 0.25;
 /// Ratio of a rest's force scatter to that of the quietest one from which it is no rest.
 const WANDERS: f64 = 2.5;
 /// Length of the parts in which a rest is followed outwards from its middle, s, and their least number of samples.
@@ -31,7 +31,7 @@ pub fn held_and_free(
     let rests: Vec<std::ops::Range<usize>> = segmentation
         .states
         .iter()
-        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_REST_S)
         .map(|i| i.first..i.end)
         .collect();
     let unrest: Vec<f64> = rests

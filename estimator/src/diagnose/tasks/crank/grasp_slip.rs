@@ -9,7 +9,7 @@ use haptics::Vec2;
 pub const SLIP_STARTS: usize = 24;
 /// Starts and durations of a creep of the grasp, in shares of the recording.
 const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
-const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
+const CREEP_DURATIONS: [f64; 3] = [0.25, 0.5, 1.0];
 /// Ratio of the spacing of creeps to that of slips.
 const CREEPS_APART: f64 = 4.0;
 /// Number of tried times of a jump, margin at either end as a part of the rows, and least evidence in 2 ln(likelihood)
@@ -44,9 +44,9 @@ impl Course {
         let span_s = path.span_s();
         let slips = (1..SLIP_STARTS)
             .map(|k| Self { start_s: first + span_s * k as f64 / SLIP_STARTS as f64, duration_s: None });
-        let creeps = CREEP_STARTS
-            .iter()
-            .flat_map(|start| CREEPS.map(|d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) }));
+        let creeps = CREEP_STARTS.iter().flat_map(|start| {
+            CREEP_DURATIONS.map(|d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) })
+        });
         slips.chain(creeps).collect()
     }
 

@@ -20,8 +20,8 @@ const OUTWARD: &str = "dr";
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
 /// Rounds of the linearised circle fit, and rounds after which the time of a slip is known well enough.
-const ROUNDS: usize = 8;
-const CLOSER: usize = 5;
+const CIRCLE_ROUNDS: usize = 8;
+const TIME_REFINEMENT_ROUNDS: usize = 5;
 
 /// One held sample.
 pub struct PathPoint {
@@ -108,7 +108,7 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
     coarse.extend(jump(path, center_m));
     let mut courses = coarse.clone();
     let mut step_s = path.span_s() / SLIP_STARTS as f64;
-    for round in 0..ROUNDS {
+    for round in 0..CIRCLE_ROUNDS {
         let made = compare(path, (center_m, &bent), &courses, rules)?;
         let solved = made.solved.as_ref().ok_or_else(no_circle)?;
         radius_m = solved.values[0];
@@ -119,7 +119,7 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
         step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
-        let settled = step.norm() < 1e-8 && (finer.is_empty() || round > CLOSER);
+        let settled = step.norm() < 1e-8 && (finer.is_empty() || round > TIME_REFINEMENT_ROUNDS);
         courses = [coarse.as_slice(), &finer].concat();
         study = Some(made);
         if settled && round > 1 {

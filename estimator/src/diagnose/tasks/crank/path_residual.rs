@@ -8,10 +8,10 @@ use haptics::Vec2;
 use haptics::law::Kind;
 
 /// Generic waves round a turn, and slow ones over the recording.
-const WAVES: u32 = 4;
-const SLOW: u32 = 4;
+const PATH_WAVES: u32 = 4;
+const SLOW_PATH_WAVES: u32 = 4;
 /// Ratio of the path's residual to its noise from which a reason is expected.
-const STRANGE: f64 = 2.0;
+const STRANGE_PATH_RATIO: f64 = 2.0;
 /// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
 /// than this share, is short.
 const BULGE: f64 = 12.0;
@@ -26,12 +26,12 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
         let linear = columns.iter().map(|_| ("amplitude", "m")).collect();
         Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
     };
-    let waves = (2..=WAVES).map(|n| {
+    let waves = (2..=PATH_WAVES).map(|n| {
         let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
         term(format!("cos({n} theta + phi) of the path"), vec![wave(f64::cos), wave(f64::sin)])
     });
     let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
-    let slow = (1..=SLOW).map(|k| {
+    let slow = (1..=SLOW_PATH_WAVES).map(|k| {
         let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
         term(format!("cos({k} pi t/T) of the path"), vec![column(&wave)])
     });
@@ -43,7 +43,7 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
-    if rms < STRANGE * white_noise(&study.y) {
+    if rms < STRANGE_PATH_RATIO * white_noise(&study.y) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();

@@ -20,7 +20,7 @@ const ROW_HZ: f64 = 100.0;
 /// Window of the acceleration, s.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
 /// Fewer rows carry no diagnosis.
-const LEAST_ROWS: usize = 60;
+const LEAST_CRANK_ROWS: usize = 60;
 
 /// Signals at the rate of the rows, each the mean of the same samples.
 pub struct Signals {
@@ -197,12 +197,12 @@ impl Signals {
             rows.extend(made);
             stretch_number += 1;
         }
-        if rows.len() < LEAST_ROWS {
+        if rows.len() < LEAST_CRANK_ROWS {
             return Err(EstimateError::TooFewSamples {
                 recording: recording.name.clone(),
                 samples: rows.len(),
                 what: " in which the handle is held".to_owned(),
-                needed: LEAST_ROWS,
+                needed: LEAST_CRANK_ROWS,
             });
         }
         rows.extend(self.free_rows(stretch_number));

@@ -36,7 +36,7 @@ const BACK: f64 = 0.1;
 /// Least share of the acceleration's power that gravity of any phase explains in a swing.
 const SWINGS: f64 = 0.5;
 /// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
-const CLEAR: f64 = 3.0;
+const SCALE_STD_ERRORS: f64 = 3.0;
 
 /// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
 ///
@@ -221,5 +221,5 @@ fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)
     let pairs = of.iter().flat_map(|a| of.iter().map(move |b| (*a, *b)));
     let spread: f64 = pairs.map(|(a, b)| solved.values[a] * solved.values[b] * solved.inverse[(a, b)]).sum();
     let error = (variance * spread.max(0.0)).sqrt() / ratio.max(1e-300);
-    (ratio > CLEAR * error).then(|| (known / ratio, error / ratio))
+    (ratio > SCALE_STD_ERRORS * error).then(|| (known / ratio, error / ratio))
 }

@@ -7,6 +7,7 @@
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
 use crate::diagnose::data::regression_data::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing, Zero};
+use crate::diagnose::tasks::mechanism::rows::{LEAST_BLOCKS, SHORTEST_S};
 use crate::estimate::EstimateError;
 use crate::identify::mechanism;
 use crate::identify::mechanism::Raw;
@@ -19,9 +20,8 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::ops::Range;
 
-/// Shortest and longest block, s.
-const SHORTEST_S: f64 = 0.02;
-const LONGEST_S: f64 = 0.1;
+/// Longest block, s.
+const LONGEST_FREE_BLOCK_S: f64 = 0.1;
 /// Longest block as a share of a radian of the swing. A longer one would blur effects at a place or a reversal.
 const LONGEST_RAD: f64 = 0.3;
 /// Ratio of noise to acceleration below which a block need not be longer.
@@ -29,8 +29,6 @@ const QUIET: f64 = 0.01;
 /// Share of the noise below which a measured rate is used. A rate that was derived from the positions, perhaps with a
 /// delay, is no better than they are.
 const RATE_BETTER: f64 = 0.3;
-/// Least number of blocks in a segment.
-const LEAST_BLOCKS: usize = 8;
 /// Deviation from an even clock, as a share of a step, up to which time stamps count as rounded.
 const ROUNDED: f64 = 0.03;
 /// Order of the local polynomials between the rows, and their least number of samples on either side.
@@ -38,7 +36,7 @@ const ORDER: usize = 4;
 const LEAST_HALF: usize = 3;
 /// Limit of velocity and acceleration of a standing object, in standard deviations of their noise, and the least number
 /// of such rows.
-const STANDS: f64 = 3.0;
+const STANDING_NOISES: f64 = 3.0;
 const STANDING_ROWS: usize = 3;
 /// Time over which accelerations are estimated for a first look, s.
 const ROUGH_S: f64 = 0.06;
@@ -136,7 +134,7 @@ impl Plan {
         let [speed, acceleration] = usual(pieces, period_s);
         let step = skip(period_s);
         let whole = |length_s: f64| (length_s / (period_s * step as f64)).round().max(1.0) as usize * step;
-        let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_S);
+        let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_FREE_BLOCK_S);
         let (shortest, longest) = (whole(SHORTEST_S), whole(longest_s).max(whole(SHORTEST_S)));
         let by_place = |block: usize| {
             let length_s = block as f64 * period_s;
@@ -323,8 +321,10 @@ impl Made {
 /// The rows without the standing ones, in which friction may take any value. Segments are numbered again. `noise`: of
 /// velocity and acceleration.
 fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
-    let still =
-        |row: &Row| row.motion.velocity.abs() < STANDS * noise[0] && row.motion.acceleration.abs() < STANDS * noise[1];
+    let still = |row: &Row| {
+        row.motion.velocity.abs() < STANDING_NOISES * noise[0]
+            && row.motion.acceleration.abs() < STANDING_NOISES * noise[1]
+    };
     let (mut moving, mut number) = (Vec::with_capacity(rows.len()), 0);
     for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
         for part in stretch.chunk_by(|a, b| still(a) == still(b)) {

@@ -43,7 +43,7 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, Es
     let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
     // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
     // changes too fast for a linear regressor, which overestimates it.
-    for _ in 0..CLOSER {
+    for _ in 0..OFFSET_ROUNDS {
         let Some(more_s) = rest_s else { break };
         let skew_s = found.skew_s + OF_SKEW * more_s;
         let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
@@ -62,7 +62,7 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, Es
 }
 
 /// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
-const CLOSER: usize = 2;
+const OFFSET_ROUNDS: usize = 2;
 const OF_SKEW: f64 = 0.7;
 
 /// The answer, and the sub-sample offset between force and motion, s.

@@ -18,10 +18,10 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
 /// Shortest and longest block, s: every motion of a hand lasts longer than the longest.
-const SHORTEST_S: f64 = 0.02;
-const LONGEST_S: f64 = 0.06;
+pub(crate) const SHORTEST_S: f64 = 0.02;
+const LONGEST_BLOCK_S: f64 = 0.06;
 /// Least length of a segment, in blocks.
-const LEAST_BLOCKS: usize = 8;
+pub(crate) const LEAST_BLOCKS: usize = 8;
 
 /// The rows of one recording. `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is
 /// measured, its own if `None`.
@@ -47,7 +47,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     let skip = skip(period_s);
     let whole = |samples: f64| (samples / skip as f64).round().max(1.0) as usize * skip;
     let shortest = whole(SHORTEST_S / period_s);
-    let longest = whole((LONGEST_S / period_s).floor()).max(shortest);
+    let longest = whole((LONGEST_BLOCK_S / period_s).floor()).max(shortest);
     let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
     // Noise of a rate, or of a position if no rate was recorded, and of the force.
     let noise = [white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force)];

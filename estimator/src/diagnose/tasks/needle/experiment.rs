@@ -6,7 +6,7 @@ use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
 use super::sheet;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::Span;
-use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::experiment::separation::separation;
 use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
@@ -17,9 +17,9 @@ use haptics::law::object::MembraneLaw;
 const INSERTIONS: [usize; 3] = [1, 2, 4];
 /// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
 const HALF_STROKE_M: f64 = 2.5e-3;
-const FAST_M_S: (f64, f64) = (0.03, 0.1);
+const NEEDLE_SPEEDS_M_S: (f64, f64) = (0.03, 0.1);
 /// Time without touch before and after, s.
-const FREE_S: f64 = 2.0;
+const NEEDLE_FREE_S: f64 = 2.0;
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
                      draw out";
 
@@ -42,7 +42,7 @@ pub fn propose(
         };
         let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, seen(a)?))).collect();
         let least = told.iter().map(|t| t.1).reduce(f64::min)?;
-        let power = SURE * power(least);
+        let power = SURE_BY_MOTION * power(least);
         if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
             let mut separates: Vec<String> = Vec::new();
             for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
@@ -69,10 +69,10 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     let mut asked = Experiment {
         id: PIERCE.to_owned(),
         seconds: f64::MIN_POSITIVE,
-        free_s: if needle.two_fingered { FREE_S } else { 0.0 },
+        free_s: if needle.two_fingered { NEEDLE_FREE_S } else { 0.0 },
         middle: deep_m + HALF_STROKE_M,
         half_range: HALF_STROKE_M,
-        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(FAST_M_S.0, FAST_M_S.1),
+        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(NEEDLE_SPEEDS_M_S.0, NEEDLE_SPEEDS_M_S.1),
         across_n: 0.0,
         added_weight_n: 0.0,
         added_lever_m: 0.0,

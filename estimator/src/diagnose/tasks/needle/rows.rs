@@ -22,11 +22,11 @@ pub const INSIDE_M: f64 = 5e-4;
 pub const OUTSIDE_M: f64 = 3e-4;
 /// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
 const EDGE_M: f64 = 1e-4;
-const WINDOW_S: f64 = 0.02;
+const NEEDLE_WINDOW_S: f64 = 0.02;
 /// Duration of a sheet's swinging after the puncture, s.
-const SWINGS_S: f64 = 0.1;
+const SHEET_SWINGS_S: f64 = 0.1;
 /// Margin at either end of a hold, s, in which fingers close or open slowly: it is neither held nor free.
-const CLOSING_S: f64 = 0.25;
+const HOLD_MARGIN_S: f64 = 0.25;
 /// Time between recordings that are joined, s: no row follows across it.
 const BETWEEN_S: f64 = 1.0;
 
@@ -258,7 +258,7 @@ fn phases(
     surface_m: f64,
 ) -> Vec<Of> {
     let mut found: Vec<Of> = vec![None; time.len()];
-    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > CLOSING_S;
+    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > HOLD_MARGIN_S;
     let mut empty = |range: Range<usize>| {
         for i in range.clone() {
             if (range.start == 0 || far(i, range.start)) && (range.end == time.len() || far(i, range.end)) {
@@ -286,15 +286,15 @@ fn phases(
             }
             let Some((k, push)) = now else { continue };
             // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
-            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + WINDOW_S * rate_m_s[i].abs();
-            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < WINDOW_S);
+            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + NEEDLE_WINDOW_S * rate_m_s[i].abs();
+            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < NEEDLE_WINDOW_S);
             if meets || falls {
                 continue;
             }
             let deepest = depth_m[push.samples.start..=i].iter().copied().fold(f64::MIN, f64::max);
             let phase = match push.puncture {
                 Some(at) if i > at => {
-                    let settled = time[i] - time[at] > SWINGS_S;
+                    let settled = time[i] - time[at] > SHEET_SWINGS_S;
                     (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),

@@ -21,7 +21,7 @@ use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
 /// Largest distance of consecutive rows, in their usual distances.
-const NEXT: f64 = 1.5;
+const CONSECUTIVE_DISTANCES: f64 = 1.5;
 /// Largest distance of pushes at one place of the sheet, m.
 const OTHER_PLACE_M: f64 = 5e-4;
 /// Standard errors from which a sheet is inclined to the needle.
@@ -246,7 +246,7 @@ fn said_by_a_row(
     candidates: &[Candidate],
 ) -> Result<f64, EstimateError> {
     /// Standard errors from which a correlation is significant.
-    const CLEAR: f64 = 3.0;
+    const SIGNIFICANT_STD_ERRORS: f64 = 3.0;
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == force_drift::ID || c.expression.is_some());
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
@@ -262,7 +262,8 @@ fn said_by_a_row(
     in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Correlation of rows at this distance, and number of pairs.
     let correlation = |lag: usize| {
-        let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + NEXT - 1.0) * needle.period_s;
+        let near =
+            |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + CONSECUTIVE_DISTANCES - 1.0) * needle.period_s;
         let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));
         let sums = pairs.fold((0.0, 0.0, 0.0_f64), |(product, square, n), (a, b)| {
             (product + a * b, square + 0.5 * (a * a + b * b), n + 1.0)
@@ -272,7 +273,7 @@ fn said_by_a_row(
     let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
     // Inflation of a mean's error over many rows: white noise plus noise with an exponential autocorrelation.
     let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
-    let is_clear = first * pairs.sqrt() > CLEAR;
+    let is_clear = first * pairs.sqrt() > SIGNIFICANT_STD_ERRORS;
     Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
 }
 

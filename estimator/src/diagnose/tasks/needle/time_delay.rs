@@ -1,11 +1,10 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
+use crate::diagnose::recording::delay_scan::STEP_S;
 use crate::diagnose::recording::delay_scan::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
-/// Step of the tried delays, s, or one sample if that is longer.
-const STEP_S: f64 = 2e-3;
 /// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
 /// change their contact phase.
 const NEAR_S: f64 = 0.06;

@@ -10,6 +10,7 @@ use super::throw::Push;
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::Found;
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::experiment::strokes::PEAK;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
@@ -24,17 +25,17 @@ use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
 /// Least size of a named cause, in standard errors of the world.
-const ERRORS: f64 = 3.0;
+const WORLD_STD_ERRORS: f64 = 3.0;
 /// Distance from a corner of the world's curve within which rows are left out, m.
-const CORNER_M: f64 = 0.8e-3;
+const CURVE_CORNER_M: f64 = 0.8e-3;
 /// Number of tried places of a local resistance, and its widths as shares of the travel.
-const PLACES: usize = 24;
-const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
-const LEAST_ROWS: usize = 40;
+const CURVE_PLACES: usize = 24;
+const CURVE_WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
+const LEAST_CURVE_ROWS: usize = 40;
 /// Least number of rows in a local resistance.
 const LEAST_ON: usize = 20;
 /// Least evidence of an unexplained term, as a multiple of a cause's threshold.
-const STRANGE: f64 = 2.0;
+const STRANGE_CURVE_RATIO: f64 = 2.0;
 
 /// One row on the travel of a throw.
 #[derive(Clone, Copy)]
@@ -68,7 +69,7 @@ pub fn curve(
     for (row, found_n) in &push.rows {
         let Some(side) = row.side() else { continue };
         let at_m = known.at_m(row, side);
-        if known.bends_near(at_m, CORNER_M) || known.switch.curve.is_stopped(at_m) {
+        if known.bends_near(at_m, CURVE_CORNER_M) || known.switch.curve.is_stopped(at_m) {
             continue;
         }
         let (asked_n, slope_n_m) = known.asked_n(at_m, side);
@@ -77,7 +78,7 @@ pub fn curve(
         times.push((row.recording, row.time_s));
         points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), left_n, asked_n, slope_n_m });
     }
-    if points.len() < LEAST_ROWS {
+    if points.len() < LEAST_CURVE_ROWS {
         return Ok(None);
     }
     let time: Vec<f64> = times.iter().map(|t| t.1).collect();
@@ -117,7 +118,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
             // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
             // The knob leaves the finger half way.
-            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CURVE_CORNER_M) {
                 continue;
             }
             let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
@@ -131,8 +132,6 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
 
 /// Travel and speed of a smooth movement, every `period_s`.
 pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
-    /// Peak over mean speed.
-    const PEAK: f64 = 1.875;
     let takes_s = PEAK * way_m / fast_m_s.max(1e-6);
     (0..(takes_s / period_s) as usize).map(move |k| {
         let u = k as f64 * period_s / takes_s;
@@ -166,9 +165,9 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
     let names = vec![("k", "N/m"), ("f0", "N")];
     found.push(Candidate::several(return_spring::ID, Kind::Plant, spring, names).shaped(Shape::Spring { half }));
-    for k in 1..PLACES {
-        let place = half * (2.0 * k as f64 / PLACES as f64 - 1.0);
-        for width in WIDTHS.map(|share| 2.0 * half * share) {
+    for k in 1..CURVE_PLACES {
+        let place = half * (2.0 * k as f64 / CURVE_PLACES as f64 - 1.0);
+        for width in CURVE_WIDTHS.map(|share| 2.0 * half * share) {
             let bind = one(local_resistance::ID, "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
             if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
@@ -185,7 +184,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
             found.push(Candidate { expression, ..one("other", "amplitude", "N", column) });
         }
     }
-    found.into_iter().map(|c| seen(c, ERRORS * known.error_n)).collect()
+    found.into_iter().map(|c| seen(c, WORLD_STD_ERRORS * known.error_n)).collect()
 }
 
 /// A cause that must reach some force, N, where it acts.
@@ -194,7 +193,7 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
     let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
-    let strange = if candidate.expression.is_some() { STRANGE } else { 1.0 };
+    let strange = if candidate.expression.is_some() { STRANGE_CURVE_RATIO } else { 1.0 };
     candidate.at_least(strange * least_n / size.max(1e-12))
 }
 

@@ -3,10 +3,11 @@
 
 use super::curve;
 use super::model::Known;
+use super::rows::FREE_EVERY;
 use super::rows::{Place, Row, Seen, direction};
 use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
-use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::experiment::separation::{Imagined, separation};
 use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{THROW, Throws};
@@ -17,13 +18,11 @@ use haptics::Vec2;
 /// Numbers of throws. The least that is likely to suffice is proposed.
 const THROWS: [usize; 3] = [6, 12, 18];
 /// Lowest and highest speed of a finger, m/s.
-const FAST_M_S: (f64, f64) = (0.06, 0.15);
+const THROW_SPEEDS_M_S: (f64, f64) = (0.06, 0.15);
 /// Time without touch before and after, s.
-const FREE_S: f64 = 2.0;
+const THROW_FREE_S: f64 = 2.0;
 /// Travel between a finger's release and the next push, m: that of the spring and the gap.
 const GAP_M: f64 = 6e-3;
-/// Spacing of the rows of free fingers, in blocks.
-const FREE_EVERY: usize = 10;
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
                      before and after";
 
@@ -48,7 +47,7 @@ pub fn propose(
         };
         let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, told(a)?))).collect();
         let least = told.iter().map(|t| t.1).reduce(f64::min)?;
-        let power = SURE * power(least);
+        let power = SURE_BY_MOTION * power(least);
         if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
             let mut separates: Vec<String> = Vec::new();
             for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
@@ -83,10 +82,10 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     let mut asked = Experiment {
         id: THROW.to_owned(),
         seconds: f64::MAX,
-        free_s: FREE_S,
+        free_s: THROW_FREE_S,
         middle: middles.iter().sum::<f64>() / middles.len().max(1) as f64,
         half_range,
-        fast: percentile(&mut speeds, 0.95).clamp(FAST_M_S.0, FAST_M_S.1),
+        fast: percentile(&mut speeds, 0.95).clamp(THROW_SPEEDS_M_S.0, THROW_SPEEDS_M_S.1),
         across_n: 0.0,
         added_weight_n: 0.0,
         added_lever_m: 0.0,
@@ -125,18 +124,18 @@ fn imagine(seen: &Seen, push: &Push, motion: &Throws) -> Seen {
         for (k, (gone, speed)) in curve::pushed(throw.fast_m_s, way_m, seen.period_s).enumerate() {
             let travel = low - GAP_M + gone;
             if (low..high).contains(&travel) {
-                let time_s = FREE_S + throw.begins_s + k as f64 * seen.period_s;
+                let time_s = THROW_FREE_S + throw.begins_s + k as f64 * seen.period_s;
                 rows.push(row(time_s, Place::Push(side), direction(side) * travel, direction(side) * speed));
                 stretch.push(number);
             }
         }
     }
-    let end_s = FREE_S + motion.duration_s();
+    let end_s = THROW_FREE_S + motion.duration_s();
     for (finger, axis) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         number += 1;
         for from_s in [0.0, end_s] {
             let every_s = FREE_EVERY as f64 * seen.period_s;
-            for k in 0..(FREE_S / every_s) as usize {
+            for k in 0..(THROW_FREE_S / every_s) as usize {
                 rows.push(row(from_s + k as f64 * every_s, Place::Free(finger, axis), 0.0, 0.0));
                 stretch.push(number);
             }

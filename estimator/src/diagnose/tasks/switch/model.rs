@@ -8,13 +8,13 @@ use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
 /// Relative standard error of a world's curve that states none, as a share of its peak.
-const UNKNOWN: f64 = 0.03;
+const UNKNOWN_CURVE_ERROR: f64 = 0.03;
 /// The same for its stops, m.
 const UNKNOWN_END_M: f64 = 0.2e-3;
 /// Least uncertainty of a stop, m, due to a tip on a round knob.
 const LEAST_END_M: f64 = 0.13e-3;
 /// Halvings of the search for the knob's position.
-const HALVINGS: usize = 40;
+const KNOB_HALVINGS: usize = 40;
 
 /// Force of a curve along the travel of a side, N, and its derivative by the position on the arc, N/m.
 pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
@@ -61,9 +61,12 @@ impl<'a> Known<'a> {
             switch,
             pad: world.pad.elastic(),
             gravity_m_s2: world.gravity_m_s2,
-            error_n: if error_n.is_nan() { UNKNOWN * most_n } else { error_n },
+            error_n: if error_n.is_nan() { UNKNOWN_CURVE_ERROR * most_n } else { error_n },
             end_error_m: ends.fold(if sides.is_empty() { UNKNOWN_END_M } else { LEAST_END_M }, f64::max),
-            give_error_m_n: give(pad, stated("pad", "stiffness_N_m").map_or(UNKNOWN, |e| e / pad.max(1e-9))),
+            give_error_m_n: give(
+                pad,
+                stated("pad", "stiffness_N_m").map_or(UNKNOWN_CURVE_ERROR, |e| e / pad.max(1e-9)),
+            ),
             damping_n_s_m: if assumed { 0.0 } else { switch.damping_n_s_m },
         })
     }
@@ -80,7 +83,7 @@ impl<'a> Known<'a> {
         };
         let far = 1.4 * self.switch.lever_m;
         let (mut back, mut front) = (-sign * far, sign * far);
-        for _ in 0..HALVINGS {
+        for _ in 0..KNOB_HALVINGS {
             let middle = 0.5 * (back + front);
             if ahead(middle) < 0.0 { back = middle } else { front = middle }
         }

@@ -25,13 +25,13 @@ const SETTLED_M: f64 = 0.8e-3;
 const LEAVING_S: f64 = 0.03;
 const TOUCHING_S: f64 = 0.1;
 /// Speed below which the knob may rest, m/s.
-const REST_M_S: f64 = 2e-3;
+const KNOB_REST_M_S: f64 = 2e-3;
 /// Least force against a stop, as a share of its maximum.
 const STOP_SHARE: f64 = 0.4;
 /// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
 const BACK_M_S: f64 = -5e-4;
 /// Spacing of free rows, in blocks: neighbours share their noise.
-const FREE_EVERY: usize = 10;
+pub(crate) const FREE_EVERY: usize = 10;
 
 /// Kind of a row. Sides and fingers: 0 is the left finger, which pushes to the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -282,7 +282,7 @@ fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
         if way_m > 2.0 * SETTLED_M && end < time.len() {
             let settled = (first..end).find(|k| along(*k) > along(first) + SETTLED_M).unwrap_or(end);
             let leaving = (settled..end).find(|k| time[end] - time[*k] <= LEAVING_S).unwrap_or(end);
-            let moves = |k: &usize| direction(side) * finger.velocity[*k].x > REST_M_S;
+            let moves = |k: &usize| direction(side) * finger.velocity[*k].x > KNOB_REST_M_S;
             let last = (settled..leaving).rev().find(moves).map_or(settled, |k| k + 1);
             found.push(Touch { blocks: settled..last, throws: true });
             thrown_to = Some(along(end - 1));

@@ -19,9 +19,9 @@ use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-const LEAST_ROWS: usize = 40;
+const LEAST_STOP_ROWS: usize = 40;
 /// Least size of a named cause, in standard errors of the world.
-const ERRORS: f64 = 3.0;
+const STOP_STD_ERRORS: f64 = 3.0;
 /// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
 const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
@@ -34,7 +34,7 @@ pub fn stop(
     rules: Rules,
 ) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
-    if indices.len() < LEAST_ROWS {
+    if indices.len() < LEAST_STOP_ROWS {
         return Ok(None);
     }
     let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
@@ -86,8 +86,8 @@ fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<
         most: f64::INFINITY,
     };
     let give = plant(pad_compliance::ID, "give", "m/N", force);
-    let mut found = vec![give.at_least(ERRORS * known.give_error_m_n).shaped(shape)];
-    let least_m = ERRORS * known.end_error_m;
+    let mut found = vec![give.at_least(STOP_STD_ERRORS * known.give_error_m_n).shaped(shape)];
+    let least_m = STOP_STD_ERRORS * known.end_error_m;
     let names = [
         ("right stop is nearer by", "the right stop, farther away"),
         ("left stop is nearer by", "the left stop, farther away"),

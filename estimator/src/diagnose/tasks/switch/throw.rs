@@ -22,12 +22,12 @@ use haptics::law::Kind;
 const APART_M: f64 = 0.7e-3;
 const MOST_PLACES: usize = 24;
 /// Least number of rows on the travel of throws.
-const LEAST_ROWS: usize = 30;
+const LEAST_THROW_ROWS: usize = 30;
 /// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
 /// ones.
-const CORNER_M: f64 = 0.6e-3;
+const TOP_CORNER_M: f64 = 0.6e-3;
 /// Speed below which a finger rests with the knob, m/s.
-const REST_M_S: f64 = 2e-3;
+const FINGER_REST_M_S: f64 = 2e-3;
 /// Number of tried times of a sudden change of friction.
 const CHANGES: usize = 20;
 /// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
@@ -140,14 +140,15 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
 
 /// Compares the causes that depend on speed and time.
 pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
-    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
+    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > FINGER_REST_M_S;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
     let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
     let rough = curves(&all);
     let forces = first_look(&all, &rough)?;
     let tops: Vec<(usize, f64)> = rough.iter().zip(&forces).map(|(c, f)| (c.side, c.top_m(f))).collect();
-    let corner =
-        |r: &Row| tops.iter().any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < CORNER_M);
+    let corner = |r: &Row| {
+        tops.iter().any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < TOP_CORNER_M)
+    };
     let kept = |i: usize| {
         let r = &seen.rows[i];
         !matches!(r.place, Place::Stop(_)) && moves(r) && !corner(r)
@@ -165,9 +166,9 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
         })
         .collect();
     let pushed = rows.iter().filter(|r| matches!(r.place, Place::Push(_))).count();
-    if pushed < LEAST_ROWS {
+    if pushed < LEAST_THROW_ROWS {
         return Err(EstimateError::Other(format!(
-            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_ROWS} are needed: throw the switch over more often"
+            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_THROW_ROWS} are needed: throw the switch over more often"
         )));
     }
     let curves = curves(&rows);

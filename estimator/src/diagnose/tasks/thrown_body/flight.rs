@@ -4,6 +4,7 @@ use crate::diagnose::contract::{Alternative, Cause, Gain, RolloutOf, parameter};
 use crate::diagnose::free_run::windows::{Compared, told};
 use crate::diagnose::hypotheses::{channel_fault, length_scale};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
+use crate::diagnose::selection::rules::THRESHOLD;
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::identify::tossed::Tossed;
 use crate::identify::tossed::flight::{Fall, end, least};
@@ -12,9 +13,7 @@ use haptics::law::Kind;
 use nalgebra::DVector;
 
 /// Every so many-th throw is held out.
-const HELD_OUT: usize = 4;
-/// Least evidence of a cause: 2 ln(likelihood) less the penalty of its parameter.
-const THRESHOLD: f64 = 20.0;
+const HELD_OUT_THROWS: usize = 4;
 /// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously),
 /// and lengths that a person put in by this one.
 const CLOCKS: f64 = 1e-3;
@@ -87,7 +86,7 @@ fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
 fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     let (mut others, mut tested) = (Vec::new(), Vec::new());
     for (k, track) in tracks.iter().enumerate() {
-        if k % HELD_OUT == HELD_OUT - 1 { &mut tested } else { &mut others }.push(track.clone());
+        if k % HELD_OUT_THROWS == HELD_OUT_THROWS - 1 { &mut tested } else { &mut others }.push(track.clone());
     }
     let Some(fall) = Fall::of(&others) else { return Gain::default() };
     let squares: Vec<[f64; 4]> = tested

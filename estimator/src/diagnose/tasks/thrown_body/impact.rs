@@ -34,7 +34,7 @@ const FREE_M_S: f64 = 0.06;
 /// Difference of two velocities below which their meeting time is undetermined, m/s.
 const SAME_M_S: f64 = 0.1;
 /// Height within which a second corner hits at the same time, in half widths.
-const TOGETHER: f64 = 0.1;
+const SECOND_CORNER_HEIGHT: f64 = 0.1;
 /// Least speed of a blow, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
@@ -130,7 +130,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
         .collect();
     corners.sort_by(|a, b| a.z.total_cmp(&b.z));
     let arm = corners[0];
-    if corners[1].z - arm.z < TOGETHER * half_m {
+    if corners[1].z - arm.z < SECOND_CORNER_HEIGHT * half_m {
         return None;
     }
     let up = |of: &Free, spin: Vector3<f64>| of.rise_m_s(at_s, fall_m_s2) + spin.cross(&arm).z;

@@ -23,11 +23,11 @@ use nalgebra::{DVector, Vector3};
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
 /// Least evidence of a cause.
-const THRESHOLD: f64 = 25.0;
+const SLIDE_THRESHOLD: f64 = 25.0;
 /// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
 const LEAST_MU: f64 = 2e-3;
 /// Tried decay speeds of static friction, as shares of the usual speed.
-const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
+const STRIBECK_SHARES: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
 /// One slide: times, distance along its direction, speed, and the share of friction against it.
 struct Way {
@@ -71,7 +71,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         follows(viscous_friction::ID, "c/m", "1/s", &|v| v),
         follows(quadratic_drag::ID, "k/m", "1/m", &|v| v * v),
     ];
-    for share in STRIBECK {
+    for share in STRIBECK_SHARES {
         let vs = share * usual;
         let falls_off = |v: f64| fall * (-(v / vs).powi(2)).exp();
         let bent = Candidate::one(stribeck::ID, Kind::Plant, "dmu", "1", all_dry(&falls_off));
@@ -84,7 +84,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     let along = vec![true; n];
     let layout = Layout::of(stretch, &along, period_s);
     // Friction that rises as the body stops requires dry friction.
-    let rules = Rules { threshold: THRESHOLD, ..Rules::of_channel(period_s) }.with_friction(mu > 0.0);
+    let rules = Rules { threshold: SLIDE_THRESHOLD, ..Rules::of_channel(period_s) }.with_friction(mu > 0.0);
     let study = Channel::new(y, Vec::new(), candidates, layout, rules).fit()?;
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];

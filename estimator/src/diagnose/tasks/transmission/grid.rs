@@ -9,8 +9,8 @@ const GAPS: [f64; 14] =
     [0.003, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.018, 0.022, 0.027, 0.033, 0.042, 0.055, 0.075, 0.1];
 /// Refinement steps around a half gap or presliding distance found, as shares of it, and number of steps to either
 /// side.
-const CLOSER: [f64; 3] = [0.05, 0.01, 0.002];
-const STEPS: i32 = 5;
+const GAP_REFINEMENT_STEPS: [f64; 3] = [0.05, 0.01, 0.002];
+const STEPS_TO_EITHER_SIDE: i32 = 5;
 /// Standard error, as a share of the distance between tried values, up to which the grid is refined. Closer values
 /// cannot be separated.
 const SHARPER: f64 = 0.3;
@@ -42,7 +42,9 @@ impl Tried {
         if known(study, k, 0).std_error > SHARPER * nearest {
             return false;
         }
-        let more = (-STEPS..=STEPS).filter(|k| *k != 0).map(|k| found * (1.0 + f64::from(k) * step));
+        let more = (-STEPS_TO_EITHER_SIDE..=STEPS_TO_EITHER_SIDE)
+            .filter(|k| *k != 0)
+            .map(|k| found * (1.0 + f64::from(k) * step));
         self.values.extend(more);
         self.values.sort_by(f64::total_cmp);
         self.values.dedup_by(|a, b| (*a - *b).abs() < 1e-9 * *b);
@@ -56,7 +58,7 @@ pub fn closer(
     once: &dyn Fn(&[Tried]) -> Result<Study, EstimateError>,
 ) -> Result<Study, EstimateError> {
     let mut study = once(tried)?;
-    for step in CLOSER {
+    for step in GAP_REFINEMENT_STEPS {
         let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);
         if !more {
             break;

@@ -2,7 +2,7 @@
 //! act against it. (Its inertia is a small part of the force: a measured force that drove it would be followed in all
 //! its errors.)
 
-use super::rows::{ROW_HZ, Row, Seen};
+use super::rows::{Row, Seen, TRANSMISSION_ROW_HZ};
 use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
@@ -84,7 +84,9 @@ impl Forward for Input {
 
     fn windows(&self) -> Vec<Vec<usize>> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
-        consecutive(&all, &|i| self.rows[i].time_s, 1.0 / ROW_HZ, &|a, b| self.stretch[a] == self.stretch[b])
+        consecutive(&all, &|i| self.rows[i].time_s, 1.0 / TRANSMISSION_ROW_HZ, &|a, b| {
+            self.stretch[a] == self.stretch[b]
+        })
     }
 
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {

@@ -15,13 +15,14 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
-const SLOW: f64 = 0.1;
-const SURE: f64 = 0.99;
+const SLOW_SPEED_SHARE: f64 = 0.1;
+const SURE_POSTERIOR: f64 = 0.99;
 
 /// Rows with a certain direction of friction.
 fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
     let direction: Vec<f64> = seen.fine.iter().flat_map(Fine::direction).collect();
-    let is_sure = |(row, direction): (&Row, &f64)| direction.abs() > SURE && row.rate.abs() > SLOW * usual;
+    let is_sure =
+        |(row, direction): (&Row, &f64)| direction.abs() > SURE_POSTERIOR && row.rate.abs() > SLOW_SPEED_SHARE * usual;
     seen.kept(&seen.rows.iter().zip(&direction).map(is_sure).collect::<Vec<bool>>())
 }
 

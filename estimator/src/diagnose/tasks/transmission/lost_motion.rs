@@ -6,6 +6,7 @@ use super::rows::{Columns, Row, Seen, constants, ratio, spread};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
+use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
@@ -13,13 +14,11 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
-const SHARES: [f64; 2] = [0.1, 2.0];
+const LOST_MOTION_SHARES: [f64; 2] = [0.1, 2.0];
 /// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
 /// distinguished from the steps: an output at rest reads one and the same step.
-const NOISES: f64 = 2.0;
+const OUTPUT_NOISES: f64 = 2.0;
 const STEPS_OF_SENSOR: f64 = 0.5;
-/// Difference of the clocks and filters of two sensors, s: a smaller delay is none.
-const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// The output against the input.
 pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> {
@@ -30,11 +29,16 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
-    let share = Shape::Share { least: SHARES[0] * lever, whole: f64::NEG_INFINITY, most: SHARES[1] * lever };
+    let share = Shape::Share {
+        least: LOST_MOTION_SHARES[0] * lever,
+        whole: f64::NEG_INFINITY,
+        most: LOST_MOTION_SHARES[1] * lever,
+    };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let least =
-        |column: &[f64]| (NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
+    let least = |column: &[f64]| {
+        (OUTPUT_NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE)
+    };
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {

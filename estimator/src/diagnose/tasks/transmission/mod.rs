@@ -29,14 +29,14 @@ use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::Kind;
 use haptics::recording::Recording;
-use rows::{Columns, ROW_HZ, Row, Seen, columns, stretches_of};
+use rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, columns, stretches_of};
 
 /// Number of equal parts of a recording in which the work of the input is evaluated.
-const PARTS: usize = 10;
+const WORK_PARTS: usize = 10;
 /// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
 /// the parts.
-const SURELY: f64 = 6.0;
-const NEARLY_ALL: f64 = 0.9;
+const WORK_STD_ERRORS: f64 = 6.0;
+const PARTS_OF_ONE_SIGN: f64 = 0.9;
 
 /// True if [`driven`] handles these recordings.
 pub fn is_driven(recordings: &[Recording]) -> bool {
@@ -125,7 +125,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
         let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
         ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
         let force = mean(&|r| r.force.unwrap_or(0.0));
-        let parts = own.chunks(own.len().div_ceil(PARTS).max(1));
+        let parts = own.chunks(own.len().div_ceil(WORK_PARTS).max(1));
         work.extend(parts.map(|part| part.iter().map(|r| (r.force.unwrap_or(0.0) - force) * r.rate).sum::<f64>()));
     }
     if ratio < 0.0 {
@@ -143,7 +143,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
     let mean = work.iter().sum::<f64>() / n;
     let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
     let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
-    if work.len() >= PARTS && mean < -SURELY * error && taken > NEARLY_ALL * n {
+    if work.len() >= WORK_PARTS && mean < -WORK_STD_ERRORS * error && taken > PARTS_OF_ONE_SIGN * n {
         for row in rows.iter_mut() {
             row.force = row.force.map(|f| -f);
         }
@@ -171,7 +171,7 @@ fn best_seen(id: &str) -> Variable {
 }
 
 fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<Study, EstimateError> {
-    const PERIOD_S: f64 = 1.0 / ROW_HZ;
+    const PERIOD_S: f64 = 1.0 / TRANSMISSION_ROW_HZ;
     let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], PERIOD_S);
     Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(PERIOD_S)).fit()
 }

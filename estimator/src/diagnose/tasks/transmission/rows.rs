@@ -94,7 +94,7 @@ fn rows(recording: &Recording, number: usize, names: &Columns) -> Option<(Vec<Ro
     let force = recording.channel(names.force).map(|f| through(f).value);
     let load = load(recording, names).map(|f| through(f).value);
     let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1).max(1) as f64;
-    let every = (1.0 / (ROW_HZ * step_s)).round().max(1.0) as usize;
+    let every = (1.0 / (TRANSMISSION_ROW_HZ * step_s)).round().max(1.0) as usize;
     let row = |i: usize| Row {
         recording: number,
         time_s: time[i],
@@ -126,7 +126,7 @@ pub fn constants(rows: &[Row]) -> Vec<Vec<f64>> {
 /// Rows that follow each other.
 pub fn stretches_of(rows: &[Row]) -> Vec<usize> {
     let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-    segments(&time, 1.0 / ROW_HZ, |i| rows[i].recording != rows[i - 1].recording)
+    segments(&time, 1.0 / TRANSMISSION_ROW_HZ, |i| rows[i].recording != rows[i - 1].recording)
 }
 
 /// Slope of the output over the input, about the means of each recording.
@@ -149,6 +149,6 @@ pub fn spread(values: &[f64]) -> f64 {
 }
 
 /// Approximate rate of the rows, Hz.
-pub const ROW_HZ: f64 = 50.0;
+pub const TRANSMISSION_ROW_HZ: f64 = 50.0;
 /// Least share of rows that still represents a recording.
 const FEW: f64 = 0.5;
