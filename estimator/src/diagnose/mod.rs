@@ -80,26 +80,21 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Fi
     // The same axis in several recordings is one fault.
     let which = |fault: &Cause| fault.parameters.first().map(|p| p.name.clone());
     faults.dedup_by(|a, b| which(a) == which(b));
-    let mut found = match task {
+    match task {
         Task::BlockStack | Task::Barrel if tasks::sliding_block::is_slid(recordings) => {
-            tasks::sliding_block::slid(recordings, options)
+            tasks::sliding_block::slid(recordings, options, &faults)
         }
         // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => {
-            let ask = |recordings: &[Recording]| tasks::carried_block::blocks(recordings, options);
+            let ask = |recordings: &[Recording]| tasks::carried_block::blocks(recordings, options, &faults);
             ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
         }
         Task::Needle => {
-            let ask = |recordings: &[Recording]| tasks::needle::needle(recordings, options);
+            let ask = |recordings: &[Recording]| tasks::needle::needle(recordings, options, &faults);
             ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
         }
-        _ => tasks::switch::switch(recordings, options),
-    }?;
-    if !faults.is_empty() && found.verdict == Verdict::None {
-        found.verdict = Verdict::Causes;
+        _ => tasks::switch::switch(recordings, options, &faults),
     }
-    found.causes.splice(0..0, faults);
-    Ok(found)
 }
 
 /// Validates the found causes on other recordings of the same object: none is chosen or fitted there. Sensor faults

@@ -1,303 +1,182 @@
-//! Builds one answer in words from comparisons of several channels.
+//! Builds one answer from the comparisons of its channels and from evidence of other kinds.
 
-use super::along_coordinate::{p_value, rivals, unnamed};
+use super::cause::{Unnamed, rivals};
+use super::part::{Part, Role};
 use super::rejected::{join, passed_over, unsaid};
-use super::residual_table::residuals;
 use crate::diagnose::contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, PassedOver,
-    Residual, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
 use crate::diagnose::findings::{Figures, Findings};
-use crate::diagnose::free_run::channel::{Forward, in_turn};
-use crate::diagnose::free_run::windows::{AT_ONCE, NO_LAW};
-use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::{Compared, Study};
-use crate::diagnose::selection::estimates::parameters;
-use crate::diagnose::selection::held_out_gain::{gain, rms, whiteness_p};
 use crate::diagnose::selection::rules::OPEN;
-use crate::diagnose::selection::stepwise::{Chosen, is_curve};
 use crate::diagnose::validation::fitted_terms::of_study;
-use crate::segment::SystemState;
-use crate::words::amount;
 
-/// Input of a cause's evidence sentence.
-pub struct Found<'a> {
-    /// The candidate that was chosen.
-    pub candidate: &'a Candidate,
-    /// Its parameters as the answer states them.
-    pub parameters: &'a [CauseParameter],
+/// What the comparisons name, and the experiment that would settle what they leave open. The task reads it by what it
+/// knows beside them.
+pub struct Named {
+    /// Named causes, then unnamed terms.
+    pub causes: Vec<Cause>,
+    pub alternatives: Vec<Alternative>,
+    pub not_excited: Vec<NotExcited>,
+    pub next: Option<NextExperiment>,
 }
 
-/// Sentence on how the residual shows a cause.
-pub type Shows<'a> = &'a dyn Fn(&Found<'_>) -> String;
-/// Parameters of a cause, made from those of its regressors.
-pub type States<'a> = &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>;
-/// Usual size of a cause with its unit, for the test of excitation. None if the cause does not belong to the channel.
-pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
-
-impl Compared {
-    /// As a part of the answer.
-    pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
-        let Self { study, channel, unit, floor, along, state } = self;
-        Part { study, channel, unit, floor: *floor, along, state, shows, states, usual, forward: Err(AT_ONCE) }
-    }
-}
-
-/// One channel, compared.
-pub struct Part<'a> {
-    /// The comparison.
-    pub study: &'a Study,
-    /// Name of the channel, in words.
-    pub channel: &'static str,
-    /// Its unit.
-    pub unit: &'a str,
-    /// Noise of its rows.
-    pub floor: f64,
-    /// True for rows that are held out in turn.
-    pub along: &'a [bool],
-    /// The state of every row.
-    pub state: &'a [SystemState],
-    pub shows: Shows<'a>,
-    pub states: States<'a>,
-    pub usual: Usual<'a>,
-    /// Free-run simulation of the channel, or the reason why it has none.
-    pub forward: Result<&'a dyn Forward, &'static str>,
-}
-
-impl<'a> Part<'a> {
-    /// Adds the free-run simulation.
-    pub fn running(mut self, forward: &'a dyn Forward) -> Self {
-        self.forward = Ok(forward);
-        self
-    }
-
-    /// Marks the channel as static, without a free run, for this reason.
-    pub fn still(mut self, why: &'static str) -> Self {
-        self.forward = Err(why);
-        self
-    }
-
-    fn cause(&self, k: usize, chosen: &Chosen) -> Cause {
-        let candidate = &self.study.candidates[chosen.candidate];
-        let forward = self.forward.map_err(str::to_owned).and_then(|forward| in_turn(self.study, forward, k));
-        let gain = self.in_its_unit(gain(self.study, k, self.floor)).run(forward);
-        let parameters = (self.states)(candidate, parameters(self.study, k));
-        let shown = (self.shows)(&Found { candidate, parameters: &parameters });
-        let held_out = if let Some(why) = &gain.no_share {
-            why.clone()
-        } else {
-            format!(
-                "on data held out{} the {} that is left goes from {} to {} RMS",
-                if gain.in_turn { " of the fit in turn" } else { "" },
-                self.channel,
-                amount(gain.heldout_rms_before, self.unit),
-                amount(gain.heldout_rms_after, self.unit)
-            )
-        };
-        let evidence = format!("{shown}; {held_out} (score {:.0})", chosen.score);
-        Cause {
-            id: candidate.id.to_owned(),
-            kind: candidate.kind,
-            parameters,
-            p_value: p_value(self.study, chosen),
-            posterior: 1.0 / (1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()),
-            gain,
-            evidence,
-        }
-    }
-
-    /// Residual figures of the channel, without and with the causes found.
-    pub fn figures(&self) -> Figures {
-        let of = |picks: &[usize]| {
-            let (heldout, train) = rms(self.study, picks, self.along);
-            (heldout, train, whiteness_p(self.study, picks))
-        };
-        let (heldout_rms_n, rms_n, whiteness) = of(&[]);
-        let (end, _, end_white) = of(&self.study.picks());
-        Figures {
-            baseline: Baseline {
-                rms_n,
-                heldout_rms_n,
-                whiteness_p: whiteness,
-                of: Some(self.channel.to_owned()),
-                unit: Some(self.unit.to_owned()),
-                ..Baseline::default()
-            },
-            end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
-            // The final residual contains the noise, so the noise floor is no larger.
-            noise_floor: if end > 0.0 { self.floor.min(end) } else { self.floor },
-        }
-    }
-
-    /// Residuals of the channel, state by state.
-    fn residuals(&self) -> Vec<Residual> {
-        residuals(self.study, (self.unit, Some(self.floor)), &|i| Some((self.channel, self.state[i])))
-    }
-
-    /// The gain has a unit only if rows were held out.
-    fn in_its_unit(&self, gain: Gain) -> Gain {
-        let unit = (gain.heldout_rms_before > 0.0).then(|| self.unit.to_owned());
-        Gain { unit, ..gain }
-    }
-
-    /// Strongest generic term of the residual, as a cause without a name, with its warning.
-    fn unnamed(&self) -> Option<(Cause, String)> {
-        let (candidate, score) = self.strange()?;
-        // If the final residual is small, a generic term may be a small misfit of a strong cause's curve. It is then
-        // not reported.
-        let misses = |c: &Chosen| {
-            is_curve(self.study.candidates[c.candidate].id) && score < self.study.rules.remainder * c.score
-        };
-        if self.study.rules.much.is_some() && self.much_left().is_none() && self.study.chosen.iter().any(misses) {
-            return None;
-        }
-        let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
-        // A term that does not reduce the held-out residual is noise.
-        if cause.gain.no_share.is_none() && cause.gain.share_of_explainable <= 0.0 {
-            return None;
-        }
-        let expression = cause.id.trim_start_matches("other:").to_owned();
-        let channel = self.channel;
-        let warning = format!(
-            "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
-        );
-        let evidence = format!("what is left of the {channel} goes with {expression}; no known cause does so here");
-        let gain = self.in_its_unit(cause.gain).run(Err(NO_LAW.to_owned()));
-        Some((Cause { gain, evidence, ..cause }, warning))
-    }
-
-    /// Sentence on the final residual if it is far above the noise and not white.
-    fn much_left(&self) -> Option<String> {
-        let picks = self.study.picks();
-        let (end, _) = rms(self.study, &picks, self.along);
-        let times = end / self.floor;
-        let is_much = self.study.rules.much.is_some_and(|much| times > much);
-        (is_much && whiteness_p(self.study, &picks) < self.study.rules.surely_not_white).then(|| {
-            let left = amount(end, self.unit);
-            format!("{left} of the {} are left, {times:.0} times its noise, and go with no known cause", self.channel)
-        })
-    }
-
-    /// Strongest generic term of the residual, with its evidence.
-    fn strange(&self) -> Option<(usize, f64)> {
-        let strongest = self.study.of_each().unexplained(&self.study.picks());
-        strongest.filter(|(_, score)| *score > self.study.rules.unexplained)
-    }
-
-    /// Causes of usual size whose effect this recording would hide.
-    fn not_excited(&self, found: &mut Vec<NotExcited>) {
-        let Study { system, candidates, solved, rules, .. } = self.study;
-        let picks = self.study.picks();
-        let Some(solved) = solved else { return };
-        let variance = solved.variance(system.rows);
-        let mut best: Vec<(&str, f64, &str)> = Vec::new();
-        for (k, candidate) in candidates.iter().enumerate() {
-            let Some((size, why)) = (self.usual)(candidate) else { continue };
-            let first = system.places[k].start;
-            let power = system.distinct(k, &picks) * system.train[(first, first)] * size * size / variance;
-            match best.iter_mut().find(|b| b.0 == candidate.id) {
-                Some(held) => held.1 = held.1.max(power),
-                None => best.push((candidate.id, power, why)),
-            }
-        }
-        for (id, power, why) in best {
-            let named = picks.iter().any(|p| candidates[*p].id == id);
-            if power < rules.visible && !named && found.iter().all(|n| n.id != id) {
-                found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
-            }
-        }
-    }
-}
-
-/// Parts of an answer that do not come from a comparison.
-#[derive(Default)]
-pub struct Beside {
+/// Evidence that does not come from a comparison.
+pub struct Evidence<'a> {
     /// Name of the base model.
     pub model: String,
     /// Faults of the samples, and causes found by other tests. They come first.
     pub causes: Vec<Cause>,
     pub alternatives: Vec<Alternative>,
     pub not_excited: Vec<NotExcited>,
+    /// Sentences before those of the comparisons.
     pub warnings: Vec<String>,
+    /// Sentences after them.
+    pub remarks: Vec<String>,
+    /// Causes that no motion shows unless a quantity is known, unless something else shows them.
+    pub without_known: Vec<NotExcited>,
+    /// Figures of the residual if there is no channel.
+    pub figures: Figures,
+    /// Experiment that would settle the open questions.
+    pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
+    /// The task's reading of the named causes.
+    pub reads: &'a dyn Fn(&mut Named),
+}
+
+impl Default for Evidence<'_> {
+    fn default() -> Self {
+        Self {
+            model: String::new(),
+            causes: Vec::new(),
+            alternatives: Vec::new(),
+            not_excited: Vec::new(),
+            warnings: Vec::new(),
+            remarks: Vec::new(),
+            without_known: Vec::new(),
+            figures: Figures::of_nothing(),
+            next: &|_| None,
+            reads: &|_| (),
+        }
+    }
+}
+
+/// Causes of all parts with their evidence, in the order of the answer.
+#[derive(Default)]
+struct Ranking(Vec<(f64, Cause)>);
+
+impl Ranking {
+    /// Adds a cause, unless it is there: then it joins that one, whose name stays, or is left out. True if it was added.
+    fn add(&mut self, role: Role, score: f64, cause: Cause) -> bool {
+        let all = &mut self.0;
+        if let Some((_, held)) = all.iter_mut().find(|(_, c)| c.id == cause.id).filter(|_| role != Role::Coordinate) {
+            if role == Role::Channel {
+                let is_new = |p: &CauseParameter| held.parameters.iter().all(|q| q.name != p.name);
+                let more: Vec<CauseParameter> = cause.parameters.into_iter().filter(is_new).collect();
+                held.parameters.extend(more);
+                held.evidence = format!("{}; and {}", held.evidence, cause.evidence);
+            }
+            return false;
+        }
+        let weaker = all.iter().position(|(other, _)| *other < score).filter(|_| role != Role::Coordinate);
+        all.insert(weaker.unwrap_or(all.len()), (score, cause));
+        true
+    }
+}
+
+/// The answer of one or several channels.
+pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
+    let Evidence { model, mut causes, mut alternatives, mut not_excited, mut warnings, remarks, .. } = evidence;
+    let (mut ranking, mut passed) = (Ranking::default(), Vec::<PassedOver>::new());
+    for part in parts {
+        for (k, chosen) in part.study.chosen.iter().enumerate() {
+            if let Some(excuse) = (part.excuse)(k) {
+                warnings.push(excuse);
+            } else if ranking.add(part.role, chosen.score, part.cause(k)) {
+                alternatives.extend(rivals(part.study, chosen));
+            }
+        }
+        if part.role != Role::Path {
+            let mut more = part.not_excited();
+            more.retain(|n| not_excited.iter().all(|other| other.id != n.id));
+            not_excited.extend(more);
+            join(&mut passed, passed_over(part.study));
+        }
+    }
+    causes.extend(ranking.0.into_iter().map(|(_, cause)| cause));
+    let unnamed: Vec<Option<Unnamed>> = parts.iter().map(Part::unnamed).collect();
+    let has_much = |(part, unnamed): (&Part<'_>, &Option<Unnamed>)| {
+        let counts = match part.role {
+            Role::Channel => true,
+            Role::Coordinate => causes.is_empty() && unnamed.is_none(),
+            Role::Path => false,
+        };
+        if counts { part.much_left() } else { None }
+    };
+    let much: Vec<String> = parts.iter().zip(&unnamed).filter_map(has_much).collect();
+    let is_strange = !much.is_empty() || unnamed.iter().any(Option::is_some);
+    warnings.extend(much);
+    alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
+    not_excited.retain(|n| !is_said(&n.id, &causes, &alternatives));
+    let without_known = evidence.without_known.into_iter();
+    let is_new =
+        |n: &NotExcited| !is_said(&n.id, &causes, &alternatives) && not_excited.iter().all(|other| other.id != n.id);
+    let more: Vec<NotExcited> = without_known.filter(is_new).collect();
+    not_excited.extend(more);
+    let passed_over = unsaid(passed, &causes, &alternatives, &not_excited);
+    let mut terms: Vec<String> = Vec::new();
+    for (part, Unnamed { cause, warning }) in parts.iter().zip(unnamed).filter_map(|(part, u)| Some((part, u?))) {
+        if part.role == Role::Channel || !terms.contains(&cause.id) {
+            terms.push(cause.id.clone());
+            causes.push(cause);
+            warnings.push(warning);
+        }
+    }
+    warnings.extend(remarks);
+    let open = |alternatives: &[Alternative]| -> Vec<Alternative> {
+        let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
+        alternatives.iter().filter(|a| a.posterior > limit).cloned().collect()
+    };
+    let next = (evidence.next)(&open(&alternatives));
+    let mut named = Named { causes, alternatives, not_excited, next };
+    (evidence.reads)(&mut named);
+    let Named { causes, alternatives, not_excited, next } = named;
+    let is_named = causes.iter().any(|c| !terms.contains(&c.id));
+    let Figures { baseline, end, noise_floor } = told(parts).map_or(evidence.figures, Part::figures);
+    let diagnosis = Diagnosis {
+        verdict: verdict(is_named, is_strange, !open(&alternatives).is_empty()),
+        baseline: Baseline { model, ..baseline },
+        noise_floor_n: noise_floor,
+        residuals: parts.iter().flat_map(Part::residuals).collect(),
+        causes,
+        alternatives,
+        not_excited,
+        passed_over,
+        next_experiment: next,
+        end,
+        warnings,
+        ..Diagnosis::default()
+    };
+    let kept = parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect();
+    Findings { diagnosis, kept, ..Findings::default() }
+}
+
+/// True if the answer mentions this cause as named or as possible.
+fn is_said(id: &str, causes: &[Cause], alternatives: &[Alternative]) -> bool {
+    causes.iter().any(|c| c.id == id) || alternatives.iter().any(|a| a.id == id)
 }
 
 /// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.
 fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
-    let strongest = |part: &Part<'_>| part.study.chosen.iter().map(|c| c.score).fold(0.0, f64::max);
     // Of equal ones, the last would be taken.
-    parts.iter().rev().max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
+    let channels = parts.iter().rev().filter(|p| p.role != Role::Path);
+    channels.max_by(|a, b| a.strongest().total_cmp(&b.strongest()))
 }
 
-/// Verdict of the answer: true arguments mean that a cause is named, that a term has no name, that a name is ambiguous.
-pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
+/// Verdict of the answer: a cause is named, a term has no name, a name is ambiguous.
+fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
     match (is_named, is_strange) {
         (false, false) => Verdict::None,
         (false, true) => Verdict::Unexplained,
         (true, _) if is_open => Verdict::Ambiguous,
         (true, _) => Verdict::Causes,
     }
-}
-
-/// Adds a cause of a channel, or merges it into an earlier one of the same id. The name stays, the parameters and
-/// evidence of both channels are kept.
-fn add(found: &mut Vec<(f64, Cause)>, score: f64, cause: Cause) -> bool {
-    let Some((_, held)) = found.iter_mut().find(|(_, c)| c.id == cause.id) else {
-        found.push((score, cause));
-        return true;
-    };
-    let named = |p: &CauseParameter| held.parameters.iter().all(|q| q.name != p.name);
-    let more: Vec<CauseParameter> = cause.parameters.into_iter().filter(named).collect();
-    held.parameters.extend(more);
-    held.evidence = format!("{}; and {}", held.evidence, cause.evidence);
-    false
-}
-
-/// The answer of several channels.
-pub fn answer(parts: &[Part<'_>], beside: Beside, next: &dyn Fn(&[Alternative]) -> Option<NextExperiment>) -> Findings {
-    let Beside { model, mut causes, mut alternatives, mut not_excited, mut warnings } = beside;
-    let (mut strange, mut much) = (Vec::new(), Vec::new());
-    let mut found: Vec<(f64, Cause)> = Vec::new();
-    let mut passed: Vec<PassedOver> = Vec::new();
-    for part in parts {
-        for (k, chosen) in part.study.chosen.iter().enumerate() {
-            let cause = part.cause(k, chosen);
-            if !add(&mut found, chosen.score, cause) {
-                continue;
-            }
-            alternatives.extend(rivals(part.study, chosen));
-        }
-        strange.extend(part.unnamed());
-        much.extend(part.much_left());
-        part.not_excited(&mut not_excited);
-        join(&mut passed, passed_over(part.study, part.study.rules.unexplained));
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    causes.extend(found.into_iter().map(|(_, cause)| cause));
-    alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
-    not_excited.retain(|n| causes.iter().all(|c| c.id != n.id) && alternatives.iter().all(|a| a.id != n.id));
-    let passed = unsaid(passed, &causes, &alternatives, &not_excited);
-    let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > OPEN).cloned().collect();
-    let verdict = verdict(!causes.is_empty(), !strange.is_empty() || !much.is_empty(), !open.is_empty());
-    warnings.extend(much);
-    for (cause, warning) in strange {
-        causes.push(cause);
-        warnings.push(warning);
-    }
-    let Figures { baseline, end, noise_floor } = told(parts).map_or_else(Figures::of_nothing, Part::figures);
-    let diagnosis = Diagnosis {
-        verdict,
-        baseline: Baseline { model, ..baseline },
-        noise_floor_n: noise_floor,
-        residuals: parts.iter().flat_map(Part::residuals).collect(),
-        next_experiment: next(&open),
-        causes,
-        alternatives,
-        not_excited,
-        passed_over: passed,
-        end,
-        warnings,
-        ..Diagnosis::default()
-    };
-    let kept = parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect();
-    Findings { diagnosis, kept, ..Findings::default() }
 }

@@ -5,11 +5,10 @@ use crate::diagnose::selection::comparison::Study;
 use haptics::law::cause;
 
 /// Causes that could have shown in this channel and were not chosen, those that would have explained most first.
-/// `least`: the score that names a cause.
-pub fn passed_over(study: &Study, least: f64) -> Vec<PassedOver> {
+pub fn passed_over(study: &Study) -> Vec<PassedOver> {
     let Study { system, candidates, .. } = study;
     let picks = study.picks();
-    let judge = Judge { study, picks: &picks, least };
+    let judge = Judge { study, picks: &picks, least: study.rules.unexplained };
     let mut ids: Vec<&str> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         let known = candidate.expression.is_none() && system.supported(c) && cause(candidate.id).is_some();

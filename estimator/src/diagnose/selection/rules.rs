@@ -109,7 +109,7 @@ impl Rules {
 
     /// Path of a handle: a circle, without friction.
     pub fn of_path(period_s: f64) -> Self {
-        Self { one_loss: false, ridge: 0.0, ..Self::of_coordinate(period_s) }
+        Self { one_loss: false, ridge: 0.0, overfit: f64::INFINITY, ..Self::of_coordinate(period_s) }
     }
 
     /// The same rules for a model with or without dry friction.

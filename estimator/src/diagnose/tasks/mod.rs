@@ -1,5 +1,6 @@
 pub(crate) mod baseline_models;
 pub(crate) mod carried_block;
+pub(crate) mod coordinate_answer;
 pub(crate) mod crank;
 pub(crate) mod delay_correction;
 pub(crate) mod free_motion;

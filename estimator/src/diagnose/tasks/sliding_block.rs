@@ -6,11 +6,12 @@
 //! Empty fingers feel a sensor bias, too.
 
 use super::baseline_models::named;
+use super::coordinate_answer::explain;
 use super::mechanism::rows;
 use super::one_coordinate;
-use crate::diagnose::answer::along_coordinate;
+use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{
-    Alternative, Cause, CauseParameter, Diagnosis, Experiment, Gain, NextExperiment, NotExcited, Validation, Verdict,
+    Alternative, Cause, CauseParameter, Experiment, Gain, NextExperiment, NotExcited, Validation,
 };
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
@@ -29,7 +30,7 @@ use crate::estimate::EstimateError;
 use crate::segment::slid::{LIFTED_M, LIFTED_S};
 use crate::segment::threshold::{Levels, percentile};
 use crate::signal::task::{TaskSignals, smooth, task_signals};
-use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction};
+use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, Law as _, LoadFriction};
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
@@ -68,27 +69,32 @@ pub fn is_slid(recordings: &[Recording]) -> bool {
 }
 
 /// Diagnoses recordings of one block that is slid.
-pub fn slid(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    let (mut track, faults, read) = track_of(recordings, options.world.as_ref())?;
+pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
+    let (mut track, of_samples, read) = track_of(recordings, options.world.as_ref())?;
     let weight_n = read.iter().find_map(|s| s.weight_n);
     let model = model(options, weight_n.is_some())?;
     options.progress.tell(0.4)?;
     let study = one_coordinate::study(&mut track, &model, &given_by_pads())?;
     options.progress.tell(0.8)?;
-    let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
-    // Motions of the library are for an object that a program drives along its coordinate.
-    if let Some(next) = &mut found.next_experiment {
-        next.experiment = None;
-    }
-    constants(&mut found, &read, weight_n);
-    let_go(&mut found, &track);
-    scales(&mut found, &study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
-    if weight_n.is_none() {
-        let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
-        let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
-        found.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
-    }
-    Ok(found)
+    let scale = scale(&study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
+    let reads = |named: &mut Named| {
+        // Motions of the library are for an object that a program drives along its coordinate.
+        if let Some(next) = &mut named.next {
+            next.experiment = None;
+        }
+        constants(named, &read, weight_n);
+        let_go(named, &track);
+        if let Some((ratio, error)) = scale {
+            scales(named, ratio, error);
+        }
+        if weight_n.is_none() {
+            let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
+            let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
+            named.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+        }
+    };
+    let causes = faults.iter().cloned().chain(of_samples).collect();
+    Ok(explain(&track, &model, &study, &[], Evidence { causes, reads: &reads, ..Evidence::default() }))
 }
 
 /// Validates the found causes on another recording.
@@ -249,7 +255,7 @@ const CONSTANT: [&str; 2] = [force_bias::ID, friction_asymmetry::ID];
 
 /// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
 /// tilted table or to friction by direction. It is ambiguous if the fingers were never empty.
-fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
+fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
     let named = |c: &&mut Cause| CONSTANT.contains(&c.id.as_str()) && c.parameters.iter().any(|p| p.unit == "N");
     let Some(cause) = found.causes.iter_mut().find(named) else { return };
     let Some(b) = cause.parameters.first().cloned() else { return };
@@ -309,22 +315,20 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
         why: "on the move both are one and the same constant force".to_owned(),
     }));
     if others.is_empty() {
-        if found.alternatives.is_empty() && found.verdict == Verdict::Ambiguous {
-            (found.verdict, found.next_experiment) = (Verdict::Causes, None);
+        if found.alternatives.is_empty() {
+            found.next = None;
         }
         return;
     }
-    found.verdict = Verdict::Ambiguous;
     let separates = std::iter::once(own).chain(others.iter().map(|id| (*id).to_owned())).collect();
-    found.next_experiment =
-        Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
+    found.next = Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
 }
 
 /// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
-fn let_go(found: &mut Diagnosis, track: &Track) {
+fn let_go(found: &mut Named, track: &Track) {
     const FREE_BEFORE_S: f64 = 2.0;
     let size = found.causes.iter().find(|c| c.id == force_bias::ID).and_then(|c| c.parameters.first()).map(|b| b.value);
-    let (Some(next), Some(size)) = (&mut found.next_experiment, size) else { return };
+    let (Some(next), Some(size)) = (&mut found.next, size) else { return };
     if !next.separates.iter().any(|s| s == gravity_tilt::ID) {
         return;
     }
@@ -346,17 +350,19 @@ fn let_go(found: &mut Diagnosis, track: &Track) {
     });
 }
 
-/// A known mass with a wrong estimate shows a wrong scale of forces or lengths.
-fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f64>) {
-    use haptics::law::Law;
-    let (Some(known), Some(solved)) = (mass_kg, &study.solved) else { return };
-    let Some(k) = model.iter().position(|e| e.law().id() == Inertia.id()) else { return };
+/// Ratio of an estimated to a known mass, and its error, if it differs from one.
+fn scale(study: &Study, model: &Model, mass_kg: Option<f64>) -> Option<(f64, f64)> {
+    let (known, solved) = (mass_kg?, study.solved.as_ref()?);
+    let k = model.iter().position(|e| e.law().id() == Inertia.id())?;
     let variance = solved.variance(study.system.rows);
     let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
+    let differs = (ratio - 1.0).abs() >= MASS_SHARE.max((CONSTANT_STD_ERRORS + 1.0) * error);
+    differs.then_some((ratio, error))
+}
+
+/// A known mass with a wrong estimate shows a wrong scale of forces or lengths.
+fn scales(found: &mut Named, ratio: f64, error: f64) {
     let off = (ratio - 1.0).abs();
-    if off < MASS_SHARE.max((CONSTANT_STD_ERRORS + 1.0) * error) {
-        return;
-    }
     let why = "a mass that comes out wrong is a wrong scale of the forces, or the opposite one of the lengths";
     found.causes.push(Cause {
         id: force_gain::ID.to_owned(),
@@ -381,8 +387,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
         posterior: 0.5,
         why: why.to_owned(),
     });
-    found.verdict = Verdict::Ambiguous;
-    found.next_experiment.get_or_insert_with(|| NextExperiment {
+    found.next.get_or_insert_with(|| NextExperiment {
         motion: "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone"
             .to_owned(),
         separates: vec![force_gain::ID.to_owned(), length_scale::ID.to_owned()],

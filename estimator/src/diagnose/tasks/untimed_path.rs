@@ -3,7 +3,8 @@
 
 use crate::constraint::detect_in;
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::{Beside, Found, answer};
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::NO_CLOCK;
@@ -75,7 +76,7 @@ fn without_a_clock() -> impl Iterator<Item = NotExcited> {
 /// Diagnoses paths of one mechanism.
 pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut rows, mut kinds) = (Vec::new(), Vec::new());
-    let mut beside = Beside::default();
+    let mut beside = Evidence::default();
     for (k, recording) in recordings.iter().enumerate() {
         let Some(found) = detect_in(recording) else { continue };
         kinds.push(found.kind);
@@ -101,7 +102,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     if !forced {
         let why = "no force was recorded: a path alone shows its shape".to_owned();
         beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
-        return Ok(answer(&[], beside, &|_| None));
+        return Ok(answer(&[], beside));
     }
     if drives_backwards(&rows) {
         for row in &mut rows {
@@ -113,11 +114,11 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     }
     let (along, falls) = along(&rows, units)?;
     let second = second(&rows)?;
-    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
     let (of_place, of_second) = (|f: &Found<'_>| shows(f, &falls), |f: &Found<'_>| differs(f, recordings));
     let mut parts = vec![along.part(&of_place, &plain, &|_| None).still(NO_CLOCK)];
     parts.extend(second.as_ref().map(|second| second.part(&of_second, &plain, &|_| None).still(NO_CLOCK)));
-    let mut found = answer(&parts, beside, &|_| None);
+    let mut found = answer(&parts, beside);
     if options.atlas {
         let is_angular = turns >= slides && turns > 0;
         let way = View { is_angular, ..view(&rows) };

@@ -1,6 +1,6 @@
 //! Channels with a cause in them, with one that is there only where it is fitted, and with one that has no name.
 
-use crate::diagnose::answer::build::{Beside, answer};
+use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, Study};
@@ -98,8 +98,8 @@ fn what_has_no_name_has_a_gain_and_a_size() {
     let study = compared(y, vec![strange]);
     let (along, state) = (vec![true; ROWS], vec![SystemState::Turning; ROWS]);
     let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, state };
-    let part = compared.part(&|_| String::new(), &|_, found| found, &|_| None);
-    let found = answer(&[part], Beside::default(), &|_| None);
+    let part = compared.part(&|_| String::new(), &|_, _, found| found, &|_| None);
+    let found = answer(&[part], Evidence::default());
     let [cause] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
     assert!(cause.gain.share_of_explainable > 0.5 && cause.gain.unit.as_deref() == Some("N"), "{cause:?}");
     assert!(cause.posterior > 0.9 && (cause.parameters[0].value - 0.1).abs() < 0.03, "{cause:?}");

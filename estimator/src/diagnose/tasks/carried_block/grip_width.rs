@@ -2,7 +2,7 @@
 
 use super::signals::Seen;
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;

@@ -22,8 +22,10 @@ pub(crate) mod standing_height;
 pub(crate) mod tests;
 pub(crate) mod time_delay;
 
-use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{Alternative, CauseParameter, Final, NextExperiment, NotExcited};
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Part;
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Final, NextExperiment, NotExcited};
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -42,19 +44,19 @@ use net_force::Carry;
 use signals::Seen;
 
 /// Diagnoses recordings of the same blocks.
-pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
+pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
     let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
     let world = options.world.as_ref();
     let (carry, grasp, ground) = look(&seen, world)?;
-    let mut beside = Beside {
+    let mut beside = Evidence {
         model: if world.is_some() {
             "world: weight+inertia+pads"
         } else {
             "weight and its mass+rigid widths+plain heights"
         }
         .to_owned(),
-        causes: recordings.iter().flat_map(|r| sample_faults::faults(r).causes).collect(),
-        ..Beside::default()
+        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
+        ..Evidence::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
         let within = ground.compared.study.has(fingertip_slip::ID);
@@ -68,11 +70,13 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, E
         }
     }
     unseen(&seen, &mut beside.not_excited);
-    let carry_states = |c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
+    let carry_states = |_: usize, c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
     let carry_usual = |c: &Candidate| carry.usual(c);
     let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
-    let ground_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
+    let grasp_states =
+        |_: usize, c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
+    let ground_states =
+        |_: usize, c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
     let mut parts: Vec<Part<'_>> =
         vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
@@ -84,7 +88,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Findings, E
     parts.extend(
         ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground_states, &standing_height::Ground::usual)),
     );
-    let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
+    let asked = |open: &[Alternative]| experiment::propose(open, &carry, &seen).or_else(|| next(open));
+    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
     if options.atlas {
         let Carry { compared, view, .. } = &carry;
         found.atlas.channels.push(compared.atlas(view, net_force::best_seen));

@@ -8,7 +8,7 @@ use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use super::time_delay::late;
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;

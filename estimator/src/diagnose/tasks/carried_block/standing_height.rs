@@ -3,7 +3,7 @@
 use super::grasp_slip::{slips, ways};
 use super::signals::Seen;
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;

@@ -1,7 +1,7 @@
 //! Weight on a crank's bearing, compared with other hidden causes.
 
 use super::bearing_load::{known_n, put, weights};
-use crate::diagnose::answer::along_coordinate::strange;
+use crate::diagnose::answer::cause::unexplained;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
@@ -33,8 +33,8 @@ pub fn beside_causes(
     gravity_m_s2: f64,
 ) -> Result<Option<(f64, Track, Study)>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
-    let mistaken = study.picks().iter().any(|c| MISTAKEN.contains(&study.candidates[*c].id));
-    if !rubs || !track.planar || !(mistaken || strange(study, &study.picks()).is_some()) {
+    let mistaken = MISTAKEN.iter().any(|id| study.has(id));
+    if !rubs || !track.planar || !(mistaken || unexplained(study).is_some()) {
         return Ok(None);
     }
     let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);

@@ -10,9 +10,11 @@ pub(crate) mod path_residual;
 pub(crate) mod rows;
 
 use super::baseline_models::plain_crank;
+use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
-use crate::diagnose::answer::{along_coordinate, atlas, excitation};
-use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
+use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
 use crate::diagnose::findings::Findings;
@@ -28,7 +30,7 @@ use haptics::recording::Recording;
 /// Diagnoses recordings of one crank.
 pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let mut tracks = Vec::new();
-    let (mut geometries, mut strange, mut short) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut paths, mut short) = (Vec::<PathFit>::new(), Vec::new());
     let mut faults = Vec::new();
     let mut swapped = Vec::new();
     let mut link = None;
@@ -53,9 +55,9 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         }
         tracks.push(rows);
         let path = signals.path(recording);
-        strange.extend(path_residual::unexplained(&path, &circle.arm, &circle.study));
         short.extend(path_residual::short_arc(&path, &circle.arm, &circle.study));
-        geometries.push(circle.study);
+        let terms = path_residual::unexplained(&path, &circle.arm, &circle.study);
+        paths.push(PathFit { study: circle.study, terms });
     }
     let other = swapped.iter().any(Option::is_some).then(|| {
         let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
@@ -90,20 +92,24 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         }
     }
     options.progress.tell(0.8)?;
-    let mut found = along_coordinate::explain(&track, &model, &study, &geometries, faults);
-    found.warnings.extend(bearing_n.map(|weight_n| {
+    // The path itself may have shown a scale of all lengths.
+    let scale = scale.filter(|scale| paths.iter().all(|p| !p.study.has(&scale.id)));
+    let on_bearing = bearing_n.map(|weight_n| {
         format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
-    }));
-    along_coordinate::add_of_path(&mut found, &strange);
-    found.warnings.extend(short);
+    });
+    let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
+    let evidence = Evidence {
+        causes: scale.into_iter().chain(faults).collect(),
+        remarks: on_bearing.into_iter().chain(short).collect(),
+        without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
+        reads: &|named| name_joint(named, link),
+        ..Evidence::default()
+    };
+    let mut found = explain(&track, &model, &study, &paths, evidence);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study);
     }
     found.delay.guess_s = time_delay::guess_s(&track, &model);
-    name_joint(&mut found, link);
-    add_scale(&mut found, scale);
-    let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
-    excitation::without_known(&mut found, !fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m"));
     Ok(found)
 }
 
@@ -121,15 +127,6 @@ pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validatio
     };
     let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
     Ok(on_other_recordings::validate(&mut track, &before, &after, &known, &diagnosis.kept))
-}
-
-/// Names the scale of all lengths if the path itself did not show it.
-fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
-    let Some(cause) = scale.filter(|scale| found.causes.iter().all(|c| c.id != scale.id)) else { return };
-    found.causes.insert(0, cause);
-    if found.verdict == Verdict::None {
-        found.verdict = Verdict::Causes;
-    }
 }
 
 /// Evidence by which the first link's angle must be favoured over the second's, in 2 ln(likelihood).
@@ -184,7 +181,7 @@ fn is_turned(study: &comparison::Study) -> bool {
 }
 
 /// Names the joint with the angle error, if the data tell.
-fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
+fn name_joint(found: &mut Named, link: Option<Link>) {
     // With two fingers, the cause names the finger. The path shows no more.
     let of_the_finger = |c: &&mut Cause| c.id == joint_offset::ID && c.parameters.iter().any(|p| p.name == "delta");
     let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };

@@ -38,18 +38,15 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     waves.chain(slow).collect()
 }
 
-/// Unexplained residual of the path beside the causes found: the comparison with the generic term, its index and its
-/// evidence. `None` if the residual is near the noise or no term fits it.
-pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
+/// The comparison of the path with generic terms beside the causes found; `None` if the residual is near the noise.
+pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<Study> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
     if rms < STRANGE_PATH_RATIO * white_noise(&study.y) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
-    let made = study.beside(generic(path, &outward));
-    let (term, score) = made.of_each().unexplained(&made.picks())?;
-    Some((made, term, score))
+    Some(study.beside(generic(path, &outward)))
 }
 
 /// Sentence on an arc that is too short, for the noise of its positions, to determine its circle well. The error is the

@@ -10,9 +10,10 @@ pub(crate) mod rows;
 pub(crate) mod scale;
 
 use super::baseline_models::{known_laws, named};
+use super::coordinate_answer::explain;
 use super::one_coordinate;
-use crate::diagnose::answer::along_coordinate::explain;
 use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::data::covariates;
@@ -82,9 +83,16 @@ pub(crate) fn diagnose(
         }
     }
     options.progress.tell(0.8)?;
-    let mut found = explain(&track, &model, &study, &[], faults);
+    let both_ways = goes_both_ways(&track);
+    let evidence = Evidence {
+        model: scale::model_name(&model),
+        causes: faults,
+        warnings: scale::sentence(&track, scale).into_iter().collect(),
+        reads: &|named| scale::put_right(named, &track, both_ways),
+        ..Evidence::default()
+    };
+    let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(Along::of(track.coordinate, recordings, paths));
-    scale::put_right(&mut found, &track, scale, goes_both_ways(&track));
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study);
     }

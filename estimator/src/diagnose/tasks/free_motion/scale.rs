@@ -1,7 +1,8 @@
 //! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
-use crate::diagnose::contract::{Diagnosis, NotExcited};
-use crate::diagnose::data::regression_data::{Freely, Track};
+use crate::diagnose::answer::build::Named;
+use crate::diagnose::contract::NotExcited;
+use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::all::with_both_ways;
 use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::tasks::free_motion::Scale;
@@ -12,10 +13,9 @@ use haptics::law::Coordinate;
 const HIDDEN: [&str; 2] = [force_gain::ID, force_bias::ID];
 
 /// Adapts texts that were written for a driven motion.
-pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: bool) {
+pub fn put_right(found: &mut Named, track: &Track, both_ways: bool) {
     let Some(free) = track.freely else { return };
     let angular = track.coordinate == Coordinate::Angular;
-    found.baseline.model = model_name(&found.baseline.model);
     for parameter in found.causes.iter_mut().flat_map(|c| &mut c.parameters) {
         if parameter.unit.starts_with('N') {
             parameter.std_error = parameter.std_error.hypot(parameter.value * free.relative_error);
@@ -42,15 +42,14 @@ pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: 
                 .to_owned(),
         }));
     }
-    found.warnings.insert(0, of_scale(&free, scale, angular));
 }
 
 /// The terms of the model, each once, the inertia first.
-fn model_name(terms: &str) -> String {
+pub fn model_name(model: &Model) -> String {
     let mut names = vec!["inertia"];
-    for term in terms.split('+').filter(|t| !t.is_empty()) {
-        if !names.contains(&term) {
-            names.push(term);
+    for effect in model {
+        if !names.contains(&effect.law().id()) {
+            names.push(effect.law().id());
         }
     }
     names.join("+")
@@ -74,12 +73,14 @@ fn per_inertia(unit: &str) -> &str {
     UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
 }
 
-/// Sentence on the source of the scale of all values.
-fn of_scale(free: &Freely, scale: Scale, angular: bool) -> String {
+/// Sentence on the source of the scale of all values; `None` for a driven motion.
+pub fn sentence(track: &Track, scale: Scale) -> Option<String> {
+    let free = track.freely?;
+    let angular = track.coordinate == Coordinate::Angular;
     let (what, unit) = if angular { ("moment of inertia", "kg m²") } else { ("mass", "kg") };
     let name = if angular { "inertia_kg_m2, or mass_kg and com_m of a pendulum" } else { "mass_kg" };
     let inertia = free.inertia;
-    match scale {
+    Some(match scale {
         Scale::Stated => {
             format!(
                 "there is no force column: the motion is taken to be free, with the stated {what} of {inertia:.4} {unit}"
@@ -99,7 +100,7 @@ fn of_scale(free: &Freely, scale: Scale, angular: bool) -> String {
             "there is no force column and nothing is known: all values are per unit of {what} (1 {unit}); state {name} under \"known\" in the \
              sidecar"
         ),
-    }
+    })
 }
 
 fn known(by: Stated) -> &'static str {
@@ -115,7 +116,7 @@ fn known(by: Stated) -> &'static str {
 mod tests {
     use super::*;
     use crate::diagnose::hypotheses::all::can_show;
-    use haptics::law::entries;
+    use haptics::law::{EccentricMass, Effect, Law, ViscousFriction, entries};
 
     #[test]
     fn units_are_per_unit_of_inertia() {
@@ -131,10 +132,9 @@ mod tests {
 
     #[test]
     fn a_model_names_each_term_once() {
-        assert_eq!(
-            model_name("eccentric-mass+eccentric-mass+viscous-friction"),
-            "inertia+eccentric-mass+viscous-friction"
-        );
-        assert_eq!(model_name(""), "inertia");
+        let laws: [&'static dyn Law; 3] = [&EccentricMass, &EccentricMass, &ViscousFriction];
+        let model: Model = laws.map(|law| Effect::new(law, &[1.0])).to_vec();
+        assert_eq!(model_name(&model), "inertia+eccentric-mass+viscous-friction");
+        assert_eq!(model_name(&Model::new()), "inertia");
     }
 }

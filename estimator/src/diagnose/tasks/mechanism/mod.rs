@@ -5,8 +5,10 @@ pub(crate) mod rows;
 pub(crate) mod sensor_zero;
 
 use super::baseline_models::{known_laws, named};
+use super::coordinate_answer::{explain, without_known};
 use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
-use crate::diagnose::answer::{along_coordinate, atlas, excitation};
+use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
@@ -100,12 +102,16 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
         study = one_coordinate::study(&mut track, &model, &fixed)?;
     }
     options.progress.tell(0.8)?;
-    let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
-    sensor_zero::ask(&mut found, &track);
+    let is_hung = track.hung.iter().any(Option::is_some);
+    let evidence = Evidence {
+        causes: faults,
+        without_known: without_known(!fixed.is_empty() || is_hung, true),
+        reads: &|named| sensor_zero::ask(named, &track),
+        ..Evidence::default()
+    };
+    let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
     found.delay.guess_s = time_delay::guess_s(&track, &model);
-    let is_hung = track.hung.iter().any(Option::is_some);
-    excitation::without_known(&mut found, !fixed.is_empty() || is_hung, true);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study);
     }

@@ -4,7 +4,8 @@
 //! Without other evidence, a recording counts as untouched at its beginning and end if position and force stay within
 //! their noise there. A hand that holds on trembles, and would have to hold equally hard both times.
 
-use crate::diagnose::contract::{Alternative, Cause, Diagnosis, NextExperiment, Verdict};
+use crate::diagnose::answer::build::Named;
+use crate::diagnose::contract::{Alternative, Cause, NextExperiment};
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -44,7 +45,7 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
 }
 
 /// Adds the question that stays open about a constant force after the rests, and the experiment for it.
-pub fn ask(found: &mut Diagnosis, track: &Track) {
+pub fn ask(found: &mut Named, track: &Track) {
     const LEAST_POWER: f64 = 0.05;
     const SENSOR_REST_S: f64 = 2.0;
     let by_direction = |c: &&Cause| c.id == friction_asymmetry::ID && c.parameters.iter().any(|p| p.name == "dFc");
@@ -57,9 +58,8 @@ pub fn ask(found: &mut Diagnosis, track: &Track) {
             posterior,
             why: "along a line a slope is the same constant force, and the sensor reads nothing of it where nobody holds on".to_owned(),
         });
-        found.verdict = Verdict::Ambiguous;
         let motion = "turn the track round and move along it again: what a slope pulls changes its sign";
-        found.next_experiment.get_or_insert_with(|| NextExperiment {
+        found.next.get_or_insert_with(|| NextExperiment {
             motion: motion.to_owned(),
             separates: vec![friction_asymmetry::ID.to_owned(), gravity_tilt::ID.to_owned()],
             expected_power: SURE_HUNG,
@@ -69,7 +69,7 @@ pub fn ask(found: &mut Diagnosis, track: &Track) {
     }
     let constant =
         found.causes.iter().find(|c| c.id == force_bias::ID).and_then(|c| c.parameters.first()).map(|b| b.value);
-    let (Some(next), Some(size)) = (&mut found.next_experiment, constant) else { return };
+    let (Some(next), Some(size)) = (&mut found.next, constant) else { return };
     let of_both = [force_bias::ID, friction_asymmetry::ID].iter().all(|id| next.separates.iter().any(|s| s == id));
     if of_both && next.expected_power < LEAST_POWER {
         let lambda = 2.0 * SENSOR_REST_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);

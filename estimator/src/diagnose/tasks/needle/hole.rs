@@ -3,7 +3,7 @@
 use super::held_needle::Sliding;
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Bearing, Track, Zero};

@@ -15,7 +15,9 @@ pub(crate) mod simulated_channels;
 pub(crate) mod tests;
 pub(crate) mod time_delay;
 
-use crate::diagnose::answer::build::{Beside, Found, Part, answer};
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, NextExperiment, NotExcited, parameter};
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
@@ -38,21 +40,21 @@ const UNEVEN: f64 = 25.0;
 const PUNCTURE_SHARE: f64 = 0.03;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
-pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
+pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let rules = Rules::of_channel(seen.period_s);
     let sheet::Sheet { compared: sheet, view, pressed } = sheet::sheet(&seen, law, rules)?;
     let shaft = hole::shaft(&seen, law, rules)?;
-    let mut beside = Beside {
+    let mut beside = Evidence {
         model: format!(
             "{}+{}",
             if law.is_some() { "sheet of the world" } else { "linear sheet" },
             shaft.as_ref().map_or("no hole", |s| s.model)
         ),
-        causes: recordings.iter().flat_map(|r| sample_faults::faults(r).causes).collect(),
+        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
         warnings: left_out,
-        ..Beside::default()
+        ..Evidence::default()
     };
     beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.study, p)));
     if shaft.is_none() {
@@ -64,7 +66,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, E
         let why = "a single tool is held all the time: a bias of its force passes for its weight";
         beside.not_excited.push(NotExcited { id: force_bias::ID.to_owned(), why: why.to_owned() });
     }
-    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| hole::shows(f));
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual).running(&pressed)];
     if let Some(hole::Shaft { compared, sliding, .. }) = &shaft {
@@ -72,7 +74,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Findings, E
     }
     let asked =
         |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
-    let mut found = answer(&parts, beside, &asked);
+    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
     if options.atlas {
         let of_shaft = |s: &hole::Shaft| s.compared.atlas(&s.view, sheet::best_seen);
         found.atlas.channels.push(sheet.atlas(&view, sheet::best_seen));

@@ -3,7 +3,7 @@
 use super::held_needle::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;

@@ -8,7 +8,7 @@ use super::model::Known;
 use super::rows::direction;
 use super::throw::Push;
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::experiment::strokes::PEAK;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};

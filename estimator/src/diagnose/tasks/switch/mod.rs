@@ -14,8 +14,10 @@ pub(crate) mod stop;
 pub(crate) mod throw;
 
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{Alternative, CauseParameter, NextExperiment, NotExcited};
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Part;
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, NextExperiment, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -66,19 +68,19 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
 }
 
 /// Diagnoses recordings of one switch.
-pub fn switch(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    let faults: Vec<sample_faults::Faults> = recordings.iter().map(sample_faults::faults).collect();
-    let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
+pub fn switch(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
+    let of_samples: Vec<sample_faults::Faults> = recordings.iter().map(sample_faults::faults).collect();
+    let bad: Vec<Vec<bool>> = of_samples.iter().map(|f| f.bad.clone()).collect();
     let has_world = options.world.as_ref().and_then(Known::of).is_some();
     let Look { seen, push, curve, stop } = look(recordings, &bad, options)?;
-    let mut beside = Beside {
+    let mut beside = Evidence {
         model: if has_world { "curve and stops of the world" } else { "any curve there and back, pads that give" }
             .to_owned(),
-        causes: faults.into_iter().flat_map(|f| f.causes).collect(),
-        ..Beside::default()
+        causes: faults.iter().cloned().chain(of_samples.into_iter().flat_map(|f| f.causes)).collect(),
+        ..Evidence::default()
     };
     unseen(&seen, has_world, &mut beside);
-    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
     let (on_way, on_curve, on_stop) =
         (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
     let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual).running(&push.thrown)];
@@ -88,7 +90,7 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let asked = |open: &[Alternative]| {
         experiment::propose(open, &seen, (&push, curve.as_ref().map(|c| &c.0), known.as_ref())).or_else(|| next(open))
     };
-    let mut found = answer(&parts, beside, &asked);
+    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
     if options.atlas {
         let channels = &mut found.atlas.channels;
         channels.push(push.compared.atlas(&push.view, throw::best_seen));
@@ -102,7 +104,7 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Findings, E
 }
 
 /// Causes that no recording of this kind shows.
-fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
+fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Evidence<'_>) {
     let mut add = |ids: &[&str], why: &str| {
         beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
     };

@@ -4,7 +4,7 @@
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};

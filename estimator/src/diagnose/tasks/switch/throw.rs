@@ -5,7 +5,7 @@
 use super::held_knob::Thrown;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;

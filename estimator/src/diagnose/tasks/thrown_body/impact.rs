@@ -2,7 +2,7 @@
 //! after.
 
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate;
 use crate::diagnose::hypotheses::candidate::Candidate;

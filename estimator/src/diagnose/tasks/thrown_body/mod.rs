@@ -5,9 +5,11 @@ pub(crate) mod flight;
 pub(crate) mod impact;
 pub(crate) mod sliding;
 
-use crate::diagnose::answer::build::{Beside, Found, Part, answer};
-use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
-use crate::diagnose::findings::Findings;
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Part;
+use crate::diagnose::contract::{Alternative, Baseline, Cause, CauseParameter, Final, NextExperiment, NotExcited};
+use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{channel_fault, coulomb_friction, length_scale, load_friction, velocity_loss};
@@ -37,10 +39,10 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         Some(half) => impact::blow(seen, half * recorded, floor.and_then(|f| f.loss).map_or(1.0, |l| l.e))?,
         None => None,
     };
-    let mut beside = Beside {
+    let mut beside = Evidence {
         model: "free-fall+impact without loss+sliding without friction".to_owned(),
         causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
-        ..Beside::default()
+        ..Evidence::default()
     };
     if floor.is_some() {
         "free-fall+floor of the world".clone_into(&mut beside.model);
@@ -65,19 +67,17 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         "the body slides under its own weight only: friction in proportion to the load and a constant one are the same",
     );
     let mean = mean_friction(seen);
-    let slides = |c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
+    let slides = |_: usize, c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
     let pushed = blow.as_ref().map_or(0.0, |(_, _, pushed)| *pushed);
-    let loses = |c: &Candidate, found: Vec<CauseParameter>| impact::states(c, &found, pushed);
+    let loses = |_: usize, c: &Candidate, found: Vec<CauseParameter>| impact::states(c, &found, pushed);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| impact::shows(f));
-    let mut parts: Vec<Part<'_>> = Vec::new();
     let step_s = seen.tracks.first().map_or(0.0, Track::step_s);
     let run = sliding.as_ref().map(|(compared, _)| sliding::Slides { compared, step_s });
+    let mut parts: Vec<Part<'_>> = Vec::new();
     parts.extend(run.as_ref().map(|run| run.compared.part(&slide_shows, &slides, &|_| None).running(run)));
     parts.extend(blow.as_ref().map(|(b, _, _)| b.part(&blow_shows, &loses, &|_| None).still(AT_AN_INSTANT)));
-    let mut found = answer(&parts, beside, &next);
-    if parts.is_empty() {
-        of_falls(&mut found, seen, meta.gravity());
-    }
+    let figures = of_falls(seen, meta.gravity(), &beside.causes);
+    let mut found = answer(&parts, Evidence { figures, next: &next, ..beside });
     if options.atlas {
         let channels = &mut found.atlas.channels;
         channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::best_seen)));
@@ -86,15 +86,22 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     Ok(found)
 }
 
-/// Takes the figures from the falls if nothing else could be compared.
-fn of_falls(found: &mut Diagnosis, seen: &Tossed, gravity_m_s2: f64) {
+/// Figures of the falls, for throws without anything else to compare.
+fn of_falls(seen: &Tossed, gravity_m_s2: f64, causes: &[Cause]) -> Figures {
     let [before_m, after_m, own_m] = flight::left_m(seen, gravity_m_s2);
-    let is_named = found.causes.iter().any(|c| c.id == length_scale::ID);
-    let baseline = &mut found.baseline;
-    (baseline.rms_n, baseline.heldout_rms_n) = (before_m, before_m);
-    (baseline.of, baseline.unit) = (Some("height of the flights".to_owned()), Some("m".to_owned()));
-    found.end.heldout_rms_n = if is_named { after_m } else { before_m };
-    found.noise_floor_n = own_m;
+    let is_named = causes.iter().any(|c| c.id == length_scale::ID);
+    let Figures { baseline, end, .. } = Figures::of_nothing();
+    Figures {
+        baseline: Baseline {
+            rms_n: before_m,
+            heldout_rms_n: before_m,
+            of: Some("height of the flights".to_owned()),
+            unit: Some("m".to_owned()),
+            ..baseline
+        },
+        end: Final { heldout_rms_n: if is_named { after_m } else { before_m }, ..end },
+        noise_floor: own_m,
+    }
 }
 
 /// Powers 0 … of a number, one row an entry.

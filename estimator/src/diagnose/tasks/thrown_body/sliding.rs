@@ -1,7 +1,7 @@
 //! Causes that slow a sliding body: dry friction, or a resistance that depends on the speed.
 
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::Found;
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
 use crate::diagnose::free_run::channel::{Forward, columns};
 use crate::diagnose::hypotheses::candidate::Candidate;

@@ -86,11 +86,12 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
 /// better than the gap is.
 pub fn as_of_input(
     study: &Study,
-    own: &Candidate,
+    k: usize,
     mut found: Vec<CauseParameter>,
     (names, step): (&Columns, f64),
 ) -> Vec<CauseParameter> {
-    let place = study.chosen.iter().position(|c| std::ptr::eq(&raw const study.candidates[c.candidate], own));
+    let candidate = study.chosen[k].candidate;
+    let own = &study.candidates[candidate];
     let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
     // An output at rest within a gap shows one step of its sensor, whatever its exact position.
     let unseen = step / 12.0_f64.sqrt() / ratio.abs();
@@ -104,7 +105,7 @@ pub fn as_of_input(
             "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
             "tau" => {
                 // Noise of a regressor biases its coefficient towards zero.
-                let small = place.map_or(0.0, |k| p.value * noise_of_own(study, study.chosen[k].candidate));
+                let small = p.value * noise_of_own(study, candidate);
                 (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
             }
             "k" if own.id == pad_compliance::ID => p.unit = format!("{}/{}", names.force_unit, names.unit),

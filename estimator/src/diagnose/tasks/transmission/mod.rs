@@ -10,7 +10,8 @@ pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
 use crate::diagnose::answer::atlas::View;
-use crate::diagnose::answer::build::{Beside, Found, answer};
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::cause::Found;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -62,10 +63,10 @@ impl Side {
 pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let Some(names) = recordings.first().and_then(columns) else { return Err(options::nothing()) };
     let mut seen = Seen::of(recordings, names);
-    let mut beside = Beside {
+    let mut beside = Evidence {
         model: "rigid transmission+input without friction".to_owned(),
         causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
-        ..Beside::default()
+        ..Evidence::default()
     };
     turn(&mut seen.rows, names, &mut beside);
     let way = lost_motion::way(&seen, names)?;
@@ -88,10 +89,10 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
             beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
         }
     }
-    let way_states = |c: &Candidate, found: Vec<CauseParameter>| {
-        lost_motion::as_of_input(&way.compared.study, c, found, (names, seen.step))
+    let way_states = |k: usize, _: &Candidate, found: Vec<CauseParameter>| {
+        lost_motion::as_of_input(&way.compared.study, k, found, (names, seen.step))
     };
-    let force_states = |c: &Candidate, mut found: Vec<CauseParameter>| {
+    let force_states = |_: usize, c: &Candidate, mut found: Vec<CauseParameter>| {
         if let (Some(told), true) = (told, c.id == coulomb_friction::ID) {
             for p in &mut found {
                 p.std_error = p.std_error.hypot(told.error(p.value));
@@ -106,7 +107,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
         parts.push(side.compared.part(&shown, &force_states, &|_| None).running(input));
     }
     parts.push(way.compared.part(&shown, &way_states, &|_| None));
-    let mut found = answer(&parts, beside, &|_| None);
+    let mut found = answer(&parts, beside);
     if options.atlas {
         let sides = force.iter().map(|f| &f.side).chain([&way]);
         found.atlas.channels = sides.map(|side| side.compared.atlas(&view(&side.rows, names), best_seen)).collect();
@@ -117,7 +118,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
 /// Makes the output count in the input's direction, and the force positive if it drives the input. Gears and cables may
 /// reverse the direction, which is no fault. The sign of the force follows from its work: friction and compliance
 /// cannot return net work.
-fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
+fn turn(rows: &mut [Row], names: &Columns, beside: &mut Evidence<'_>) {
     let (mut ratio, mut work) = (0.0, Vec::new());
     for own in rows.chunk_by(|a, b| a.recording == b.recording) {
         let mean = |of: &dyn Fn(&Row) -> f64| own.iter().map(of).sum::<f64>() / own.len() as f64;

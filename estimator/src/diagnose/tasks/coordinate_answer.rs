@@ -1,0 +1,136 @@
+//! Answer of a motion along one coordinate, and of the paths beside it.
+
+use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::part::{Part, Role};
+use crate::diagnose::answer::time_series::course;
+use crate::diagnose::contract::{CauseParameter, NotExcited};
+use crate::diagnose::data::direction::STANDS;
+use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::experiment::proposal::propose;
+use crate::diagnose::experiment::turned_track;
+use crate::diagnose::extension::hypothetical_worlds::hypotheses;
+use crate::diagnose::extension::model::{effects, plain};
+use crate::diagnose::findings::{DelayFindings, Findings};
+use crate::diagnose::free_run::FreeRun;
+use crate::diagnose::free_run::windows::AT_ONCE;
+use crate::diagnose::hypotheses::all::widen;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::estimates::of_hardening_spring;
+use crate::diagnose::selection::held_out_gain::rms;
+use crate::segment::SystemState;
+use crate::signal::noise::white_noise;
+
+/// Comparison of a path, and the same with generic terms if its residual needs some.
+pub struct PathFit {
+    pub study: Study,
+    pub terms: Option<Study>,
+}
+
+/// The answer of one object's recordings.
+pub fn explain(track: &Track, model: &Model, study: &Study, paths: &[PathFit], evidence: Evidence<'_>) -> Findings {
+    let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let picks = study.picks();
+    let (end, end_train) = rms(study, &picks, &along);
+    let states = |k: usize, c: &Candidate, mut found: Vec<CauseParameter>| {
+        widen(c.id, &mut found, track);
+        of_hardening_spring(track, study, k).unwrap_or(found)
+    };
+    let excuse = |k: usize| skew(study, k, track).map(apart);
+    let force = Part {
+        role: Role::Coordinate,
+        study,
+        terms: Some(study),
+        channel: if track.freely.is_some() { "motion" } else { "force" },
+        unit: track.force_unit(),
+        floor: if track.noise_is_measured { track.force_noise } else { end_train.min(end) },
+        noise: track.force_noise,
+        along: &along,
+        state: Box::new(|i| state(track, i)),
+        excuse: &excuse,
+        shows: None,
+        states: &states,
+        usual: None,
+        free_run: FreeRun::Coordinate(track, model),
+    };
+    let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths.iter().map(PathFit::part)).collect();
+    let next = |open: &[_]| {
+        if track.freely.is_some() { turned_track::next(open) } else { propose(track, model, study, open) }
+    };
+    let mut evidence = Evidence { next: &next, ..evidence };
+    if evidence.model.is_empty() {
+        evidence.model = model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+");
+    }
+    evidence.not_excited.extend(without_reversals(track));
+    Findings {
+        plain: plain(track, model, study),
+        effects: effects(track, model, study),
+        course: course(track, study),
+        per_inertia: track.freely.is_some_and(|free| !free.is_known),
+        delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
+        hypotheses: hypotheses(track, model, study),
+        ..answer(&parts, evidence)
+    }
+}
+
+impl PathFit {
+    fn part(&self) -> Part<'_> {
+        Part {
+            role: Role::Path,
+            study: &self.study,
+            terms: self.terms.as_ref(),
+            channel: "path",
+            unit: "m",
+            floor: 0.0,
+            noise: white_noise(&self.study.y),
+            along: &[],
+            state: Box::new(|_| Some(("distance from the circle", SystemState::Turning))),
+            excuse: &|_| None,
+            shows: None,
+            states: &|_, _, found| found,
+            usual: None,
+            free_run: FreeRun::None(AT_ONCE),
+        }
+    }
+}
+
+/// Channel and state of a row.
+fn state(track: &Track, i: usize) -> Option<(&'static str, SystemState)> {
+    let row = &track.rows[i];
+    match row.place {
+        // A free motion has no measured force.
+        Place::Along if track.freely.is_some() => Some(("force that the motion needs", SystemState::FreeMotion)),
+        Place::Along if row.open > STANDS => Some(("force along the motion", SystemState::Holding)),
+        Place::Along => Some(("force along the motion", SystemState::Turning)),
+        Place::FreeX => Some(("horizontal force", SystemState::FreeMotion)),
+        Place::FreeY => Some(("vertical force", SystemState::FreeMotion)),
+        // Displacements, in newtons of the same noise.
+        Place::Stuck { .. } => None,
+    }
+}
+
+/// Causes that act at reversals alone, for a motion without any.
+fn without_reversals(track: &Track) -> impl Iterator<Item = NotExcited> {
+    // Along one coordinate, friction by direction then equals dry friction.
+    let by_direction = (!track.planar).then_some("friction-asymmetry");
+    let hidden = ["backlash", "hysteresis"].into_iter().chain(by_direction).filter(|_| track.goes_one_way());
+    hidden.map(|id| NotExcited {
+        id: id.to_owned(),
+        why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
+    })
+}
+
+/// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
+pub fn without_known(weight: bool, length: bool) -> Vec<NotExcited> {
+    let hidden = [
+        ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),
+        (
+            "length-scale",
+            length,
+            "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
+        ),
+    ];
+    let unknown = hidden.into_iter().filter(|(_, known, _)| !known);
+    unknown.map(|(id, _, why)| NotExcited { id: id.to_owned(), why: why.to_owned() }).collect()
+}
