@@ -3,6 +3,7 @@
 //! The band shows what was set at once; the fit follows when it is made again. What is set stands in the sidecar of a saved recording.
 
 use super::session::Session;
+use crate::ui::fitting;
 use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
 use haptics::recording::{Recording, Segment, Task};
 use std::sync::Arc;
@@ -97,47 +98,45 @@ fn boundary(before: &Interval, after: &Interval, times: &[f64], to_s: f64) -> Op
     (least <= most && most < times.len()).then(|| times.partition_point(|t| *t < to_s).clamp(least, most))
 }
 
-impl Session {
-    /// True when the states of the shown recording can be set by hand, and the fit then follows.
-    pub fn states_can_be_set(&self) -> bool {
-        self.calibration.analysis.as_ref().is_some_and(|a| decides(a.task)) && self.calibration.rules.is_none()
-    }
+/// True when the states of the shown recording can be set by hand, and the fit then follows.
+pub fn states_can_be_set(session: &Session) -> bool {
+    session.calibration.analysis.as_ref().is_some_and(|a| decides(a.task)) && session.calibration.rules.is_none()
+}
 
-    /// True when the fit of the shown recording does not ask for its states; it can still be of a part.
-    pub fn fits_without_states(&self) -> bool {
-        let clocked = self.document.prepared().is_some_and(|p| !p.clockless());
-        clocked
-            && self.calibration.analysis.as_ref().is_some_and(|a| !decides(a.task))
-            && self.calibration.rules.is_none()
-    }
+/// True when the fit of the shown recording does not ask for its states; it can still be of a part.
+pub fn fits_without_states(session: &Session) -> bool {
+    let clocked = session.document.prepared().is_some_and(|p| !p.clockless());
+    clocked
+        && session.calibration.analysis.as_ref().is_some_and(|a| !decides(a.task))
+        && session.calibration.rules.is_none()
+}
 
-    /// Sets states of the shown recording by hand.
-    pub fn set_states(&mut self, change: &Change) {
-        let (Some(found), Some(prepared)) = (self.segmentation(), self.document.prepared()) else { return };
-        if let Some(segments) = changed(found, &prepared.times, change) {
-            self.calibration.choice.segments.insert(self.document.current, Arc::new(segments));
-            self.show_segments();
-        }
+/// Sets states of the shown recording by hand.
+pub fn set_states(session: &mut Session, change: &Change) {
+    let (Some(found), Some(prepared)) = (session.segmentation(), session.document.prepared()) else { return };
+    if let Some(segments) = changed(found, &prepared.times, change) {
+        session.calibration.choice.segments.insert(session.document.current, Arc::new(segments));
+        show_segments(session);
     }
+}
 
-    /// Goes back to the states that were found.
-    pub fn forget_states(&mut self, ctx: &egui::Context) {
-        self.calibration.choice.segments.remove(&self.document.current);
-        self.resegment(ctx);
-    }
+/// Restores the detected states.
+pub fn forget_states(session: &mut Session, ctx: &egui::Context) {
+    session.calibration.choice.segments.remove(&session.document.current);
+    fitting::resegment(session, ctx);
+}
 
-    /// Shows what was set by hand, before the fit has followed.
-    pub(super) fn show_segments(&mut self) {
-        let (Some(prepared), Some(found)) = (self.document.prepared().cloned(), self.segmentation().cloned()) else {
-            return;
-        };
-        let Some(segments) = self.calibration.choice.segments.get(&self.document.current) else { return };
-        let mut stand_in = Recording::default();
-        stand_in.meta.segments.clone_from(segments);
-        let mut shown = by_hand::put(found, &stand_in, &prepared.times);
-        shown.score = None;
-        self.segmented(self.document.current, shown);
-    }
+/// Shows what was set by hand, before the fit has followed.
+pub(crate) fn show_segments(session: &mut Session) {
+    let (Some(prepared), Some(found)) = (session.document.prepared().cloned(), session.segmentation().cloned()) else {
+        return;
+    };
+    let Some(segments) = session.calibration.choice.segments.get(&session.document.current) else { return };
+    let mut stand_in = Recording::default();
+    stand_in.meta.segments.clone_from(segments);
+    let mut shown = by_hand::put(found, &stand_in, &prepared.times);
+    shown.score = None;
+    fitting::segmented(session, session.document.current, shown);
 }
 
 #[cfg(test)]
@@ -159,7 +158,7 @@ mod tests {
         let (t0, t1, _) = place(&session, carry);
         let before =
             session.calibration.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
-        session.set_states(&Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
+        set_states(&mut session, &Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
         let (_, now, _) = place(&session, carry);
         assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
         assert_eq!(place(&session, carry + 1).0, now, "no hole");
@@ -176,10 +175,10 @@ mod tests {
     fn a_boundary_stops_at_its_neighbours() {
         let mut session = session(STACK.clone());
         let (t0, ..) = place(&session, 1);
-        session.set_states(&Change::Move { interval: 1, to_s: -100.0 });
+        set_states(&mut session, &Change::Move { interval: 1, to_s: -100.0 });
         let (first, end, _) = place(&session, 1);
         assert!(first == t0 && end > t0, "{first} to {end}");
-        session.set_states(&Change::Move { interval: 1, to_s: 1e9 });
+        set_states(&mut session, &Change::Move { interval: 1, to_s: 1e9 });
         assert!(place(&session, 2).1 > place(&session, 2).0);
     }
 
@@ -188,13 +187,13 @@ mod tests {
         let mut session = session(STACK.clone());
         let count = session.segmentation().expect("segmented").states.len();
         let (t0, t1, state) = place(&session, 0);
-        session.set_states(&Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
-        session.set_states(&Change::State { interval: 1, state: SystemState::NoState });
+        set_states(&mut session, &Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
+        set_states(&mut session, &Change::State { interval: 1, state: SystemState::NoState });
         assert_eq!((place(&session, 0).2, place(&session, 1).2), (state, SystemState::NoState));
         assert_eq!(session.segmentation().expect("segmented").states.len(), count + 1);
-        session.set_states(&Change::Join { interval: 0 });
+        set_states(&mut session, &Change::Join { interval: 0 });
         assert_eq!(place(&session, 0), (t0, t1, state));
-        session.set_states(&Change::Split { interval: 0, at_s: t1 + 100.0 });
+        set_states(&mut session, &Change::Split { interval: 0, at_s: t1 + 100.0 });
         assert_eq!(session.segmentation().expect("segmented").states.len(), count, "outside: nothing happens");
     }
 }

@@ -20,9 +20,7 @@ fn session() -> Session {
 }
 
 fn manual() -> Trainer {
-    let mut trainer = Trainer::default();
-    trainer.clock = Clock::Manual;
-    trainer
+    Trainer { clock: Clock::Manual, ..Trainer::default() }
 }
 
 fn harness(session: Session) -> Harness<'static, App> {

@@ -3,6 +3,7 @@
 use super::files::{SAVE, saved};
 use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::fitting;
 use crate::ui::refits::SEGMENT;
 use crate::ui::rules::Rules;
 use estimator::segment::library;
@@ -45,7 +46,7 @@ pub fn follow(ctx: &egui::Context, session: &mut Session) {
         session.calibration.choice.task = Some(draft.like);
         session.calibration.choice.own = Some(Arc::new(draft));
     }
-    session.resegment(ctx);
+    fitting::resegment(session, ctx);
 }
 
 /// Writes the draft under its new name, in the background.
@@ -65,7 +66,7 @@ pub fn save(ctx: &egui::Context, session: &mut Session) {
             (rules.before, rules.draft) = (task.clone(), task.clone());
             session.calibration.choice.task = Some(task.like);
             session.calibration.choice.own = Some(Arc::new(task));
-            session.resegment(ctx);
+            fitting::resegment(session, ctx);
             session.jobs.start(ctx, SAVE, "", move |_| saved(path));
         }
         Err(error) => session.messages.fail(sentence(&error.to_string())),

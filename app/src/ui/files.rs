@@ -6,6 +6,12 @@ use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
 use crate::ui::checked::On;
+use crate::ui::checking;
+use crate::ui::experimenting;
+use crate::ui::opening;
+use crate::ui::project_files;
+use crate::ui::showing_video;
+use crate::ui::trainees;
 use crate::write_whole::write_whole;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -41,49 +47,49 @@ pub const OPEN_LOG: Dialog = Dialog {
     title: "Open a log",
     filters: LOGS_AND_ALL,
     saves_as: None,
-    then: |session, ctx, path| session.open_any(ctx, &path),
+    then: |session, ctx, path| opening::open_any(session, ctx, &path),
 };
 /// A world to train in.
 pub const OPEN_WORLD: Dialog = Dialog {
     title: "Open a world",
     filters: &[("Worlds", &["json"])],
     saves_as: None,
-    then: |session, ctx, path| session.open_world(ctx, &path),
+    then: |session, ctx, path| opening::open_world(session, ctx, &path),
 };
 /// A project.
 pub const OPEN_PROJECT: Dialog = Dialog {
     title: "Open a project",
     filters: &[("Projects", &["touchstone.json", "json"])],
     saves_as: None,
-    then: |session, ctx, path| session.open_project(ctx, &path),
+    then: |session, ctx, path| project_files::open_project(session, ctx, &path),
 };
 /// Another recording of the same object.
 pub const ADD_LOG: Dialog = Dialog {
     title: "Add a recording of the same object",
     filters: LOGS_AND_ALL,
     saves_as: None,
-    then: |session, ctx, path| session.add_log(ctx, &path),
+    then: |session, ctx, path| project_files::add_log(session, ctx, &path),
 };
 /// A recording of the experiment that a diagnosis asks for.
 pub const ADD_EXPERIMENT: Dialog = Dialog {
     title: "Add a recording of the experiment",
     filters: LOGS_AND_ALL,
     saves_as: None,
-    then: |session, ctx, path| session.add_experiment(ctx, &path),
+    then: |session, ctx, path| experimenting::add_experiment(session, ctx, &path),
 };
 /// A video of the shown recording.
 pub const OPEN_VIDEO: Dialog = Dialog {
     title: "Open a video of the hand",
     filters: &[("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"]), ("All files", &["*"])],
     saves_as: None,
-    then: |session, _, path| session.open_video(&path),
+    then: |session, _, path| showing_video::open_video(session, &path),
 };
 /// The place of the project.
 pub const SAVE_PROJECT: Dialog = Dialog {
     title: "Save the project",
     filters: &[],
     saves_as: Some("project.touchstone.json"),
-    then: Session::save_project_as,
+    then: project_files::save_project_as,
 };
 /// The place of the report.
 pub const SAVE_REPORT: Dialog = Dialog {
@@ -125,7 +131,7 @@ pub const SAVE_HISTORY: Dialog = Dialog {
     title: "Save the attempts",
     filters: &[],
     saves_as: Some("attempts.csv"),
-    then: |session, _, path| session.export_history(path),
+    then: |session, _, path| trainees::export_history(session, path),
 };
 
 /// Opens a file dialog on a thread of its own.
@@ -155,7 +161,7 @@ pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>
     jobs.start(ctx, DIALOG, "", move |_| {
         let asked = Instant::now();
         match dialog_of("Recordings of the same object", LOGS_AND_ALL).pick_files() {
-            Some(paths) => change(|session: &mut Session, ctx| session.check(ctx, On::Files(paths))),
+            Some(paths) => change(|session: &mut Session, ctx| checking::check(session, ctx, On::Files(paths))),
             None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
             None => no_change(),
         }

@@ -1,41 +1,49 @@
 //! Following what happens between frames: the answers of jobs, and the features that watch something.
 
 use super::session::Session;
+use crate::ui::fitting;
+use crate::ui::guiding;
+use crate::ui::lessons::practising;
+use crate::ui::opening;
+use crate::ui::project_files;
+use crate::ui::trainees;
+use crate::ui::trying_values;
+use crate::ui::undoing;
 
-impl Session {
-    /// Takes in what the jobs bring; call once a frame.
-    pub fn poll(&mut self, ctx: &egui::Context) {
-        for answer in self.jobs.poll() {
-            match answer {
-                Ok(change) => change(self, ctx),
-                Err(problem) => self.job_failed(problem),
-            }
+/// Takes in what the jobs bring; call once a frame.
+pub fn poll(session: &mut Session, ctx: &egui::Context) {
+    for answer in session.jobs.poll() {
+        match answer {
+            Ok(change) => change(session, ctx),
+            Err(problem) => job_failed(session, problem),
         }
-        super::recorder::follow(ctx, self);
-        self.follow_experiment(ctx);
-        self.follow_history();
-        self.follow_lesson(ctx);
-        let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-        self.note_changes(now_s, held);
-        self.follow_choice(ctx);
-        self.follow_what_if(ctx);
     }
+    super::recorder::follow(ctx, session);
+    guiding::follow_experiment(session, ctx);
+    trainees::follow_history(session);
+    practising::follow_lesson(session, ctx);
+    let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
+    undoing::note_changes(session, now_s, held);
+    fitting::follow_choice(session, ctx);
+    trying_values::follow_what_if(session, ctx);
+}
 
-    /// A job has failed.
-    fn job_failed(&mut self, problem: String) {
-        self.experiments.asks_again = false;
-        if !self.document.recordings.is_empty() && self.calibration.analysis.is_none() {
-            self.calibration.fit_problem = Some(problem.clone());
-        }
-        self.messages.fail(problem);
+/// A job has failed.
+fn job_failed(session: &mut Session, problem: String) {
+    session.experiments.asks_again = false;
+    if !session.document.recordings.is_empty() && session.calibration.analysis.is_none() {
+        session.calibration.fit_problem = Some(problem.clone());
     }
+    session.messages.fail(problem);
+}
 
-    /// Reads the same log again.
-    pub fn reload(&mut self, ctx: &egui::Context) {
-        match self.document.path.clone() {
-            Some(_) if self.document.sources.len() > 1 => self.restore(ctx, super::project_files::project_of(self)),
-            Some(path) => self.open(ctx, &path),
-            None => self.messages.fail("There is no file to reload: open a log first."),
+/// Reads the same log again.
+pub fn reload(session: &mut Session, ctx: &egui::Context) {
+    match session.document.path.clone() {
+        Some(_) if session.document.sources.len() > 1 => {
+            project_files::restore(session, ctx, project_files::project_of(session));
         }
+        Some(path) => opening::open(session, ctx, &path),
+        None => session.messages.fail("There is no file to reload: open a log first."),
     }
 }

@@ -70,6 +70,7 @@ pub mod scene;
 pub mod screenshot;
 pub mod sensitivity;
 pub mod session;
+pub mod showing_video;
 #[cfg(feature = "sound")]
 pub mod sound;
 pub mod stage;
@@ -86,7 +87,6 @@ pub mod training;
 pub mod trying_values;
 pub mod undo;
 pub mod undoing;
-pub mod video;
 pub mod videos;
 pub mod wanting_sensitivity;
 pub mod what_if;

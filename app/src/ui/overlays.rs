@@ -17,78 +17,76 @@ const TELLING: [&str; 5] = ["Task signals", "Force", "Torque", "Position", "Angl
 /// Less alike than this is not alike.
 const LEAST_LIKENESS: f64 = 0.3;
 
-impl Session {
-    /// Lays a recording over the shown one, or takes it away.
-    pub fn toggle_overlay(&mut self, recording: usize) {
-        let overlaid = &mut self.plots.overlaid;
-        match overlaid.iter().position(|o| o.recording == recording) {
-            Some(place) => drop(overlaid.remove(place)),
-            None => overlaid.push(Overlaid { recording, offset_s: 0.0 }),
-        }
+/// Lays a recording over the shown one, or takes it away.
+pub fn toggle_overlay(session: &mut Session, recording: usize) {
+    let overlaid = &mut session.plots.overlaid;
+    match overlaid.iter().position(|o| o.recording == recording) {
+        Some(place) => drop(overlaid.remove(place)),
+        None => overlaid.push(Overlaid { recording, offset_s: 0.0 }),
     }
+}
 
-    /// Shifts a recording that lies over the shown one.
-    pub fn shift_overlay(&mut self, recording: usize, offset_s: f64) {
-        if let Some(overlaid) = self.plots.overlaid.iter_mut().find(|o| o.recording == recording) {
-            overlaid.offset_s = offset_s;
-        }
+/// Shifts a recording that lies over the shown one.
+pub fn shift_overlay(session: &mut Session, recording: usize, offset_s: f64) {
+    if let Some(overlaid) = session.plots.overlaid.iter_mut().find(|o| o.recording == recording) {
+        overlaid.offset_s = offset_s;
     }
+}
 
-    /// Shifts a recording to where it is most like the shown one, in the background.
-    pub fn align(&mut self, ctx: &egui::Context, recording: usize) {
-        let (Some(fixed), Some(moved)) =
-            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
-        else {
-            return;
-        };
-        self.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
-            let found = most_alike(&fixed, &moved);
-            change(move |session: &mut Self, _| session.aligned(recording, found))
-        });
-    }
+/// Shifts a recording to where it is most like the shown one, in the background.
+pub fn align(session: &mut Session, ctx: &egui::Context, recording: usize) {
+    let (Some(fixed), Some(moved)) =
+        (session.document.prepared().cloned(), session.document.recordings.get(recording).cloned())
+    else {
+        return;
+    };
+    session.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
+        let found = most_alike(&fixed, &moved);
+        change(move |session: &mut Session, _| aligned(session, recording, found))
+    });
+}
 
-    /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
-    pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
-        let pair = (self.document.current, recording);
-        let (Some(fixed), Some(moved)) =
-            (self.document.prepared().cloned(), self.document.recordings.get(recording).cloned())
-        else {
-            return;
-        };
-        if likeliest.contains_key(&pair) || self.jobs.is_running(ALIGN) {
-            return;
-        }
-        // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
-        self.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
-            let found = most_alike(&fixed, &moved).ok();
-            change(move |session: &mut Self, _| {
-                session.plots.likeliest.insert(pair, found);
-            })
-        });
+/// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
+pub fn find_likeliest(session: &mut Session, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
+    let pair = (session.document.current, recording);
+    let (Some(fixed), Some(moved)) =
+        (session.document.prepared().cloned(), session.document.recordings.get(recording).cloned())
+    else {
+        return;
+    };
+    if likeliest.contains_key(&pair) || session.jobs.is_running(ALIGN) {
+        return;
     }
+    // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
+    session.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
+        let found = most_alike(&fixed, &moved).ok();
+        change(move |session: &mut Session, _| {
+            session.plots.likeliest.insert(pair, found);
+        })
+    });
+}
 
-    pub(super) fn aligned(&mut self, recording: usize, found: Result<f64, String>) {
-        match found {
-            Ok(offset_s) => self.shift_overlay(recording, offset_s),
-            Err(problem) => self.messages.fail(problem),
-        }
+pub(crate) fn aligned(session: &mut Session, recording: usize, found: Result<f64, String>) {
+    match found {
+        Ok(offset_s) => shift_overlay(session, recording, offset_s),
+        Err(problem) => session.messages.fail(problem),
     }
+}
 
-    /// When a recording is touched for the first time, s; `None` where its states are not known.
-    pub fn first_contact_s(&self, recording: usize) -> Option<f64> {
-        let states = &self.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
-        let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
-        states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
-    }
+/// When a recording is touched for the first time, s; `None` where its states are not known.
+pub fn first_contact_s(session: &Session, recording: usize) -> Option<f64> {
+    let states = &session.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
+    let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
+    states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
+}
 
-    /// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
-    pub fn align_by_contact(&mut self, recording: usize) -> bool {
-        let both = self.first_contact_s(self.document.current).zip(self.first_contact_s(recording));
-        if let Some((here, there)) = both {
-            self.shift_overlay(recording, here - there);
-        }
-        both.is_some()
+/// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
+pub fn align_by_contact(session: &mut Session, recording: usize) -> bool {
+    let both = first_contact_s(session, session.document.current).zip(first_contact_s(session, recording));
+    if let Some((here, there)) = both {
+        shift_overlay(session, recording, here - there);
     }
+    both.is_some()
 }
 
 /// What to add to the times of `moved`, s, by the most telling signal that both have.

@@ -5,7 +5,10 @@ use super::jobs::{Answer, Ticket, change, no_change};
 use super::prepare::Prepared;
 use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::experimenting;
 use crate::ui::file_kind::LOAD;
+use crate::ui::fitting;
+use crate::ui::opening;
 use crate::ui::project::{Project, Source, VERSION};
 use estimator::log::Watch;
 use std::path::{Path, PathBuf};
@@ -40,84 +43,87 @@ fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
         }
     }
     change(|session: &mut Session, ctx| {
-        session.opened_project(ctx, project, recordings);
-        session.ask_again(ctx);
+        opened_project(session, ctx, project, recordings);
+        experimenting::ask_again(session, ctx);
     })
 }
 
-impl Session {
-    /// Opens a project file in the background.
-    pub fn open_project(&mut self, ctx: &egui::Context, path: &Path) {
-        match Project::read(path) {
-            Ok(project) => {
-                self.document.opening_project = Some(path.to_path_buf());
-                self.restore(ctx, project);
-            }
-            Err(problem) => self.messages.fail(problem),
+/// Opens a project file in the background.
+pub fn open_project(session: &mut Session, ctx: &egui::Context, path: &Path) {
+    match Project::read(path) {
+        Ok(project) => {
+            session.document.opening_project = Some(path.to_path_buf());
+            restore(session, ctx, project);
         }
+        Err(problem) => session.messages.fail(problem),
     }
+}
 
-    /// Opens what a project names, in the background.
-    pub fn restore(&mut self, ctx: &egui::Context, project: Project) {
-        if project.recordings.is_empty() {
-            self.messages.fail("This project names no recording.");
-            return;
-        }
-        self.jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
+/// Opens what a project names, in the background.
+pub fn restore(session: &mut Session, ctx: &egui::Context, project: Project) {
+    if project.recordings.is_empty() {
+        session.messages.fail("This project names no recording.");
+        return;
     }
+    session.jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
+}
 
-    /// A project's files were read.
-    pub(super) fn opened_project(&mut self, ctx: &egui::Context, project: Project, recordings: Vec<Arc<Prepared>>) {
-        let first = project.recordings.first().cloned().unwrap_or_default();
-        self.document.meta = first.meta;
-        self.document.path_field.clear();
-        self.document.path = Some(first.log);
-        self.document.sources = project.recordings;
-        self.show(recordings);
-        self.document.videos.sources = project.videos;
-        self.calibration.choice = project.choice;
-        self.document.select(project.current);
-        if project.view_s.1 > project.view_s.0 {
-            self.document.view_s = project.view_s;
-        }
-        self.document.seek(project.cursor_s);
-        self.workspace = project.workspace;
-        self.plots.restore(project.plots);
-        self.document.project_path = self.document.opening_project.take();
-        if let Some(path) = self.document.project_path.clone() {
-            self.document.recent.note(&path);
-        }
-        self.refit(ctx);
+/// A project's files were read.
+pub(crate) fn opened_project(
+    session: &mut Session,
+    ctx: &egui::Context,
+    project: Project,
+    recordings: Vec<Arc<Prepared>>,
+) {
+    let first = project.recordings.first().cloned().unwrap_or_default();
+    session.document.meta = first.meta;
+    session.document.path_field.clear();
+    session.document.path = Some(first.log);
+    session.document.sources = project.recordings;
+    session.show(recordings);
+    session.document.videos.sources = project.videos;
+    session.calibration.choice = project.choice;
+    session.document.select(project.current);
+    if project.view_s.1 > project.view_s.0 {
+        session.document.view_s = project.view_s;
     }
+    session.document.seek(project.cursor_s);
+    session.workspace = project.workspace;
+    session.plots.restore(project.plots);
+    session.document.project_path = session.document.opening_project.take();
+    if let Some(path) = session.document.project_path.clone() {
+        session.document.recent.note(&path);
+    }
+    fitting::refit(session, ctx);
+}
 
-    /// Adds the recordings of another file to those that are open, and fits all of them together.
-    pub fn add_log(&mut self, ctx: &egui::Context, path: &Path) {
-        if self.document.sources.is_empty() {
-            self.open_any(ctx, path);
-            return;
-        }
-        let mut project = project_of(self);
-        project.recordings.push(Source { log: path.to_path_buf(), meta: None });
-        self.document.opening_project.clone_from(&self.document.project_path);
-        self.restore(ctx, project);
+/// Adds the recordings of another file to those that are open, and fits all of them together.
+pub fn add_log(session: &mut Session, ctx: &egui::Context, path: &Path) {
+    if session.document.sources.is_empty() {
+        opening::open_any(session, ctx, path);
+        return;
     }
+    let mut project = project_of(session);
+    project.recordings.push(Source { log: path.to_path_buf(), meta: None });
+    session.document.opening_project.clone_from(&session.document.project_path);
+    restore(session, ctx, project);
+}
 
-    /// Writes the project where it was opened, or asks where.
-    pub fn save_project(&mut self, ctx: &egui::Context) {
-        match self.document.project_path.clone() {
-            Some(path) => self.save_project_as(ctx, path),
-            None => ask(ctx, &mut self.jobs, SAVE_PROJECT),
-        }
+/// Writes the project where it was opened, or asks where.
+pub fn save_project(session: &mut Session, ctx: &egui::Context) {
+    match session.document.project_path.clone() {
+        Some(path) => save_project_as(session, ctx, path),
+        None => ask(ctx, &mut session.jobs, SAVE_PROJECT),
     }
+}
 
-    /// Writes the project there.
-    pub fn save_project_as(&mut self, ctx: &egui::Context, path: PathBuf) {
-        let project = project_of(self);
-        self.document.project_path = Some(path.clone());
-        self.document.recent.note(&path);
-        self.jobs.start(ctx, SAVE, "", move |_| {
-            project.write(&path)?;
-            saved(path)
-        });
-    }
+/// Writes the project there.
+pub fn save_project_as(session: &mut Session, ctx: &egui::Context, path: PathBuf) {
+    let project = project_of(session);
+    session.document.project_path = Some(path.clone());
+    session.document.recent.note(&path);
+    session.jobs.start(ctx, SAVE, "", move |_| {
+        project.write(&path)?;
+        saved(path)
+    });
 }

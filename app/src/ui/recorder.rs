@@ -6,12 +6,13 @@ use super::icons::Icon;
 use super::jobs::{JobKind, change};
 use super::session::Session;
 use super::widgets::{primary_button, recording_light, remark};
-use super::{messages, opening, theme};
+use super::{messages, theme};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::file_kind::LOAD;
 use crate::ui::message_list::Tone;
+use crate::ui::opening;
 use egui::Ui;
 use std::path::Path;
 
@@ -132,7 +133,7 @@ pub fn unfinished(ui: &mut Ui, session: &mut Session) {
     }
     if open {
         let ctx = ui.ctx().clone();
-        session.open_with(&ctx, &path, None);
+        opening::open_with(session, &ctx, &path, None);
     }
 }
 

@@ -5,6 +5,7 @@ use super::autosave::Autosave;
 use super::messages;
 use crate::text::file_name::name_of;
 use crate::ui::message_list::Tone;
+use crate::ui::project_files;
 use egui::Ui;
 use std::path::Path;
 
@@ -49,6 +50,6 @@ pub fn offer(ui: &mut Ui, app: &mut App) {
     if let Some(state) = app.left_behind.take().filter(|_| again) {
         let ctx = ui.ctx().clone();
         app.session.document.opening_project = state.project_path;
-        app.session.restore(&ctx, state.project);
+        project_files::restore(&mut app.session, &ctx, state.project);
     }
 }

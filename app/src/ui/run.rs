@@ -3,10 +3,12 @@
 use crate::tasks::Chosen;
 use crate::ui::app;
 use crate::ui::first_picture;
+use crate::ui::opening;
 use crate::ui::recorder;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
 use crate::ui::theme;
+use crate::ui::trainees;
 use crate::ui::workspace;
 use anyhow::Context as _;
 use std::path::PathBuf;
@@ -93,18 +95,18 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     session.document.task_hint.clone_from(&options.task);
     recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
     if let Some(world) = &options.world {
-        session.open_world(&cc.egui_ctx, world);
+        opening::open_world(&mut session, &cc.egui_ctx, world);
     }
     if let Some(log) = &options.log {
         session.workspace = workspace::Workspace::Calibrate;
-        session.open(&cc.egui_ctx, log);
+        opening::open(&mut session, &cc.egui_ctx, log);
     }
     let mut app = app::App::new(session);
     if let Some(folder) = eframe::storage_dir("touchstone") {
         let fresh = options.log.is_none() && options.world.is_none();
         app.keep(&folder, fresh);
         if let Some(database) = crate::history::attempt::of_user() {
-            app.session.open_history(&cc.egui_ctx, database);
+            trainees::open_history(&mut app.session, &cc.egui_ctx, database);
         }
     }
     app

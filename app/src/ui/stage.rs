@@ -11,14 +11,21 @@ use super::workspace::Workspace;
 use crate::history::keeper::History;
 use crate::ui::diagnosis_state;
 use crate::ui::editing_rules;
+use crate::ui::experimenting;
 use crate::ui::experiments;
+use crate::ui::guiding;
+use crate::ui::lessons::pointer;
+use crate::ui::lessons::practising;
 use crate::ui::mapping::state;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::LogView;
 use crate::ui::plots::curves::can_compare;
 use crate::ui::refits;
+use crate::ui::showing_video;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::trying_values;
+use crate::ui::wanting_sensitivity;
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::Progress;
 use estimator::signal::transform::Transform;
@@ -123,7 +130,7 @@ pub fn guided(input: &PictureInput) -> anyhow::Result<Session> {
 /// The sensitivity of the force to the parameters.
 pub fn sensitivity(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.look_at_sensitivity();
+        wanting_sensitivity::look_at_sensitivity(session);
         Ok(())
     })
 }
@@ -186,17 +193,17 @@ pub fn lessons(_: &PictureInput) -> anyhow::Result<Session> {
 /// A lesson that is practised with the mouse, half done.
 pub fn practice(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    session.practise_lesson();
-    session.follow_expert(PRACTICE_S);
+    practising::practise_lesson(&mut session);
+    pointer::follow_expert(&mut session, PRACTICE_S);
     Ok(session)
 }
 
 /// The result of an attempt at a lesson.
 pub fn debrief(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    session.test_lesson();
-    session.follow_expert(60.0);
-    session.end_lesson_now(None);
+    practising::test_lesson(&mut session);
+    pointer::follow_expert(&mut session, 60.0);
+    practising::end_lesson_now(&mut session, None);
     Ok(session)
 }
 
@@ -216,7 +223,7 @@ fn with_lessons() -> anyhow::Result<Session> {
 fn in_lesson() -> anyhow::Result<Session> {
     let mut session = with_lessons()?;
     let lesson = session.training.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
-    session.open_lesson_now(&lesson.context("the lesson of two blocks is missing")?);
+    practising::open_lesson_now(&mut session, &lesson.context("the lesson of two blocks is missing")?);
     Ok(session)
 }
 
@@ -277,7 +284,7 @@ fn with_video(session: &mut Session, input: &PictureInput) {
         (None, Some(log)) => session.document.videos.of_log(log, &session.document.recordings),
         (None, None) => {}
     }
-    session.read_video_now();
+    showing_video::read_video_now(session);
 }
 
 /// The lifting force over the height, where both are known; else what the window begins with.
@@ -295,7 +302,7 @@ fn against_each_other(session: &mut Session) {
 fn what_is_left(session: &mut Session) {
     let Some(prepared) = session.document.prepared().cloned() else { return };
     for group in &prepared.groups {
-        let comparable = can_compare(session.shown_curves(), group);
+        let comparable = can_compare(trying_values::shown_curves(session), group);
         let choice = session.plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
@@ -311,9 +318,9 @@ fn try_another_value(session: &mut Session) {
     let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
     let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
     let name = parameter.full_name();
-    session.try_value(&name, parameter.value.map(|v| 1.2 * v));
+    trying_values::try_value(session, &name, parameter.value.map(|v| 1.2 * v));
     session.calibration.selected_parameter = Some(name);
-    session.try_now();
+    trying_values::try_now(session);
 }
 
 /// What the window's jobs would bring.
@@ -358,11 +365,11 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
     let guided = experiments::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
-    session.guided(guided);
+    experimenting::take_guided(session, guided);
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    session.begin_experiment();
-    session.follow_rings(8.2);
+    guiding::begin_experiment(session);
+    guiding::follow_rings(session, 8.2);
     session.experiments.scratch = Some(folder);
     Ok(())
 }

@@ -28,79 +28,77 @@ impl Learned {
     }
 }
 
-impl Session {
-    /// Keeps attempts in this database from now on, and shows what is there.
-    pub fn open_history(&mut self, ctx: &egui::Context, database: PathBuf) {
-        let ctx = ctx.clone();
-        match History::start(database, move || ctx.request_repaint()) {
-            Ok(history) => {
-                history.read_trainees();
-                self.training.learning.keep_in(history);
+/// Keeps attempts in this database from now on, and shows what is there.
+pub fn open_history(session: &mut Session, ctx: &egui::Context, database: PathBuf) {
+    let ctx = ctx.clone();
+    match History::start(database, move || ctx.request_repaint()) {
+        Ok(history) => {
+            history.read_trainees();
+            session.training.learning.keep_in(history);
+        }
+        Err(problem) => session.messages.fail(problem),
+    }
+}
+
+/// Keeps an attempt; false where nothing is kept.
+pub fn keep_attempt(session: &mut Session, attempt: Attempt) -> bool {
+    let history = session.training.learning.history.as_ref();
+    history.is_some_and(|history| {
+        history.add(attempt);
+        true
+    })
+}
+
+/// Writes the attempts of who practises as a table.
+pub fn export_history(session: &mut Session, to: PathBuf) {
+    let query = Query { trainee: session.training.learning.trainee.clone(), lesson: None };
+    if let Some(history) = &session.training.learning.history {
+        history.export(to, query);
+    }
+}
+
+/// Takes what the history has answered.
+pub(crate) fn follow_history(session: &mut Session) {
+    let Some(history) = &session.training.learning.history else { return };
+    for answer in history.poll() {
+        match answer {
+            Answer::Kept(attempt) => attempt_kept(session, *attempt),
+            Answer::Trainees(names) => trainees_known(session, names),
+            Answer::Attempts(query, attempts) if query.trainee == session.training.learning.trainee => {
+                session.training.learning.take(attempts);
             }
-            Err(problem) => self.messages.fail(problem),
-        }
-    }
-
-    /// Keeps an attempt; false where nothing is kept.
-    pub fn keep_attempt(&mut self, attempt: Attempt) -> bool {
-        let history = self.training.learning.history.as_ref();
-        history.is_some_and(|history| {
-            history.add(attempt);
-            true
-        })
-    }
-
-    /// Writes the attempts of who practises as a table.
-    pub fn export_history(&mut self, to: PathBuf) {
-        let query = Query { trainee: self.training.learning.trainee.clone(), lesson: None };
-        if let Some(history) = &self.training.learning.history {
-            history.export(to, query);
-        }
-    }
-
-    /// Takes what the history has answered.
-    pub(super) fn follow_history(&mut self) {
-        let Some(history) = &self.training.learning.history else { return };
-        for answer in history.poll() {
-            match answer {
-                Answer::Kept(attempt) => self.attempt_kept(*attempt),
-                Answer::Trainees(names) => self.trainees_known(names),
-                Answer::Attempts(query, attempts) if query.trainee == self.training.learning.trainee => {
-                    self.training.learning.take(attempts);
-                }
-                Answer::Attempts(..) => {}
-                Answer::Exported(path) => self.messages.say_saved(&path),
-                Answer::TakenIn(1) => {
-                    self.messages.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
-                }
-                Answer::TakenIn(count) => {
-                    self.messages.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
-                }
-                Answer::Problem(problem) => self.messages.fail(problem),
+            Answer::Attempts(..) => {}
+            Answer::Exported(path) => session.messages.say_saved(&path),
+            Answer::TakenIn(1) => {
+                session.messages.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
             }
+            Answer::TakenIn(count) => {
+                session.messages.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
+            }
+            Answer::Problem(problem) => session.messages.fail(problem),
         }
     }
+}
 
-    fn attempt_kept(&mut self, attempt: Attempt) {
-        let learning = &mut self.training.learning;
-        if !learning.trainees.contains(&attempt.trainee) {
-            learning.trainees.push(attempt.trainee.clone());
-        }
-        if learning.trainee.as_ref() == Some(&attempt.trainee) {
-            // The newest, whatever the clock says. What the history was asked for before has been answered before, without it; what
-            // it is asked for afterwards takes the place of these.
-            let mut attempts = std::mem::take(&mut learning.attempts);
-            attempts.push(attempt);
-            learning.take(attempts);
-        }
+fn attempt_kept(session: &mut Session, attempt: Attempt) {
+    let learning = &mut session.training.learning;
+    if !learning.trainees.contains(&attempt.trainee) {
+        learning.trainees.push(attempt.trainee.clone());
     }
+    if learning.trainee.as_ref() == Some(&attempt.trainee) {
+        // The newest, whatever the clock says. What the history was asked for before has been answered before, without it; what
+        // it is asked for afterwards takes the place of these.
+        let mut attempts = std::mem::take(&mut learning.attempts);
+        attempts.push(attempt);
+        learning.take(attempts);
+    }
+}
 
-    /// Where there is one trainee, they practise.
-    fn trainees_known(&mut self, names: Vec<String>) {
-        self.training.learning.trainees = names;
-        if let ([only], None) = (self.training.learning.trainees.as_slice(), &self.training.learning.trainee) {
-            let only = only.clone();
-            self.training.learning.choose(&only);
-        }
+/// Where there is one trainee, they practise.
+fn trainees_known(session: &mut Session, names: Vec<String>) {
+    session.training.learning.trainees = names;
+    if let ([only], None) = (session.training.learning.trainees.as_slice(), &session.training.learning.trainee) {
+        let only = only.clone();
+        session.training.learning.choose(&only);
     }
 }

@@ -6,51 +6,53 @@ use super::session::Session;
 use crate::ui::refits::replay_forces;
 use crate::ui::what_if::{WHAT_IF, world};
 
-impl Session {
-    /// Tries a value, or with `None` no longer.
-    pub fn try_value(&mut self, name: &str, value: Option<f64>) {
-        match value {
-            Some(value) => drop(self.calibration.what_if.values.insert(name.to_owned(), value)),
-            None => drop(self.calibration.what_if.values.remove(name)),
-        }
-        if !self.calibration.what_if.is_on() {
-            self.calibration.what_if.forget();
-        }
+/// Tries a value, or with `None` no longer.
+pub fn try_value(session: &mut Session, name: &str, value: Option<f64>) {
+    match value {
+        Some(value) => drop(session.calibration.what_if.values.insert(name.to_owned(), value)),
+        None => drop(session.calibration.what_if.values.remove(name)),
     }
+    if !session.calibration.what_if.is_on() {
+        session.calibration.what_if.forget();
+    }
+}
 
-    /// Replays with the newest tried values when the last replay has come; call once a frame.
-    pub fn follow_what_if(&mut self, ctx: &egui::Context) {
-        if !self.calibration.what_if.is_behind() || self.jobs.is_running(WHAT_IF) {
-            return;
-        }
-        let Some(analysis) = self.calibration.analysis.clone() else { return };
-        let (recordings, choice, values) = (
-            self.document.recordings.clone(),
-            self.calibration.choice.clone(),
-            self.calibration.what_if.values.clone(),
-        );
-        self.jobs.start(ctx, WHAT_IF, "", move |_| {
-            let world = world(&analysis, &choice.given_to_all(&recordings), &values);
-            let replays = replay_forces(&world, &recordings);
-            change(|session: &mut Self, _| session.calibration.what_if.take(values, replays))
-        });
+/// Replays with the newest tried values when the last replay has come; call once a frame.
+pub fn follow_what_if(session: &mut Session, ctx: &egui::Context) {
+    if !session.calibration.what_if.is_behind() || session.jobs.is_running(WHAT_IF) {
+        return;
     }
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
+    let (recordings, choice, values) = (
+        session.document.recordings.clone(),
+        session.calibration.choice.clone(),
+        session.calibration.what_if.values.clone(),
+    );
+    session.jobs.start(ctx, WHAT_IF, "", move |_| {
+        let world = world(&analysis, &choice.given_to_all(&recordings), &values);
+        let replays = replay_forces(&world, &recordings);
+        change(|session: &mut Session, _| session.calibration.what_if.take(values, replays))
+    });
+}
 
-    /// Replays with the tried values now, for a picture.
-    pub(super) fn try_now(&mut self) {
-        let Some(analysis) = &self.calibration.analysis else { return };
-        let values = self.calibration.what_if.values.clone();
-        let world = world(analysis, &self.calibration.choice.given_to_all(&self.document.recordings), &values);
-        let replays = replay_forces(&world, &self.document.recordings);
-        self.calibration.what_if.take(values, replays);
-    }
+/// Replays with the tried values now, for a picture.
+pub(crate) fn try_now(session: &mut Session) {
+    let Some(analysis) = &session.calibration.analysis else { return };
+    let values = session.calibration.what_if.values.clone();
+    let world = world(analysis, &session.calibration.choice.given_to_all(&session.document.recordings), &values);
+    let replays = replay_forces(&world, &session.document.recordings);
+    session.calibration.what_if.take(values, replays);
+}
 
-    /// The replay that plots show: of the tried values while something is tried.
-    pub fn shown_curves(&self) -> Option<&Replayed> {
-        let tried =
-            self.calibration.what_if.replays.get(self.document.current).filter(|_| self.calibration.what_if.is_on());
-        tried.and_then(Option::as_ref).or_else(|| self.replay())
-    }
+/// The replay that plots show: of the tried values while something is tried.
+pub fn shown_curves(session: &Session) -> Option<&Replayed> {
+    let tried = session
+        .calibration
+        .what_if
+        .replays
+        .get(session.document.current)
+        .filter(|_| session.calibration.what_if.is_on());
+    tried.and_then(Option::as_ref).or_else(|| session.replay())
 }
 
 #[cfg(test)]

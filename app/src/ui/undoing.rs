@@ -1,57 +1,56 @@
 //! Taking changes back, and bringing them back.
 
 use super::session::Session;
+use crate::ui::by_hand;
 use crate::ui::message_list::Tone;
 use crate::ui::undo::{Undoable, difference};
 
-impl Session {
-    /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
-    pub fn note_changes(&mut self, now_s: f64, held: bool) {
-        if !self.document.recordings.is_empty() && !held {
-            let now = Undoable::of(&self.calibration.choice, &self.plots);
-            self.document.undo.undoer.feed_state(now_s, &now);
-        }
+/// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
+pub fn note_changes(session: &mut Session, now_s: f64, held: bool) {
+    if !session.document.recordings.is_empty() && !held {
+        let now = Undoable::of(&session.calibration.choice, &session.plots);
+        session.document.undo.undoer.feed_state(now_s, &now);
     }
+}
 
-    /// True when there is something to take back.
-    pub fn can_undo(&self) -> bool {
-        self.document.undo.undoer.has_undo(&Undoable::of(&self.calibration.choice, &self.plots))
+/// True when there is something to take back.
+pub fn can_undo(session: &Session) -> bool {
+    session.document.undo.undoer.has_undo(&Undoable::of(&session.calibration.choice, &session.plots))
+}
+
+/// True when something was taken back.
+pub fn can_redo(session: &Session) -> bool {
+    session.document.undo.undoer.has_redo(&Undoable::of(&session.calibration.choice, &session.plots))
+}
+
+/// Undoes the last change.
+pub fn undo(session: &mut Session) {
+    let now = Undoable::of(&session.calibration.choice, &session.plots);
+    if let Some(before) = session.document.undo.undoer.undo(&now).cloned() {
+        session.messages.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
+        put_back(session, before);
     }
+}
 
-    /// True when something was taken back.
-    pub fn can_redo(&self) -> bool {
-        self.document.undo.undoer.has_redo(&Undoable::of(&self.calibration.choice, &self.plots))
+/// Brings back what was taken back.
+pub fn redo(session: &mut Session) {
+    let now = Undoable::of(&session.calibration.choice, &session.plots);
+    if let Some(after) = session.document.undo.undoer.redo(&now).cloned() {
+        session.messages.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
+        put_back(session, after);
     }
+}
 
-    /// Takes the last change back.
-    pub fn undo(&mut self) {
-        let now = Undoable::of(&self.calibration.choice, &self.plots);
-        if let Some(before) = self.document.undo.undoer.undo(&now).cloned() {
-            self.messages.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
-            self.put_back(before);
-        }
+fn put_back(session: &mut Session, Undoable { choice, overlaid }: Undoable) {
+    session.plots.overlaid = overlaid;
+    if let (Some(rules), true) = (session.calibration.rules.as_mut(), session.calibration.choice.own != choice.own) {
+        rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
+        rules.untried = true;
     }
-
-    /// Brings back what was taken back.
-    pub fn redo(&mut self) {
-        let now = Undoable::of(&self.calibration.choice, &self.plots);
-        if let Some(after) = self.document.undo.undoer.redo(&now).cloned() {
-            self.messages.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
-            self.put_back(after);
-        }
-    }
-
-    fn put_back(&mut self, Undoable { choice, overlaid }: Undoable) {
-        self.plots.overlaid = overlaid;
-        if let (Some(rules), true) = (self.calibration.rules.as_mut(), self.calibration.choice.own != choice.own) {
-            rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
-            rules.untried = true;
-        }
-        let segments_differ = self.calibration.choice.segments != choice.segments;
-        self.calibration.choice = choice;
-        if segments_differ {
-            self.show_segments();
-        }
+    let segments_differ = session.calibration.choice.segments != choice.segments;
+    session.calibration.choice = choice;
+    if segments_differ {
+        by_hand::show_segments(session);
     }
 }
 
@@ -72,7 +71,7 @@ mod tests {
     /// Frames pass.
     fn wait(session: &mut Session, from_s: f64) -> f64 {
         for frame in 0..60 {
-            session.note_changes(from_s + f64::from(frame) / 30.0, false);
+            note_changes(session, from_s + f64::from(frame) / 30.0, false);
         }
         from_s + 2.0
     }
@@ -85,18 +84,18 @@ mod tests {
         now = wait(&mut session, now);
         session.calibration.choice.only_s = Some((1.0, 2.0));
         wait(&mut session, now);
-        assert!(session.can_undo() && !session.can_redo());
-        session.undo();
+        assert!(can_undo(&session) && !can_redo(&session));
+        undo(&mut session);
         assert_eq!((session.calibration.choice.method, session.calibration.choice.only_s), (Method::Hmm, None));
         assert!(session.messages.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
-        session.undo();
+        undo(&mut session);
         assert_eq!(session.calibration.choice.method, Method::Threshold);
-        assert!(!session.can_undo());
-        session.undo();
-        session.redo();
-        session.redo();
+        assert!(!can_undo(&session));
+        undo(&mut session);
+        redo(&mut session);
+        redo(&mut session);
         assert_eq!(session.calibration.choice.only_s, Some((1.0, 2.0)));
-        assert!(!session.can_redo());
+        assert!(!can_redo(&session));
     }
 
     #[test]
@@ -106,10 +105,10 @@ mod tests {
         for step in 0..100 {
             session.calibration.choice.only_s = Some((0.0, f64::from(step)));
             now += 0.02;
-            session.note_changes(now, true);
+            note_changes(&mut session, now, true);
         }
         wait(&mut session, now);
-        session.undo();
+        undo(&mut session);
         assert_eq!(session.calibration.choice.only_s, None);
     }
 
@@ -121,13 +120,13 @@ mod tests {
             session.calibration.choice.only_s = Some((0.0, f64::from(step)));
             for _ in 0..5 {
                 now += 0.4;
-                session.note_changes(now, true);
+                note_changes(&mut session, now, true);
             }
         }
         wait(&mut session, now);
-        session.undo();
+        undo(&mut session);
         assert_eq!(session.calibration.choice.only_s, None);
-        assert!(!session.can_undo());
+        assert!(!can_undo(&session));
     }
 
     #[test]
@@ -139,6 +138,6 @@ mod tests {
         let again = session.document.recordings.clone();
         session.show(again);
         wait(&mut session, 10.0);
-        assert!(!session.can_undo());
+        assert!(!can_undo(&session));
     }
 }

@@ -7,33 +7,31 @@ use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-impl Session {
-    /// Computes it now, for a picture.
-    pub(super) fn look_at_sensitivity(&mut self) {
-        let Some(analysis) = &self.calibration.analysis else { return };
-        let given = self.calibration.choice.given_to_all(&self.document.recordings);
-        let found = sensitivity(analysis, &self.document.recordings, &given, |_| {}, &AtomicBool::new(false));
-        self.calibration.sensitivity = found.map(Arc::new);
-    }
+/// Computes it now, for a picture.
+pub(crate) fn look_at_sensitivity(session: &mut Session) {
+    let Some(analysis) = &session.calibration.analysis else { return };
+    let given = session.calibration.choice.given_to_all(&session.document.recordings);
+    let found = sensitivity(analysis, &session.document.recordings, &given, |_| {}, &AtomicBool::new(false));
+    session.calibration.sensitivity = found.map(Arc::new);
+}
 
-    /// Computes it in the background, unless it is there.
-    pub fn want_sensitivity(&mut self, ctx: &egui::Context) {
-        let Some(analysis) = self.calibration.analysis.clone() else { return };
-        let there = self.calibration.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
-        // A fit that is about to change needs none.
-        if there || self.calibration.stale || self.jobs.is_running(SENSITIVITY) || self.jobs.is_running(FIT) {
-            return;
-        }
-        let (recordings, choice) = (self.document.recordings.clone(), self.calibration.choice.clone());
-        let title = "Looking how the force depends on the parameters";
-        self.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
-            let given = choice.given_to_all(&recordings);
-            match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-                Some(found) => change(|session: &mut Self, _| session.calibration.sensitivity = Some(Arc::new(found))),
-                None => no_change(),
-            }
-        });
+/// Computes it in the background, unless it is there.
+pub fn want_sensitivity(session: &mut Session, ctx: &egui::Context) {
+    let Some(analysis) = session.calibration.analysis.clone() else { return };
+    let there = session.calibration.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
+    // A fit that is about to change needs none.
+    if there || session.calibration.stale || session.jobs.is_running(SENSITIVITY) || session.jobs.is_running(FIT) {
+        return;
     }
+    let (recordings, choice) = (session.document.recordings.clone(), session.calibration.choice.clone());
+    let title = "Looking how the force depends on the parameters";
+    session.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
+        let given = choice.given_to_all(&recordings);
+        match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
+            Some(found) => change(|session: &mut Session, _| session.calibration.sensitivity = Some(Arc::new(found))),
+            None => no_change(),
+        }
+    });
 }
 
 #[cfg(test)]

@@ -11,9 +11,12 @@ use crate::ui::actions::search;
 use crate::ui::app::App;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
+use crate::ui::follow;
 use crate::ui::message_list::Tone;
+use crate::ui::opening;
 use crate::ui::tour_progress::Tour;
 use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
@@ -34,7 +37,7 @@ impl App {
     /// Draws everything.
     pub fn show(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        self.session.poll(&ctx);
+        follow::poll(&mut self.session, &ctx);
         self.take_worlds();
         if let Some(pane) = self.session.wanted_pane.take() {
             self.dock.bring(self.session.workspace, pane);
@@ -183,15 +186,15 @@ impl App {
 
     /// Where there is something to take back.
     fn undo_buttons(&mut self, ui: &mut Ui) {
-        let (undo, redo) = (self.session.can_undo(), self.session.can_redo());
+        let (undo, redo) = (undoing::can_undo(&self.session), undoing::can_redo(&self.session));
         if !undo && !redo || self.session.workspace == Workspace::Train {
             return;
         }
         if icon_button(ui, Icon::Redo, redo, "Redo").on_hover_text("Redo (Ctrl+Shift+Z)").clicked() {
-            self.session.redo();
+            undoing::redo(&mut self.session);
         }
         if icon_button(ui, Icon::Undo, undo, "Undo").on_hover_text("Undo (Ctrl+Z)").clicked() {
-            self.session.undo();
+            undoing::undo(&mut self.session);
         }
     }
 
@@ -268,7 +271,7 @@ fn logo(ui: &mut Ui) {
 fn dropped_files(ctx: &egui::Context, session: &mut Session) {
     let paths: Vec<std::path::PathBuf> =
         ctx.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect());
-    session.open_dropped(ctx, &paths);
+    opening::open_dropped(session, ctx, &paths);
 }
 
 /// While a file hangs over the window.

@@ -37,6 +37,13 @@ pub struct Findings {
     pub(crate) hypotheses: Vec<Hypothesis>,
 }
 
+impl From<Diagnosis> for Findings {
+    /// The published answer without its data, as it comes out of a file.
+    fn from(diagnosis: Diagnosis) -> Self {
+        Self { diagnosis, ..Self::default() }
+    }
+}
+
 impl Deref for Findings {
     type Target = Diagnosis;
 

@@ -11,7 +11,7 @@ use super::score::{Figures, Row, ask};
 use super::sensor::quantised;
 use super::sets::{Counts, Job, Set, battery};
 use super::simulate::Setup;
-use estimator::diagnose::Findings;
+use estimator::diagnose::{Diagnosis, Findings};
 
 fn spec(bench: Bench, effects: Vec<(Effect, u32)>) -> Spec {
     Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz: 1000.0, seconds: 10.0 }
@@ -195,14 +195,14 @@ fn said(ids: &[&str], others: &[(&str, &str)], rms: [f64; 2]) -> Findings {
         .map(|(id, place)| serde_json::json!({"id": id, "instead_of": place, "posterior": 0.1, "why": ""}))
         .collect();
     let verdict = if ids.is_empty() { "none" } else { "causes" };
-    let diagnosis = serde_json::from_value(serde_json::json!({
+    let diagnosis: Diagnosis = serde_json::from_value(serde_json::json!({
         "verdict": verdict,
         "baseline": {"model": "", "rms_N": 0.0, "heldout_rms_N": rms[0], "whiteness_p": 0.0},
         "noise_floor_N": 0.0, "causes": causes, "alternatives": alternatives, "not_excited": [],
         "next_experiment": null, "final": {"heldout_rms_N": rms[1], "whiteness_p": 0.0}
     }))
     .expect("a diagnosis");
-    Findings { diagnosis, ..Findings::default() }
+    diagnosis.into()
 }
 
 #[test]

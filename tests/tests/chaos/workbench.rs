@@ -8,6 +8,7 @@ use app::ui::message_list::Tone;
 use app::ui::project_files::project_of;
 use app::ui::refits::FIT;
 use app::ui::session::Session;
+use app::ui::{fitting, follow, opening, project_files, undoing};
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -19,7 +20,7 @@ const DEEDS: usize = 14;
 /// A frame without a picture.
 fn frame(ctx: &egui::Context, session: &mut Session) {
     ctx.begin_pass(egui::RawInput::default());
-    session.poll(ctx);
+    follow::poll(session, ctx);
     // Nobody draws: what would go to a graphics card is let go.
     ctx.end_pass().textures_delta.clear();
 }
@@ -63,12 +64,12 @@ impl Bench {
         let Self { ctx, session, dock, autosave } = self;
         let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
         match chaos.rng.random_range(0..6) {
-            0 => session.add_log(ctx, &path),
-            1 => session.undo(),
-            2 => session.refit(ctx),
+            0 => project_files::add_log(session, ctx, &path),
+            1 => undoing::undo(session),
+            2 => fitting::refit(session, ctx),
             3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),
-            _ => session.open_any(ctx, &path),
+            _ => opening::open_any(session, ctx, &path),
         }
         // Some are still at work when the next comes.
         (0..chaos.rng.random_range(0..4)).for_each(|_| frame(ctx, session));
@@ -84,7 +85,7 @@ impl Bench {
     pub fn must_fit(&mut self, chaos: &mut Chaos) {
         let Self { ctx, session, .. } = self;
         settle(ctx, session);
-        session.open(ctx, &workspace().join("assets/recordings/crank.csv"));
+        opening::open(session, ctx, &workspace().join("assets/recordings/crank.csv"));
         settle(ctx, session);
         assert!(
             session.calibration.analysis.is_some(),
@@ -113,9 +114,9 @@ pub fn jobs(chaos: &mut Chaos) {
 
 fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context, log: &Path) {
     let path = log.with_extension("touchstone.json");
-    session.save_project_as(ctx, path.clone());
+    project_files::save_project_as(session, ctx, path.clone());
     if let Ok(text) = std::fs::read(&path) {
         std::fs::write(&path, tests::spoiled::bytes(&text, &mut chaos.rng)).expect("writes");
     }
-    session.open_project(ctx, &path);
+    project_files::open_project(session, ctx, &path);
 }

@@ -6,6 +6,7 @@ use crate::ui::by_hand::decides;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::session::Session;
+use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
@@ -419,8 +420,8 @@ impl Action {
             Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.calibration.can_train(), "This world has nothing for the hand."))
             }
-            Self::Undo => need(session.can_undo(), "Nothing was changed."),
-            Self::Redo => need(session.can_redo(), "Nothing was taken back."),
+            Self::Undo => need(undoing::can_undo(session), "Nothing was changed."),
+            Self::Redo => need(undoing::can_redo(session), "Nothing was taken back."),
             Self::ForgetStates => need(
                 session.calibration.choice.segments.contains_key(&session.document.current),
                 "No state was set by hand.",

@@ -2,10 +2,19 @@
 
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
+use crate::ui::by_hand;
+use crate::ui::diagnosing;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::fit_choice::Stated;
+use crate::ui::fitting;
+use crate::ui::follow;
+use crate::ui::lessons::practising;
 use crate::ui::message_list::Tone;
+use crate::ui::opening;
+use crate::ui::project_files;
 use crate::ui::session::Session;
+use crate::ui::starting_over;
+use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use crate::ui::{editing_rules, files};
 use egui::{Context, ViewportCommand};
@@ -67,41 +76,41 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
         Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
         Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
-        Action::OpenRecent(path) => session.open_any(ctx, path),
-        Action::SaveProject => session.save_project(ctx),
+        Action::OpenRecent(path) => opening::open_any(session, ctx, path),
+        Action::SaveProject => project_files::save_project(session, ctx),
         Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
         Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
         Action::SaveWorld => files::ask(ctx, &mut session.jobs, files::SAVE_WORLD),
         Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
         Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
-        Action::Reload => session.reload(ctx),
-        Action::MapColumns => session.map_columns(ctx, None),
-        Action::Undo => session.undo(),
-        Action::Redo => session.redo(),
-        Action::Fit => session.refit(ctx),
+        Action::Reload => follow::reload(session, ctx),
+        Action::MapColumns => opening::map_columns(session, ctx, None),
+        Action::Undo => undoing::undo(session),
+        Action::Redo => undoing::redo(session),
+        Action::Fit => fitting::refit(session, ctx),
         Action::Rules => session.calibration.rules = editing_rules::open(session),
-        Action::ForgetStates => session.forget_states(ctx),
+        Action::ForgetStates => by_hand::forget_states(session, ctx),
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,
         Action::Diagnose => {
             session.workspace = Workspace::Diagnose;
-            session.diagnose(ctx);
+            diagnosing::diagnose(session, ctx);
         }
-        Action::Extend => session.extend_model(ctx),
-        Action::Feel => session.feel(),
+        Action::Extend => diagnosing::extend_model(session, ctx),
+        Action::Feel => diagnosing::feel(session),
         Action::TrainCalibrated => {
             session.training.train_calibrated = true;
             session.workspace = Workspace::Train;
         }
         Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
-        Action::StartOver => session.start_over(),
-        Action::Answer(index, _) => session.end_lesson(ctx, Some(*index)),
-        Action::Lesson(title) => session.open_lesson_titled(ctx, title),
-        Action::Watch => session.watch_lesson(),
-        Action::Practise => session.practise_lesson(),
-        Action::TakeTest => session.test_lesson(),
-        Action::PractiseOnThis => session.practise_on_this(ctx),
+        Action::StartOver => starting_over::start_over(session),
+        Action::Answer(index, _) => practising::end_lesson(session, ctx, Some(*index)),
+        Action::Lesson(title) => practising::open_lesson_titled(session, ctx, title),
+        Action::Watch => practising::watch_lesson(session),
+        Action::Practise => practising::practise_lesson(session),
+        Action::TakeTest => practising::test_lesson(session),
+        Action::PractiseOnThis => practising::practise_on_this(session, ctx),
         Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),
         Action::Play => session.document.toggle_play(),

@@ -6,6 +6,7 @@ use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::diagnosis_state::EXTEND;
 use crate::ui::message_list::Tone;
+use crate::ui::opening;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;
@@ -179,7 +180,7 @@ impl Walker {
         Ok(())
     }
 
-    /// Opens a drop-down and takes an entry of it.
+    /// Opens a drop-down and selects one of its entries.
     fn choose(&mut self, list: &str, entry: &str) -> anyhow::Result<()> {
         self.click(Role::ComboBox, list)?;
         let last = |h: &Harness<'static, App>| h.query_all_by_label(entry).last().map(|node| node.scroll_to_me());
@@ -203,7 +204,7 @@ impl Walker {
     pub(super) fn drop_it(&mut self, path: &Path) -> anyhow::Result<()> {
         self.harness.input_mut().hovered_files.clear();
         let ctx = self.harness.ctx.clone();
-        self.harness.state_mut().session.open_dropped(&ctx, &[path.to_path_buf()]);
+        opening::open_dropped(&mut self.harness.state_mut().session, &ctx, &[path.to_path_buf()]);
         self.until("the mapping", |s| s.mapping.is_some())?;
         self.until("its preview", previewed)?;
         let meanings = [

@@ -3,6 +3,7 @@
 
 use super::trace::Point;
 use crate::text::sentence::sentence;
+use crate::ui::lessons::practising;
 use crate::ui::lessons::state::Phase;
 use crate::ui::session::Session;
 use crate::ui::trainer::pinch::Pinch;
@@ -26,36 +27,34 @@ const UNTIL_IT_GIVES_M: f64 = 0.003;
 /// Minimum force of an intended push to the side, N.
 const PUSH_N: f64 = 0.1;
 
-impl Session {
-    /// Performs the open lesson with the mouse for some time, or until its attempt is over.
-    pub fn follow_expert(&mut self, seconds: f64) {
-        let mut left_s = seconds;
-        while left_s > 0.0 {
-            let Some(open) = self.training.lessons.open.as_ref() else { return };
-            let (Some(trace), true) = (&open.expert, matches!(open.phase, Phase::Practising | Phase::Testing)) else {
-                return;
-            };
-            let now_s = self.training.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
-            let Some(point) = trace.at(SLOWER * now_s).copied() else { return };
-            self.point_as(&point);
-            self.training.trainer.advance(FRAME_S);
-            if !self.see_lesson()
-                || self.training.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed())
-            {
-                return;
-            }
-            left_s -= FRAME_S;
+/// Performs the open lesson with the mouse for some time, or until its attempt is over.
+pub fn follow_expert(session: &mut Session, seconds: f64) {
+    let mut left_s = seconds;
+    while left_s > 0.0 {
+        let Some(open) = session.training.lessons.open.as_ref() else { return };
+        let (Some(trace), true) = (&open.expert, matches!(open.phase, Phase::Practising | Phase::Testing)) else {
+            return;
+        };
+        let now_s = session.training.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
+        let Some(point) = trace.at(SLOWER * now_s).copied() else { return };
+        point_as(session, &point);
+        session.training.trainer.advance(FRAME_S);
+        if !practising::see_lesson(session)
+            || session.training.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed())
+        {
+            return;
         }
+        left_s -= FRAME_S;
     }
+}
 
-    fn point_as(&mut self, point: &Point) {
-        let pinch = &mut self.training.trainer.pinch;
-        let pointed = Pointed::of(point, pinch.opening_m());
-        pinch.move_to(pointed.at_m);
-        pinch.button = pointed.pinches;
-        if pointed.pinches {
-            pinch.strengthen(pointed.strength_n - pinch.strength_n());
-        }
+fn point_as(session: &mut Session, point: &Point) {
+    let pinch = &mut session.training.trainer.pinch;
+    let pointed = Pointed::of(point, pinch.opening_m());
+    pinch.move_to(pointed.at_m);
+    pinch.button = pointed.pinches;
+    if pointed.pinches {
+        pinch.strengthen(pointed.strength_n - pinch.strength_n());
     }
 }
 

@@ -5,6 +5,7 @@ use crate::text::sentence::sentence;
 use crate::ui::files::SAVE;
 use crate::ui::jobs::{Jobs, change};
 use crate::ui::mapping::state::{LOOK, Mapping, look_now};
+use crate::ui::opening;
 use crate::ui::session::Session;
 use estimator::log::write_sidecar;
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ pub fn save(ctx: &egui::Context, jobs: &mut Jobs<Session>, mapping: &Mapping) {
         change(move |session: &mut Session, ctx| {
             session.mapping = None;
             session.messages.say_saved(&sidecar);
-            session.open_with(ctx, &path, Some(sidecar));
+            opening::open_with(session, ctx, &path, Some(sidecar));
         })
     });
 }

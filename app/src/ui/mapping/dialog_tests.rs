@@ -2,6 +2,7 @@
 
 use super::draft::Role;
 use crate::ui::app::App;
+use crate::ui::opening;
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::trainer::live::Clock;
@@ -53,7 +54,7 @@ fn wait(harness: &mut Harness<'_, App>, what: &str, until: impl Fn(&Session) -> 
 
 fn drop_file(harness: &mut Harness<'_, App>, path: &Path) {
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open_dropped(&ctx, &[path.to_path_buf()]);
+    opening::open_dropped(&mut harness.state_mut().session, &ctx, &[path.to_path_buf()]);
 }
 
 /// Opens a drop-down and selects one of its entries.

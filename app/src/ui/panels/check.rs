@@ -3,6 +3,7 @@
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
 use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
+use crate::ui::checking;
 use crate::ui::files;
 use crate::ui::icons::Icon;
 use crate::ui::session::Session;
@@ -65,7 +66,7 @@ fn ask(ui: &mut Ui, session: &mut Session) {
         }
         let path = session.diagnosing.check_field.trim().to_owned();
         if entered && !path.is_empty() {
-            session.check(&ctx, On::Files(vec![PathBuf::from(path)]));
+            checking::check(session, &ctx, On::Files(vec![PathBuf::from(path)]));
         }
     });
 }
@@ -88,7 +89,7 @@ fn left_out(ui: &mut Ui, session: &mut Session) {
     .on_hover_text(words::LEAVE_ONE_OUT_MORE);
     if let Some(k) = chosen {
         let ctx = ui.ctx().clone();
-        session.check(&ctx, On::LeftOut(k));
+        checking::check(session, &ctx, On::LeftOut(k));
     }
 }
 

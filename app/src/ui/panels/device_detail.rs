@@ -71,7 +71,7 @@ const TWO_COLUMNS: f32 = 780.0;
 /// The registration of this panel.
 pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Devices, 1)],
-    ..Registration::new(PanelId::DEVICE_DETAIL, "Device", Icon::Device, || Box::new(DeviceDetail::default()))
+    ..Registration::new(PanelId::DEVICE_DETAIL, "Device", Icon::Device, || Box::new(DeviceDetail))
 };
 
 /// Panel of the running device.

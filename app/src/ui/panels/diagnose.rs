@@ -1,6 +1,7 @@
 //! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
 use crate::ui::atlas::Sheet;
+use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, StartFrom};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
@@ -76,7 +77,7 @@ pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Diagnose, 0)],
     at_the_left: true,
     pictures: &[&ATLAS],
-    ..Registration::new(PanelId::DIAGNOSE, "Measured and modelled", Icon::Panel, || Box::new(DiagnosePanel::default()))
+    ..Registration::new(PanelId::DIAGNOSE, "Measured and modelled", Icon::Panel, || Box::new(DiagnosePanel))
 };
 
 /// The residual atlas.
@@ -88,7 +89,7 @@ pub static ATLAS: Picture = Picture {
     size: [720, 540],
     sample: Sample::Askew,
     session: stage::atlas,
-    framing: Framing::LargePanel(|| Box::new(DiagnosePanel::default())),
+    framing: Framing::LargePanel(|| Box::new(DiagnosePanel)),
 };
 
 /// Panel of the diagnosis curves.
@@ -143,7 +144,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
             start_from(ui, session);
             if ui.link(words::AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                session.diagnose(&ctx);
+                diagnosing::diagnose(session, &ctx);
             }
         });
     } else if session.diagnosing.answer.is_some() {
@@ -160,7 +161,7 @@ fn begin(ui: &mut Ui, session: &mut Session) {
     start_from(ui, session);
     if primary_button(ui, true, (Icon::Diagnose, words::BEGIN)).clicked() {
         let ctx = ui.ctx().clone();
-        session.diagnose(&ctx);
+        diagnosing::diagnose(session, &ctx);
     }
 }
 

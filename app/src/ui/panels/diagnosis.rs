@@ -4,6 +4,7 @@ use super::{causes, check, diagnose, next_experiment, why_not};
 use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
@@ -46,7 +47,7 @@ pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Diagnose, 1)],
     has_contents: |session| session.diagnosing.answer.is_some(),
     pictures: &[&EXPERIMENT],
-    ..Registration::new(PanelId::DIAGNOSIS, "Diagnosis", Icon::Diagnose, || Box::new(DiagnosisPanel::default()))
+    ..Registration::new(PanelId::DIAGNOSIS, "Diagnosis", Icon::Diagnose, || Box::new(DiagnosisPanel))
 };
 
 /// What a diagnosis answers, with what to record next, rehearsed.
@@ -58,7 +59,7 @@ pub static EXPERIMENT: Picture = Picture {
     size: COLUMN,
     sample: Sample::Askew,
     session: stage::rehearsed,
-    framing: Framing::LargePanel(|| Box::new(DiagnosisPanel::default())),
+    framing: Framing::LargePanel(|| Box::new(DiagnosisPanel)),
 };
 
 /// The right column of the diagnosis.
@@ -116,7 +117,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     );
     if again || changed {
         let ctx = ui.ctx().clone();
-        session.diagnose(&ctx);
+        diagnosing::diagnose(session, &ctx);
     }
 }
 
@@ -205,7 +206,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             ui.horizontal(|ui| {
                 if primary_button(ui, !busy, (Icon::Extend, words::EXTEND_THE_MODEL)).clicked() {
                     let ctx = ui.ctx().clone();
-                    session.extend_model(&ctx);
+                    diagnosing::extend_model(session, &ctx);
                 }
                 if busy {
                     ui.add(egui::Spinner::new().size(16.0));
@@ -238,13 +239,13 @@ fn before_after(ui: &mut Ui, d: &Findings) {
 }
 
 fn feel(ui: &mut Ui, session: &mut Session) {
-    let comparison = session.comparison();
+    let comparison = diagnosing::comparison(session);
     ui.horizontal(|ui| {
         if primary_button(ui, comparison.is_ok(), (Icon::Feel, words::FEEL_IT_IN_TRAIN))
             .on_hover_text(words::FEEL_IT_IN_TRAIN_MORE)
             .clicked()
         {
-            session.feel();
+            diagnosing::feel(session);
         }
         if ui.button((Icon::Save, words::SAVE_WORLD)).on_hover_text(words::SAVE_WORLD_MORE).clicked() {
             files::ask(ui.ctx(), &mut session.jobs, files::SAVE_EXTENDED);

@@ -4,6 +4,7 @@
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::guided::{Guided, Phase};
+use crate::ui::guiding;
 use crate::ui::icons::Icon;
 use crate::ui::lessons::ghost::Wait;
 use crate::ui::lessons::state;
@@ -68,11 +69,11 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
     });
     let ctx = ui.ctx().clone();
     if begin {
-        session.begin_experiment();
+        guiding::begin_experiment(session);
     } else if add {
-        session.add_followed(&ctx);
+        guiding::add_followed(session, &ctx);
     } else if leave {
-        session.leave_experiment();
+        guiding::leave_experiment(session);
     }
 }
 

@@ -3,8 +3,10 @@
 use super::debrief;
 use crate::text::format;
 use crate::ui::icons::{self, Icon};
+use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Open, Phase};
 use crate::ui::markdown;
+use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -65,14 +67,14 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
     let wish = if session.training.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
     let ctx = ui.ctx().clone();
     match wish {
-        Some(Wish::Open(lesson)) => session.open_lesson(&ctx, &lesson),
-        Some(Wish::Close) => session.close_lesson(),
-        Some(Wish::Watch) => session.watch_lesson(),
-        Some(Wish::Practise) => session.practise_lesson(),
-        Some(Wish::Test) => session.test_lesson(),
-        Some(Wish::Back) => session.back_to_brief(),
-        Some(Wish::End(answer)) => session.end_lesson(&ctx, answer),
-        Some(Wish::OpenLog(path)) => session.open(&ctx, &path),
+        Some(Wish::Open(lesson)) => practising::open_lesson(session, &ctx, &lesson),
+        Some(Wish::Close) => practising::close_lesson(session),
+        Some(Wish::Watch) => practising::watch_lesson(session),
+        Some(Wish::Practise) => practising::practise_lesson(session),
+        Some(Wish::Test) => practising::test_lesson(session),
+        Some(Wish::Back) => practising::back_to_brief(session),
+        Some(Wish::End(answer)) => practising::end_lesson(session, &ctx, answer),
+        Some(Wish::OpenLog(path)) => opening::open(session, &ctx, &path),
         Some(Wish::Progress) => session.wanted_pane = Some(PanelId::PROGRESS),
         None => {}
     }

@@ -9,6 +9,7 @@ use crate::text::format::number;
 use crate::ui::file_kind::LOAD;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
+use crate::ui::overlays;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::choices::{LogView, PlotChoices};
@@ -19,6 +20,7 @@ use crate::ui::plots::xy::XyCache;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
+use crate::ui::trying_values;
 use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
@@ -204,7 +206,7 @@ fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a>
     Sources {
         recordings: &session.document.recordings,
         prepared,
-        simulated: session.shown_curves(),
+        simulated: trying_values::shown_curves(session),
         extended: session.extended_replay(),
         analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
     }
@@ -246,7 +248,7 @@ fn shifting(
     let clockless = session.document.prepared().is_some_and(|p| p.clockless());
     if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.document.current, clockless)) {
         session.document.playing = false;
-        session.find_likeliest(ui.ctx(), &plots.likeliest, recording);
+        overlays::find_likeliest(session, ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
         plots.take_back();

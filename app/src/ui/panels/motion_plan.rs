@@ -2,6 +2,7 @@
 
 use crate::experiment::motion_plan::MotionPlan;
 use crate::text::format;
+use crate::ui::experimenting;
 use crate::ui::icons::Icon;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::session::Session;
@@ -39,9 +40,13 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = if session.path_of_tool().is_some() { words::SAVE_TOOL_MORE } else { words::SAVE_COORDINATE_MORE };
+    let hint = if experimenting::path_of_tool(session).is_some() {
+        words::SAVE_TOOL_MORE
+    } else {
+        words::SAVE_COORDINATE_MORE
+    };
     if ui.button((Icon::Save, words::SAVE_THE_PLAN)).on_hover_text(hint).clicked() {
-        session.save_motion_plan(&ctx, &plan, coordinate);
+        experimenting::save_motion_plan(session, &ctx, &plan, coordinate);
     }
 }
 

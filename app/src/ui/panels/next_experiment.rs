@@ -7,6 +7,7 @@ use crate::text::diagnosis_words::{listed, one, small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::diagnosis_state::is_mechanism;
+use crate::ui::experimenting;
 use crate::ui::experiments::{REHEARSE, ROUNDS, Stage};
 use crate::ui::files;
 use crate::ui::icons::Icon;
@@ -84,7 +85,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
              objects are simulated: it shows what would come out, and is no measurement."
         );
         if primary_button(ui, !busy, (Icon::Rehearse, words::REHEARSE)).on_hover_text(hint).clicked() {
-            session.rehearse(&ctx);
+            experimenting::rehearse(session, &ctx);
         }
         if is_driven {
             let hint = words::PLAN_MORE;
@@ -112,11 +113,11 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
         ui.set_max_width(280.0);
         ui.label(theme::caption(ui, words::ON_WHICH));
         if ui.button(words::AS_IT_STANDS).clicked() {
-            session.guide(&ctx, Stage::AsItStands);
+            experimenting::guide(session, &ctx, Stage::AsItStands);
         }
         for id in &next.separates {
             if ui.button(format!("This one as if it had {}", one(id))).clicked() {
-                session.guide(&ctx, Stage::AsIf(id.clone()));
+                experimenting::guide(session, &ctx, Stage::AsIf(id.clone()));
             }
         }
     });
@@ -142,7 +143,7 @@ fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     ui.add(egui::Label::new(theme::caption(ui, summary(&rehearsal, next))).wrap());
     if let Some(k) = add {
         let ctx = ui.ctx().clone();
-        session.add_rehearsed(&ctx, k);
+        experimenting::add_rehearsed(session, &ctx, k);
     }
 }
 
@@ -208,7 +209,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         }
         let path = session.experiments.path_field.trim().to_owned();
         if entered && !path.is_empty() {
-            session.add_experiment(&ctx, &PathBuf::from(path));
+            experimenting::add_experiment(session, &ctx, &PathBuf::from(path));
         }
     });
 }
@@ -224,7 +225,7 @@ pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Findings) {
             }
         });
     }
-    let simulated = session.simulated();
+    let simulated = experimenting::simulated(session);
     if !simulated.is_empty() {
         plain_card(ui, words::NOT_MEASURED, |ui| {
             let text = format!(

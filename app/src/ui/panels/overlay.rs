@@ -1,6 +1,7 @@
 //! Recordings overlaid on the shown one: the menu that chooses them, and the legend with their shifts.
 
 use crate::ui::icons::{self, Icon};
+use crate::ui::overlays;
 use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, recording as color, space};
@@ -41,7 +42,7 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
             let mut on = here || session.plots.overlaid.iter().any(|o| o.recording == recording);
             let words = if here { format!("{name} (shown)") } else { name };
             if ui.add_enabled(!here, egui::Checkbox::new(&mut on, words)).changed() {
-                session.toggle_overlay(recording);
+                overlays::toggle_overlay(session, recording);
             }
         }
     });
@@ -88,17 +89,17 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
         .clicked()
     {
         let ctx = ui.ctx().clone();
-        session.align(&ctx, recording);
+        overlays::align(session, &ctx, recording);
     }
-    let known =
-        session.first_contact_s(recording).is_some() && session.first_contact_s(session.document.current).is_some();
+    let known = overlays::first_contact_s(session, recording).is_some()
+        && overlays::first_contact_s(session, session.document.current).is_some();
     let (hint, why) = (words::FIRST_CONTACT_MORE, words::FIRST_CONTACT_NOT);
     let button = egui::Button::new(words::FIRST_CONTACT).small();
     if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {
-        session.align_by_contact(recording);
+        overlays::align_by_contact(session, recording);
     }
     if quiet_icon_button(ui, Icon::Close, true, words::TAKE_AWAY).on_hover_text(words::TAKE_AWAY).clicked() {
-        session.toggle_overlay(recording);
+        overlays::toggle_overlay(session, recording);
     }
 }
 

@@ -6,6 +6,7 @@ use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
+use crate::ui::trying_values;
 use crate::ui::what_if::residual_rms;
 use crate::ui::widgets::{call, card, compact, segmented};
 use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
@@ -92,7 +93,7 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
         call(&slid, words::ANOTHER_VALUE);
         call(&typed, words::ANOTHER_VALUE_AS_A_NUMBER);
         if slid.changed() || typed.changed() {
-            session.try_value(&name, Some(shown / quantity.factor));
+            trying_values::try_value(session, &name, Some(shown / quantity.factor));
         }
     });
     outcome(ui, session, tried.is_some());

@@ -44,7 +44,7 @@ pub static PARAMETERS: Picture = Picture {
     size: COLUMN,
     sample: Sample::Stack,
     session: stage::fitted,
-    framing: Framing::Panel(|| Box::new(ParametersPanel::default())),
+    framing: Framing::Panel(|| Box::new(ParametersPanel)),
 };
 
 /// The parameter table.

@@ -76,7 +76,7 @@ pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Train, 2)],
     neighbours: &[(PanelId::TRAINER, ContainerKind::Tabs, false)],
     pictures: &[&PROGRESS_PICTURE],
-    ..Registration::new(PanelId::PROGRESS, "Progress", Icon::Progress, || Box::new(ProgressPanel::default()))
+    ..Registration::new(PanelId::PROGRESS, "Progress", Icon::Progress, || Box::new(ProgressPanel))
 };
 
 /// How a trainee gets better, from a made-up history.
@@ -88,7 +88,7 @@ pub static PROGRESS_PICTURE: Picture = Picture {
     size: [720, 760],
     sample: Sample::World("stack"),
     session: stage::progress,
-    framing: Framing::Panel(|| Box::new(ProgressPanel::default())),
+    framing: Framing::Panel(|| Box::new(ProgressPanel)),
 };
 
 /// Panel of the trainee's progress.

@@ -1,9 +1,12 @@
 //! The left column of the calibration: choice of the recording, its task, refit, save.
 
 use crate::text::format;
+use crate::ui::by_hand;
 use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
+use crate::ui::fitting;
 use crate::ui::icons::Icon;
+use crate::ui::opening;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::refits::FIT;
@@ -113,12 +116,12 @@ fn source(ui: &mut Ui, session: &mut Session) {
         let named = !session.document.path_field.trim().is_empty();
         if enter && named {
             let path = PathBuf::from(session.document.path_field.trim());
-            session.open_any(&ctx, &path);
+            opening::open_any(session, &ctx, &path);
         }
         let named = named || session.document.path.is_some();
         let hint = words::MAP_MORE;
         if ui.add_enabled(named, egui::Button::new((Icon::Columns, words::MAP))).on_hover_text(hint).clicked() {
-            session.map_columns(&ctx, None);
+            opening::map_columns(session, &ctx, None);
         }
     });
     let Some(prepared) = session.document.prepared().cloned() else {
@@ -177,7 +180,7 @@ fn fit(ui: &mut Ui, session: &mut Session) {
         let text = if session.calibration.analysis.is_some() { words::REFIT } else { words::FIT };
         if primary_button(ui, !running, (Icon::Fit, text)).clicked() {
             let ctx = ui.ctx().clone();
-            session.refit(&ctx);
+            fitting::refit(session, &ctx);
         }
         if running {
             ui.add(egui::Spinner::new().size(18.0));
@@ -230,7 +233,7 @@ fn by_hand(ui: &mut Ui, session: &mut Session) {
             ui.label(theme::caption(ui, words::BY_HAND));
             if ui.link(words::FIND_AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                session.forget_states(&ctx);
+                by_hand::forget_states(session, &ctx);
             }
         });
     }

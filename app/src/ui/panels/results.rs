@@ -3,8 +3,10 @@
 use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::diagnosing;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
+use crate::ui::lessons::practising;
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::doubts::places;
@@ -238,7 +240,7 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
-                session.diagnose(&ctx);
+                diagnosing::diagnose(session, &ctx);
             }
         }
     });
@@ -260,7 +262,7 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
             let hint = words::PRACTISE_ON_THIS_MORE;
             if ui.button((Icon::Lesson, words::PRACTISE_ON_THIS)).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
-                session.practise_on_this(&ctx);
+                practising::practise_on_this(session, &ctx);
             }
         });
     });

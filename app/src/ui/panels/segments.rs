@@ -4,6 +4,7 @@ use super::boundaries;
 use super::rules::parameter;
 use crate::text::format;
 use crate::text::states::{state_of_task, state_short};
+use crate::ui::by_hand;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
@@ -58,7 +59,7 @@ pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Calibrate, 4), (Workspace::Diagnose, 4)],
     neighbours: &[(PanelId::RESULTS, ContainerKind::Tabs, false), (PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
     pictures: &[&SEGMENTS],
-    ..Registration::new(PanelId::SEGMENTS, "States", Icon::States, || Box::new(SegmentsPanel::default()))
+    ..Registration::new(PanelId::SEGMENTS, "States", Icon::States, || Box::new(SegmentsPanel))
 };
 
 /// States and subtasks.
@@ -70,7 +71,7 @@ pub static SEGMENTS: Picture = Picture {
     size: PANEL,
     sample: Sample::Stack,
     session: stage::fitted,
-    framing: Framing::Panel(|| Box::new(SegmentsPanel::default())),
+    framing: Framing::Panel(|| Box::new(SegmentsPanel)),
 };
 
 /// Panel of the segmentation alone.
@@ -153,8 +154,8 @@ fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
 fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, band: Rect) {
     let dark = ui.visuals().dark_mode;
     let (mut seek, mut change) = (None, None);
-    let can_be_set = session.states_can_be_set();
-    let fits_without_states = session.fits_without_states();
+    let can_be_set = by_hand::states_can_be_set(session);
+    let fits_without_states = by_hand::fits_without_states(session);
     let some_menu_is_open = egui::Popup::is_any_open(ui.ctx());
     for (index, interval) in segmentation.states.iter().enumerate() {
         let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
@@ -203,7 +204,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
     }
     if let Some(change) = change {
-        session.set_states(&change);
+        by_hand::set_states(session, &change);
     }
     if let Some(time) = seek {
         session.document.seek(time);

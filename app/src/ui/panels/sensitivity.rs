@@ -10,6 +10,7 @@ use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::theme::{self, Palette, palette, space};
+use crate::ui::wanting_sensitivity;
 use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
 use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
@@ -42,9 +43,7 @@ pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Calibrate, 5)],
     neighbours: &[(PanelId::RESULTS, ContainerKind::Tabs, false), (PanelId::DIAGNOSIS, ContainerKind::Tabs, false)],
     pictures: &[&SENSITIVITY_PICTURE],
-    ..Registration::new(PanelId("sensitivity"), "Sensitivity", Icon::Sensitivity, || {
-        Box::new(SensitivityPanel::default())
-    })
+    ..Registration::new(PanelId("sensitivity"), "Sensitivity", Icon::Sensitivity, || Box::new(SensitivityPanel))
 };
 
 /// What the force depends on, and which parameters go together.
@@ -56,7 +55,7 @@ pub static SENSITIVITY_PICTURE: Picture = Picture {
     size: COLUMN,
     sample: Sample::Crank,
     session: stage::sensitivity,
-    framing: Framing::Panel(|| Box::new(SensitivityPanel::default())),
+    framing: Framing::Panel(|| Box::new(SensitivityPanel)),
 };
 
 /// The sensitivity panel.
@@ -66,7 +65,7 @@ pub struct SensitivityPanel;
 impl Panel for SensitivityPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
-        session.want_sensitivity(&ctx);
+        wanting_sensitivity::want_sensitivity(session, &ctx);
         let Some(found) = session.calibration.sensitivity.clone().filter(|_| session.calibration.analysis.is_some())
         else {
             let busy = session.jobs.is_running(SENSITIVITY);

@@ -74,7 +74,7 @@ const STRIP_S: f64 = 8.0;
 /// The registration of this panel.
 pub static REGISTRATION: Registration = Registration {
     workspaces: &[(Workspace::Train, 1)],
-    ..Registration::new(PanelId::TRAINER_SIDE, "Trainer", Icon::Panel, || Box::new(TrainerSide::default()))
+    ..Registration::new(PanelId::TRAINER_SIDE, "Trainer", Icon::Panel, || Box::new(TrainerSide))
 };
 
 /// The right column of the trainer.

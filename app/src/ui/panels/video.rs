@@ -7,6 +7,7 @@ use crate::ui::icons::Icon;
 use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::showing_video;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::videos::{ALIGN_VIDEO, State};
 use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
@@ -60,7 +61,7 @@ pub static REGISTRATION: Registration = Registration {
         (PanelId::DIAGNOSIS, ContainerKind::Tabs, false),
     ],
     pictures: &[&PICTURE],
-    ..Registration::new(PanelId::VIDEO, "Video of the hand", Icon::Video, || Box::new(VideoPanel::default()))
+    ..Registration::new(PanelId::VIDEO, "Video of the hand", Icon::Video, || Box::new(VideoPanel))
 };
 
 /// The Calibrate workspace with a video of the hand; the log's, or the one that is named.
@@ -84,7 +85,7 @@ impl Panel for VideoPanel {
         let ctx = ui.ctx().clone();
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            match session.video(&ctx) {
+            match showing_video::video(session, &ctx) {
                 State::None => none(ui, session),
                 State::Reading => {
                     empty_state(ui, words::READING, words::READING_MORE, |ui| {
@@ -114,13 +115,13 @@ fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
             // Buttons in the middle of the text's line.
             ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
             if ui.button((Icon::Reload, words::AGAIN)).clicked() {
-                session.read_video_again();
+                showing_video::read_video_again(session);
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
-                session.forget_video();
+                showing_video::forget_video(session);
             }
         });
     });
@@ -142,12 +143,12 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
     let p = palette(ui);
     let corners = CornerRadius { nw: theme::CARD_RADIUS, ne: theme::CARD_RADIUS, sw: 0, se: 0 };
     ui.painter().rect_filled(room, corners, p.sunken);
-    let time_s = session.video_time_s().unwrap_or(0.0);
+    let time_s = showing_video::video_time_s(session).unwrap_or(0.0);
     let now = video.index_at(time_s);
     // Before its start and after its end, its first and last frame are shown, dimmed.
     let index = now.unwrap_or(if time_s < 0.0 { 0 } else { video.count() - 1 });
     let ctx = ui.ctx().clone();
-    let texture = session.video_picture(&ctx, video, index);
+    let texture = showing_video::video_picture(session, &ctx, video, index);
     let size = vec2(video.size[0] as f32, video.size[1] as f32);
     let scale = (room.width() / size.x).min(room.height() / size.y).max(0.0);
     let at = Rect::from_center_size(room.center(), size * scale);
@@ -197,12 +198,12 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
         let mut by_itself = loose.is_some();
         let hint = words::BY_ITSELF_MORE;
         if ui.checkbox(&mut by_itself, words::BY_ITSELF).on_hover_text(hint).changed() {
-            session.loosen_video(by_itself);
+            showing_video::loosen_video(session, by_itself);
         }
         if loose.is_none() {
             place(ui, session);
         } else if ui.button(words::TOGETHER).on_hover_text(words::TOGETHER_MORE).clicked() {
-            session.video_belongs_here();
+            showing_video::video_belongs_here(session);
         }
     });
     ui.horizontal(|ui| match session.document.videos.loose_s {
@@ -213,12 +214,12 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
 
 /// Draws the position of the video in time.
 fn place(ui: &mut Ui, session: &mut Session) {
-    let Some(mut begins_at_s) = session.video_source().map(|s| s.begins_at_s) else { return };
+    let Some(mut begins_at_s) = showing_video::video_source(session).map(|s| s.begins_at_s) else { return };
     ui.label(theme::caption(ui, words::BEGINS));
     let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
     let hint = words::BEGINS_MORE;
     if ui.add(drag).on_hover_text(hint).changed() {
-        session.shift_video(begins_at_s);
+        showing_video::shift_video(session, begins_at_s);
     }
     let free = !session.jobs.is_running(ALIGN_VIDEO);
     let hint = words::ALIGN_MORE;
@@ -226,7 +227,7 @@ fn place(ui: &mut Ui, session: &mut Session) {
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));
     if align.clicked() {
         let ctx = ui.ctx().clone();
-        session.align_video(&ctx);
+        showing_video::align_video(session, &ctx);
     }
 }
 
@@ -241,11 +242,11 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
 }
 
 fn facts(ui: &mut Ui, session: &mut Session, video: &Video) {
-    let Some(file) = session.video_source().map(|s| s.file.clone()) else { return };
+    let Some(file) = showing_video::video_source(session).map(|s| s.file.clone()) else { return };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let away = quiet_icon_button(ui, Icon::Close, true, words::REMOVE).on_hover_text(words::REMOVE);
         if away.clicked() {
-            session.forget_video();
+            showing_video::forget_video(session);
         }
         let [wide, high] = video.size;
         let facts = format!("{wide} × {high}, {} s", format::number(video.duration_s(), 1));

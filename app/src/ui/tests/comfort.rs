@@ -2,6 +2,7 @@
 
 use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
+use crate::ui::lessons::practising;
 use crate::ui::lessons::state::Phase;
 use crate::ui::screenshot;
 use crate::ui::tests::picture;
@@ -99,8 +100,8 @@ fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
     // A lesson: a try begins anew, an attempt that counts too, and that is said.
     harness.state_mut().session.training.lessons.load();
     let lesson = harness.state().session.training.lessons.all[0].clone();
-    harness.state_mut().session.open_lesson_now(&lesson);
-    harness.state_mut().session.test_lesson();
+    practising::open_lesson_now(&mut harness.state_mut().session, &lesson);
+    practising::test_lesson(&mut harness.state_mut().session);
     trainer(&mut harness).advance(1.0);
     harness.run_steps(2);
     harness.key_press(Key::N);

@@ -2,9 +2,11 @@
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
+use crate::ui::diagnosing;
 use crate::ui::diagnosis_state;
 use crate::ui::diagnosis_state::StartFrom;
 use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
+use crate::ui::follow;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::trainer::choice::WorldChoice;
@@ -120,7 +122,7 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.training.trainer.compare = Some(session.comparison().expect("a crank can be felt"));
+    session.training.trainer.compare = Some(diagnosing::comparison(&session).expect("a crank can be felt"));
     session.training.trainer.operator = Operator::Scripted;
     session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
@@ -160,7 +162,7 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     session.workspace = Workspace::Calibrate;
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        session.poll(&ctx);
+        follow::poll(session, &ctx);
         crate::ui::panel::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
     });
     harness.get_by_label("Diagnose …").click();
@@ -229,7 +231,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    let why = session.comparison().expect_err("nothing to hold");
+    let why = diagnosing::comparison(session).expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
@@ -243,7 +245,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
 fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
-    session.diagnose(&ctx);
+    diagnosing::diagnose(&mut session, &ctx);
     session.give_up(&ctx, DIAGNOSE);
     assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);

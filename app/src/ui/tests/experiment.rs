@@ -3,9 +3,12 @@
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
+use crate::ui::experimenting;
 use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
+use crate::ui::guiding;
+use crate::ui::opening;
 use crate::ui::session::Session;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Clock;
@@ -45,7 +48,7 @@ pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'
     let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     let path = saved(recording, folder);
-    harness.state_mut().session.open(&ctx, &path);
+    opening::open(&mut harness.state_mut().session, &ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
         s.calibration.analysis.is_some() && quiet(s)
@@ -182,11 +185,11 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     assert!(harness.query_by_label("Touch nothing.").is_some());
     let session = &mut harness.state_mut().session;
     let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
-    session.follow_rings(3.0);
+    guiding::follow_rings(session, 3.0);
     harness.run_steps(2);
     assert!(harness.query_by_label("Take hold.").is_some());
     let session = &mut harness.state_mut().session;
-    session.follow_rings(all_s);
+    guiding::follow_rings(session, all_s);
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
@@ -222,7 +225,7 @@ fn an_experiment_that_is_left_keeps_no_file() {
     assert!(harness.query_by_label_contains("SIMULATED object, as if gravity tilt").is_some());
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
-    harness.state_mut().session.follow_rings(3.0);
+    guiding::follow_rings(&mut harness.state_mut().session, 3.0);
     harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
     harness.run_steps(3);
     let session = &harness.state().session;
@@ -260,7 +263,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     "hung".clone_into(&mut real.name);
     let path = saved(&real, folder.path());
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.add_experiment(&ctx, &path);
+    experimenting::add_experiment(&mut harness.state_mut().session, &ctx, &path);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
         s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)

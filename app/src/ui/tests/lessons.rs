@@ -2,8 +2,11 @@
 
 use super::{in_train, train_window, until};
 use crate::ui::app::App;
+use crate::ui::lessons::pointer;
+use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Debrief, Phase};
 use crate::ui::session::Session;
+use crate::ui::trainees;
 use crate::ui::trainer::live::Operator;
 use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
@@ -22,11 +25,11 @@ fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
 
 /// Does an open lesson's test with the mouse; the answer to a question is that of the world that stands there.
 fn attempted(session: &mut Session) -> Debrief {
-    session.test_lesson();
-    session.follow_expert(120.0);
+    practising::test_lesson(session);
+    pointer::follow_expert(session, 120.0);
     let open = session.training.lessons.open.as_ref().expect("open");
     let answer = open.lesson.question.as_ref().map(|_| open.variant);
-    session.end_lesson_now(answer);
+    practising::end_lesson_now(session, answer);
     match session.training.lessons.open.as_ref().map(|open| &open.phase) {
         Some(Phase::Debrief(debrief)) => (**debrief).clone(),
         other => panic!("{other:?}: {:?}", session.messages.banners),
@@ -41,7 +44,7 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
     assert_eq!((session.training.lessons.all.len(), session.training.lessons.problems.len()), (11, 0));
     let mut missed = Vec::new();
     for lesson in session.training.lessons.all.clone() {
-        session.open_lesson_now(&lesson);
+        practising::open_lesson_now(&mut session, &lesson);
         let debrief = attempted(&mut session);
         if !debrief.grade.completed {
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
@@ -59,7 +62,7 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = train_window(in_train(folder.path()));
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open_history(&ctx, folder.path().join("history.sqlite"));
+    trainees::open_history(&mut harness.state_mut().session, &ctx, folder.path().join("history.sqlite"));
     let learning = &mut harness.state_mut().session.training.learning;
     "Ada".clone_into(&mut learning.name_field);
     learning.add_trainee();
@@ -77,12 +80,12 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     click(&mut harness, Role::Button, "Practise");
     assert_eq!(phase(&harness), Some(Phase::Practising));
     assert!(!harness.state().session.training.trainer.is_recording(), "practice is not recorded");
-    harness.state_mut().session.follow_expert(60.0);
+    pointer::follow_expert(&mut harness.state_mut().session, 60.0);
     harness.run_steps(3);
     assert!(harness.query_all_by_label_contains("All goals reached").next().is_some());
     click(&mut harness, Role::Button, "Take the test");
     assert!(harness.state().session.training.trainer.is_recording());
-    harness.state_mut().session.follow_expert(60.0);
+    pointer::follow_expert(&mut harness.state_mut().session, 60.0);
     until(&mut harness, "the debrief", |app| {
         app.session.training.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Debrief(_)))
     });
@@ -105,20 +108,20 @@ fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
     let mut session = in_train(folder.path());
     session.training.lessons.load();
     let barrel = session.training.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
-    session.open_lesson_now(&barrel);
-    session.watch_lesson();
-    session.close_lesson();
+    practising::open_lesson_now(&mut session, &barrel);
+    practising::watch_lesson(&mut session);
+    practising::close_lesson(&mut session);
     assert_eq!(session.training.trainer.operator, Operator::You, "the expert stops");
-    session.open_lesson_now(&barrel);
-    session.test_lesson();
-    session.follow_expert(3.0);
-    session.close_lesson();
+    practising::open_lesson_now(&mut session, &barrel);
+    practising::test_lesson(&mut session);
+    pointer::follow_expert(&mut session, 3.0);
+    practising::close_lesson(&mut session);
     assert!(!session.training.trainer.is_recording() && session.training.lessons.open.is_none());
-    session.open_lesson_now(&barrel);
-    session.test_lesson();
-    session.follow_expert(120.0);
+    practising::open_lesson_now(&mut session, &barrel);
+    practising::test_lesson(&mut session);
+    pointer::follow_expert(&mut session, 120.0);
     let right = session.training.lessons.open.as_ref().expect("open").variant;
-    session.end_lesson_now(Some((right + 1) % 4));
+    practising::end_lesson_now(&mut session, Some((right + 1) % 4));
     let Some(Phase::Debrief(debrief)) = session.training.lessons.open.as_ref().map(|open| open.phase.clone()) else {
         panic!("no debrief: {:?}", session.messages.banners)
     };
@@ -134,7 +137,7 @@ fn a_calibrated_world_becomes_a_lesson() {
     session.training.lessons.folder = Some(folder.path().join("lessons"));
     let mut harness = train_window(session);
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.practise_on_this(&ctx);
+    practising::practise_on_this(&mut harness.state_mut().session, &ctx);
     until(&mut harness, "the lesson", |app| {
         app.session.training.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
     });

@@ -2,6 +2,7 @@
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
+use crate::ui::follow;
 use crate::ui::panel::Panel;
 use crate::ui::panels::list::PANELS;
 use crate::ui::panels::parameters::ParametersPanel;
@@ -50,7 +51,7 @@ fn refit_starts_a_job_and_brings_a_fit() {
     session.calibration.analysis = None;
     let mut harness = harness(session, [300.0, 800.0], |ui, session| {
         let ctx = ui.ctx().clone();
-        session.poll(&ctx);
+        follow::poll(session, &ctx);
         RecordingPanel::default().ui(ui, session);
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();

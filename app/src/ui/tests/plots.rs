@@ -3,6 +3,8 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::diagnosis_state;
+use crate::ui::follow;
+use crate::ui::overlays;
 use crate::ui::overlays::ALIGN;
 use crate::ui::panel::Panel as _;
 use crate::ui::panels::log::LogPanel;
@@ -25,7 +27,7 @@ pub fn log<'a>(session: Session) -> Harness<'a, Session> {
     let mut panel = LogPanel::default();
     harness(session, [1000.0, 640.0], move |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        session.poll(&ctx);
+        follow::poll(session, &ctx);
         panel.ui(ui, session);
     })
 }
@@ -265,7 +267,7 @@ fn another_recording_is_laid_over_and_aligned() {
 fn an_overlay_is_shifted_by_dragging_its_number() {
     let other = again(&CRANK, "crank again", 0.0, 100);
     let mut session = two(&CRANK, other);
-    session.toggle_overlay(1);
+    overlays::toggle_overlay(&mut session, 1);
     let mut harness = log(session);
     let number = harness.get_by_role(Role::SpinButton).rect().center();
     harness.drag_at(number);
@@ -286,8 +288,8 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
         let draw = |overlay: bool| {
             let mut session = two(&CRANK, again(&CRANK, "crank, second try", 0.0, 300));
             if overlay {
-                session.toggle_overlay(1);
-                session.shift_overlay(1, 0.4);
+                overlays::toggle_overlay(&mut session, 1);
+                overlays::shift_overlay(&mut session, 1, 0.4);
             }
             let picture = screenshot::draw(session, picture("log"), [1100, 720], dark).expect("drawn");
             keep(&format!("overlay-{overlay}-{dark}"), &picture);
@@ -303,7 +305,7 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
 fn nothing_of_the_log_is_cut_where_there_is_little_room() {
     let make = || {
         let mut session = two(&STACK, again(&STACK, "stack, the second of a long series", 0.5, 300));
-        session.toggle_overlay(1);
+        overlays::toggle_overlay(&mut session, 1);
         session.plots.groups.entry("Force/N".to_owned()).or_default().left_over = true;
         session
     };

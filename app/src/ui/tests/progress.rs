@@ -9,6 +9,7 @@ use crate::ui::learning::Practised;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
+use crate::ui::trainees;
 use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, screenshot, theme};
@@ -26,7 +27,7 @@ fn window<'a>(database: &Path) -> Harness<'a, App> {
     app.dock.bring(Workspace::Train, PanelId::PROGRESS);
     let mut harness = harness(app, [1280.0, 1000.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open_history(&ctx, database.to_path_buf());
+    trainees::open_history(&mut harness.state_mut().session, &ctx, database.to_path_buf());
     harness.run_steps(2);
     harness
 }
@@ -51,7 +52,10 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     assert_eq!(harness.state().session.training.learning.trainee.as_deref(), Some("Grace"));
     assert!(harness.query_by_label_contains("Grace has not attempted").is_some());
     for attempt in practice() {
-        assert!(harness.state_mut().session.keep_attempt(Attempt { trainee: "Grace".to_owned(), ..attempt }));
+        assert!(trainees::keep_attempt(
+            &mut harness.state_mut().session,
+            Attempt { trainee: "Grace".to_owned(), ..attempt }
+        ));
     }
     until(&mut harness, "the attempts", |app| app.session.training.learning.attempts.len() == 23);
     assert!(harness.query_by_label("23 attempts.").is_some());
@@ -68,7 +72,7 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
         trainee: "Grace".to_owned(),
         ..practice().remove(3)
     };
-    harness.state_mut().session.keep_attempt(other);
+    trainees::keep_attempt(&mut harness.state_mut().session, other);
     until(&mut harness, "the other lesson", |app| app.session.training.learning.attempts.len() == 24);
     let shown = Practised { lesson: "stack".to_owned(), conditions: delayed };
     assert_eq!(harness.state().session.training.learning.practised()[1], shown);
@@ -100,8 +104,8 @@ fn an_attempt_of_another_trainee_does_not_get_among_those_that_are_shown() {
     session.training.learning.add_trainee();
     let mut mine = practice();
     mine.truncate(2);
-    session.keep_attempt(Attempt { trainee: "Grace".to_owned(), ..mine[0].clone() });
-    session.keep_attempt(mine[1].clone());
+    trainees::keep_attempt(session, Attempt { trainee: "Grace".to_owned(), ..mine[0].clone() });
+    trainees::keep_attempt(session, mine[1].clone());
     until(&mut harness, "both", |app| {
         app.session.training.learning.trainees.contains(&"Grace".to_owned())
             && !app.session.training.learning.attempts.is_empty()

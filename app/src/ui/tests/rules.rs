@@ -2,6 +2,7 @@
 
 use super::{CRANK, STACK, harness, session, until};
 use crate::ui::editing_rules;
+use crate::ui::follow;
 use crate::ui::panel::Panel as _;
 use crate::ui::panels::rules::RulesPanel;
 use crate::ui::refits::SEGMENT;
@@ -14,7 +15,7 @@ fn open(mut session: Session) -> Harness<'static, Session> {
     session.calibration.rules = editing_rules::open(&mut session);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        session.poll(&ctx);
+        follow::poll(session, &ctx);
         RulesPanel.ui(ui, session);
     })
 }

@@ -2,8 +2,10 @@
 
 use super::plots::{again, log, two};
 use super::{CRANK, session, until};
+use crate::ui::overlays;
 use crate::ui::overlays::ALIGN;
 use crate::ui::session::Session;
+use crate::ui::undoing;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
 
@@ -12,7 +14,7 @@ const LATER_S: f64 = 1.5;
 
 fn over_each_other() -> Harness<'static, Session> {
     let mut session = two(&CRANK, again(&CRANK, "crank again", LATER_S, 0));
-    session.toggle_overlay(1);
+    overlays::toggle_overlay(&mut session, 1);
     log(session)
 }
 
@@ -83,10 +85,10 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     assert_ne!(icon(&harness), CursorIcon::Grabbing);
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
-    assert!(harness.state().can_undo());
-    harness.state_mut().undo();
+    assert!(undoing::can_undo(harness.state()));
+    undoing::undo(harness.state_mut());
     assert_eq!(offset_s(&harness), 0.0);
-    harness.state_mut().redo();
+    undoing::redo(harness.state_mut());
     assert_eq!(offset_s(&harness), shifted_s);
 }
 

@@ -7,6 +7,7 @@ use crate::ui::editing_rules;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
 use crate::ui::session::Session;
+use crate::ui::showing_video;
 use crate::ui::workspace::Workspace;
 
 /// The widgets without a name in one state of the whole window, with where they are.
@@ -36,7 +37,7 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());
-    video.open_video(std::path::Path::new("none.mp4"));
+    showing_video::open_video(&mut video, std::path::Path::new("none.mp4"));
     let found = [
         unnamed("XY", xy, |_| {}),
         unnamed("video", video, |_| {}),

@@ -2,9 +2,11 @@
 
 use super::{STACK, clockless_path, empty, harness, session, until};
 use crate::ui::app::App;
+use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
+use crate::ui::showing_video;
 use crate::ui::videos::State;
 use crate::ui::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
@@ -49,7 +51,7 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     film_of_the_hand(&file, &session.document.recordings[0], 1.7);
     let mut harness = window(session);
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open_dropped(&ctx, std::slice::from_ref(&file));
+    opening::open_dropped(&mut harness.state_mut().session, &ctx, std::slice::from_ref(&file));
     harness.run_steps(2);
     assert!(harness.state_mut().dock.has(Workspace::Calibrate, PanelId::VIDEO), "its panel has come");
     until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
@@ -57,9 +59,11 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     until(&mut harness, "the picture at the cursor", |app| app.session.document.videos.shown() == Some(100));
 
     press(&mut harness, Role::Button, "Align video");
-    until(&mut harness, "its place", |app| app.session.video_source().is_some_and(|v| v.begins_at_s != 0.0));
+    until(&mut harness, "its place", |app| {
+        showing_video::video_source(&app.session).is_some_and(|v| v.begins_at_s != 0.0)
+    });
     let first = harness.state().session.document.recordings[0].span().0;
-    let begins_at_s = harness.state().session.video_source().expect("a video").begins_at_s;
+    let begins_at_s = showing_video::video_source(&harness.state().session).expect("a video").begins_at_s;
     assert!((begins_at_s - (first - 1.7)).abs() < 0.06, "it begins at {begins_at_s} s");
     until(&mut harness, "the picture that belongs to the cursor", |app| {
         app.session.document.videos.shown() == Some(142)
@@ -69,7 +73,7 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     let project = crate::ui::project_files::project_of(&harness.state().session);
     assert_eq!(project.videos, harness.state().session.document.videos.sources);
     press(&mut harness, Role::Button, "Take the video away");
-    assert!(harness.state().session.video_source().is_none());
+    assert!(showing_video::video_source(&harness.state().session).is_none());
     assert!(harness.query_by_label("Choose a video …").is_some());
 }
 
@@ -82,7 +86,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     let file = folder.path().join("a.mkv");
     film(&file, RATE_HZ, 100, |k| bar(k as f64 / 100.0));
     let mut session = session(STACK.clone());
-    session.open_video(&file);
+    showing_video::open_video(&mut session, &file);
     let mut harness = window(session);
     until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
     press(&mut harness, Role::CheckBox, "By itself");
@@ -92,7 +96,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     press(&mut harness, Role::Button, "They belong together");
     let session = &harness.state().session;
     assert!(session.document.videos.loose_s.is_none());
-    assert!((session.video_source().expect("a video").begins_at_s - 7.5).abs() < 1e-9);
+    assert!((showing_video::video_source(session).expect("a video").begins_at_s - 7.5).abs() < 1e-9);
     assert_eq!(session.document.videos.shown(), Some(50), "the picture stays");
     // Before its beginning, the first picture stands there, with a word.
     harness.state_mut().session.document.seek(5.0);
@@ -113,9 +117,9 @@ fn a_video_that_stands_beside_its_log_is_found_with_its_sidecar() {
     let opened = |log: &Path| {
         let mut harness = window(empty());
         let ctx = harness.ctx.clone();
-        harness.state_mut().session.open(&ctx, log);
+        opening::open(&mut harness.state_mut().session, &ctx, log);
         until(&mut harness, "the log", |app| !app.session.document.recordings.is_empty());
-        harness.state().session.video_source().cloned().expect("a video")
+        showing_video::video_source(&harness.state().session).cloned().expect("a video")
     };
     let beside = opened(&log);
     assert_eq!((beside.file, beside.begins_at_s), (folder.path().join("run.mp4"), 0.0));
@@ -132,18 +136,20 @@ fn what_is_in_the_way_of_a_video_is_said() {
     std::fs::write(&file, b"\0\0\0\x20ftypisom\0\0\x02\0").expect("written");
     let ctx = egui::Context::default();
     let mut without = empty();
-    without.open_any(&ctx, &file);
+    opening::open_any(&mut without, &ctx, &file);
     assert!(without.messages.banners[0].text.contains("open the log first"), "{:?}", without.messages.banners);
     let mut clockless = session(clockless_path());
-    clockless.open_any(&ctx, &file);
+    opening::open_any(&mut clockless, &ctx, &file);
     assert!(clockless.messages.banners.iter().any(|b| b.text.contains("no clock")), "{:?}", clockless.messages.banners);
     if no_reader() {
         return;
     }
     let mut session = session(STACK.clone());
-    session.open_any(&ctx, &file);
+    opening::open_any(&mut session, &ctx, &file);
     let mut harness = window(session);
     until(&mut harness, "the refusal", |app| !app.session.jobs.is_busy());
-    assert!(matches!(harness.state_mut().session.video(&ctx), State::Failed(why) if why.contains("no video")));
+    assert!(
+        matches!(showing_video::video(&mut harness.state_mut().session, &ctx), State::Failed(why) if why.contains("no video"))
+    );
     assert!(harness.query_by_label("Try again").is_some());
 }

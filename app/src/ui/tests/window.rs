@@ -3,6 +3,7 @@
 use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
 use crate::ui::app::App;
+use crate::ui::opening;
 use crate::ui::recorder;
 use crate::ui::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
@@ -96,7 +97,7 @@ fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
 fn a_missing_file_is_a_banner_that_can_be_dismissed() {
     let mut harness = harness(App::new(empty()), [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open(&ctx, std::path::Path::new("/nowhere/none.csv"));
+    opening::open(&mut harness.state_mut().session, &ctx, std::path::Path::new("/nowhere/none.csv"));
     until(&mut harness, "the message", |app| !app.session.messages.banners.is_empty());
     assert!(harness.state().session.messages.banners[0].text.contains("none.csv"));
     harness.run_steps(2);

@@ -4,7 +4,11 @@ use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::diagnosis_state::DIAGNOSE;
+use crate::ui::fitting;
+use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
+use crate::ui::project_files;
+use crate::ui::trying_values;
 use crate::ui::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
@@ -38,7 +42,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     let mut harness = window(STACK.clone());
     // The first fit tells how quick fits are.
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.refit(&ctx);
+    fitting::refit(&mut harness.state_mut().session, &ctx);
     settle(&mut harness);
     let before = weight(&harness, "block-1");
     let states = harness.state().session.segmentation().expect("segmented").states.clone();
@@ -78,7 +82,7 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
         fit.parameter("mechanism", "mass_kg").expect("told").samples
     };
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.refit(&ctx);
+    fitting::refit(&mut harness.state_mut().session, &ctx);
     settle(&mut harness);
     let (all, states) = (samples(&harness), harness.state().session.segmentation().expect("segmented").states.clone());
     let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
@@ -98,16 +102,16 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
 fn another_value_is_tried_on_the_replay_and_frozen() {
     let mut harness = window(CRANK.clone());
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.refit(&ctx);
+    fitting::refit(&mut harness.state_mut().session, &ctx);
     settle(&mut harness);
     harness.get_by_label("crank.weight_N").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Crank · weight").is_some());
     let fitted = weight(&harness, "crank").0;
-    harness.state_mut().session.try_value("crank.weight_N", Some(2.0 * fitted));
+    trying_values::try_value(&mut harness.state_mut().session, "crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
     assert!(!harness.state().session.calibration.what_if.is_behind());
-    let shown = harness.state().session.shown_curves().expect("curves").curves.clone();
+    let shown = trying_values::shown_curves(&harness.state().session).expect("curves").curves.clone();
     let first = harness.state().session.replay().expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();
@@ -185,24 +189,23 @@ fn a_project_brings_back_what_was_done() {
     estimator::log::write_meta(&STACK, &log).expect("written");
     let mut harness = harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    harness.state_mut().session.open_any(&ctx, &log);
+    opening::open_any(&mut harness.state_mut().session, &ctx, &log);
     settle(&mut harness);
     let session = &mut harness.state_mut().session;
     session.calibration.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
     session.document.seek(7.0);
     let file = folder.path().join("mine.touchstone.json");
-    session.save_project_as(&ctx, file.clone());
+    project_files::save_project_as(session, &ctx, file.clone());
     settle(&mut harness);
     let mut other = super::harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = other.ctx.clone();
-    other.state_mut().session.open_any(&ctx, &file);
+    opening::open_any(&mut other.state_mut().session, &ctx, &file);
     settle(&mut other);
     let session = &other.state().session;
     assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
     assert_eq!((session.document.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
     assert_eq!(session.calibration.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
-    // A second recording joins the first one.
-    other.state_mut().session.add_log(&ctx, &log);
+    // A second recording joins the first project_files::add_log(&mut one.other.state_mut().session, &ctx, &log);
     settle(&mut other);
     assert_eq!((other.state().session.document.recordings.len(), other.state().session.document.sources.len()), (2, 2));
 }
@@ -220,7 +223,7 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     app.tour = crate::ui::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
-    first.state_mut().session.open_any(&ctx, &log);
+    opening::open_any(&mut first.state_mut().session, &ctx, &log);
     settle(&mut first);
     first.state_mut().session.calibration.choice.only_s = Some((1.0, 9.0));
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();

@@ -5,6 +5,7 @@ use crate::ui::app::App;
 use crate::ui::autosave::State;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::message_list::Tone;
+use crate::ui::overlays;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
@@ -13,6 +14,7 @@ use crate::ui::project::{Project, Source};
 use crate::ui::session::Session;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
 use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};
+use crate::ui::wanting_sensitivity;
 use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable as _;
 use haptics::recording::{Channel, Recording};
@@ -61,7 +63,7 @@ fn workspaces_with_nothing_in_them_can_be_read() {
 fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut found = String::new();
     let mut full = diagnosed(RIPPLED.clone());
-    full.look_at_sensitivity();
+    wanting_sensitivity::look_at_sensitivity(&mut full);
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
         for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
@@ -79,7 +81,7 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
 fn every_panel_alone_can_be_read() {
     let mut found = String::new();
     let mut full = session(STACK.clone());
-    full.look_at_sensitivity();
+    wanting_sensitivity::look_at_sensitivity(&mut full);
     for workspace in WORKSPACES {
         for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
@@ -189,7 +191,7 @@ fn long_names_of_channels_and_recordings_can_be_read() {
     for view in [LogView::Time, LogView::Xy] {
         for only in [false, true] {
             let mut session = like(&full);
-            session.toggle_overlay(1);
+            overlays::toggle_overlay(&mut session, 1);
             session.plots.view = view;
             let mut app = App::new(session);
             for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::RESULTS].iter().filter(|_| only) {
