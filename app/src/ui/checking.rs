@@ -11,7 +11,7 @@ pub fn check(session: &mut Session, ctx: &egui::Context, on: On) {
     let (recordings, choice) = (session.document.recordings.clone(), session.calibration.choice.clone());
     session.jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
         match check_now(&recordings, &choice, &answer, &on, &|share| ticket.goes_on(share)) {
-            Some(checked) => change(|session: &mut Session, _| take_checked(session, checked)),
+            Some(checked) => change(|session, _| take_checked(session, checked)),
             None => no_change(),
         }
     });

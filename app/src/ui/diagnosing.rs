@@ -21,9 +21,9 @@ pub fn diagnose(session: &mut Session, ctx: &egui::Context) {
     let job = session.jobs.start(ctx, DIAGNOSE, "Diagnosing", move |ticket| {
         let ticket = ticket.clone();
         let answer = ask(&recordings, &choice, from, Progress::new(move |share| ticket.goes_on(share)));
-        change(|session: &mut Session, _| diagnosed(session, answer))
+        change(|session, _| diagnosed(session, answer))
     });
-    job.if_given_up(|session: &mut Session, _| {
+    job.if_given_up(|session, _| {
         session.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
     });
 }
@@ -35,7 +35,7 @@ pub fn extend_model(session: &mut Session, ctx: &egui::Context) {
         (session.document.recordings.clone(), session.calibration.choice.clone(), session.diagnosing.from);
     session.jobs.start(ctx, EXTEND, "Extending the model", move |_| {
         let worlds = extend(&recordings, &choice, from, &answer);
-        change(|session: &mut Session, ctx| extended(session, ctx, worlds))
+        change(|session, ctx| extended(session, ctx, worlds))
     });
 }
 

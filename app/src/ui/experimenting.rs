@@ -30,7 +30,7 @@ pub fn rehearse(session: &mut Session, ctx: &egui::Context) {
             Err(Some(problem)) => Err(problem),
             Ok(rehearsal) => Ok(rehearsal),
         };
-        change(|session: &mut Session, _| rehearsed(session, rehearsal))
+        change(|session, _| rehearsed(session, rehearsal))
     });
 }
 
@@ -52,7 +52,7 @@ pub fn guide(session: &mut Session, ctx: &egui::Context, stage: Stage) {
             Stage::AsIf(id) => guided_as_if(&recordings, &choice, &answer, &id),
             Stage::AsItStands => Guided::in_world(&standing, &answer.diagnosis),
         };
-        change(|session: &mut Session, _| take_guided(session, guided))
+        change(|session, _| take_guided(session, guided))
     });
 }
 
@@ -87,7 +87,7 @@ pub fn add_rehearsed(session: &mut Session, ctx: &egui::Context, outcome: usize)
     let Some(folder) = folder_of_recordings(session) else { return };
     session.jobs.start(ctx, SAVE, "", move |_| {
         let path = write(&folder, recording)?;
-        change(move |session: &mut Session, ctx| performed(session, ctx, &path))
+        change(move |session, ctx| performed(session, ctx, &path))
     });
 }
 

@@ -23,9 +23,9 @@ pub fn refit(session: &mut Session, ctx: &egui::Context) {
     session.calibration.refits.begun = Instant::now();
     let job = session.jobs.start(ctx, FIT, "Fitting", move |_| {
         let analysis = analyse_sharing(&recordings, &shared, &choice)?;
-        change(move |session: &mut Session, ctx| fitted(session, ctx, analysis))
+        change(move |session, ctx| fitted(session, ctx, analysis))
     });
-    job.if_given_up(|session: &mut Session, _| {
+    job.if_given_up(|session, _| {
         if session.calibration.analysis.is_none() {
             session.calibration.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
         }
@@ -58,7 +58,7 @@ pub fn resegment(session: &mut Session, ctx: &egui::Context) {
         let recording = choice.given_to(index, &prepared.recording);
         let found = segment_by(choice.method, &recording, choice.task, choice.thresholds)
             .map_err(|error| sentence(&error.to_string()))?;
-        change(move |session: &mut Session, _| segmented(session, index, found))
+        change(move |session, _| segmented(session, index, found))
     });
 }
 

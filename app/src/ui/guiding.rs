@@ -40,7 +40,7 @@ pub(crate) fn follow_experiment(session: &mut Session, ctx: &egui::Context) {
     let Some(stopping) = session.training.trainer.stop_recording() else { return };
     session.jobs.start(ctx, RECORD, "", move |_| {
         let path = stopping.wait().map(|finished| finished.path);
-        change(|session: &mut Session, _| followed(session, path))
+        change(|session, _| followed(session, path))
     });
 }
 

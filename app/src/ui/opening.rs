@@ -24,7 +24,7 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
     match estimator::log::load_watched(&path, meta, &watch) {
         Ok(recordings) => {
             let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-            change(|session: &mut Session, ctx| loaded(session, ctx, path, prepared))
+            change(|session, ctx| loaded(session, ctx, path, prepared))
         }
         Err(LogError::Cancelled { .. }) => no_change(),
         Err(error) if state::mends(&error) => {

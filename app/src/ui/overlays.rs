@@ -42,7 +42,7 @@ pub fn align(session: &mut Session, ctx: &egui::Context, recording: usize) {
     };
     session.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
         let found = most_alike(&fixed, &moved);
-        change(move |session: &mut Session, _| aligned(session, recording, found))
+        change(move |session, _| aligned(session, recording, found))
     });
 }
 

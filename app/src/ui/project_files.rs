@@ -42,7 +42,7 @@ fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
             Err(error) => return Err(sentence(&error.to_string())),
         }
     }
-    change(|session: &mut Session, ctx| {
+    change(|session, ctx| {
         opened_project(session, ctx, project, recordings);
         experimenting::ask_again(session, ctx);
     })

@@ -66,9 +66,9 @@ pub fn video(session: &mut Session, ctx: &egui::Context) -> State {
             Err(VideoError::Cancelled) => return no_change(),
             read => read.map(Arc::new).map_err(|error| sentence(&error.to_string())),
         };
-        change(|session: &mut Session, _| video_was_read(session, file, answer))
+        change(|session, _| video_was_read(session, file, answer))
     });
-    job.if_given_up(|session: &mut Session, _| gave_up_video(session));
+    job.if_given_up(|session, _| gave_up_video(session));
     State::Reading
 }
 
@@ -123,7 +123,7 @@ pub fn video_picture(
         } else {
             session.jobs.start(ctx, PICTURE, "", move |_| {
                 let picture = decoded(&video, index);
-                change(move |session: &mut Session, ctx| picture_came(session, ctx, (file, index), picture))
+                change(move |session, ctx| picture_came(session, ctx, (file, index), picture))
             });
         }
     }
@@ -179,7 +179,7 @@ pub fn align_video(session: &mut Session, ctx: &egui::Context) {
             Err(VideoError::Cancelled) => return no_change(),
             Err(error) => Err(sentence(&error.to_string())),
         };
-        change(move |session: &mut Session, _| video_aligned(session, &file, found))
+        change(move |session, _| video_aligned(session, &file, found))
     });
 }
 

@@ -7,6 +7,7 @@ mod servo;
 
 use crate::Chaos;
 use crate::workbench::Bench;
+use app::ui::trainees;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -59,10 +60,13 @@ pub fn at_the_same_time(chaos: &mut Chaos) {
             scope.spawn(|| histories::on_a_bad_disk(&spoiled, second, &over)),
         ];
         let mut bench = Bench::open(&at("kept"));
-        bench.session.open_history(&bench.ctx, database.clone());
+        trainees::open_history(&mut bench.session, &bench.ctx, database.clone());
         let (begun, mut deeds) = (Instant::now(), 0);
         while deeds < DEEDS || begun.elapsed() < LEAST {
-            assert!(bench.session.keep_attempt(histories::attempt(histories::HERE, deeds as u64)), "it has a history");
+            assert!(
+                trainees::keep_attempt(&mut bench.session, histories::attempt(histories::HERE, deeds as u64)),
+                "it has a history"
+            );
             bench.deed(chaos, folder.path(), deeds);
             deeds += 1;
         }

@@ -19,7 +19,7 @@ pub fn open_lesson(session: &mut Session, ctx: &egui::Context, lesson: &Arc<Less
         let lesson = Arc::clone(lesson);
         session.jobs.start(ctx, EXPERT, "", move |_| {
             let trace = trace::of_expert(&lesson);
-            change(|session: &mut Session, _| expert_did_it(session, trace))
+            change(|session, _| expert_did_it(session, trace))
         });
     }
 }
@@ -49,7 +49,7 @@ pub fn practise_on_this(session: &mut Session, ctx: &egui::Context) {
             Ok(lesson)
         });
         let lesson = measured.map_err(|error| sentence(&error.to_string()));
-        change(|session: &mut Session, ctx| lesson_made(session, ctx, lesson))
+        change(|session, ctx| lesson_made(session, ctx, lesson))
     });
 }
 
@@ -201,7 +201,7 @@ pub fn end_lesson(session: &mut Session, ctx: &egui::Context, answer: Option<usi
     let lesson = Arc::clone(&open.lesson);
     session.jobs.start(ctx, GRADE, "", move |_| {
         let debrief = grade_file(&lesson, stopping);
-        change(|session: &mut Session, _| graded(session, debrief))
+        change(|session, _| graded(session, debrief))
     });
 }
 

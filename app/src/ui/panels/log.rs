@@ -129,10 +129,9 @@ impl Panel for LogPanel {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
                 LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
             };
-            let job =
-                plots.derived.settle(ui.ctx(), &mut session.jobs, |session: &mut Session| &mut session.plots.derived);
+            let job = plots.derived.settle(ui.ctx(), &mut session.jobs, |session| &mut session.plots.derived);
             if let Some(job) = job {
-                job.if_given_up(|session: &mut Session, _| session.plots.give_up());
+                job.if_given_up(|session, _| session.plots.give_up());
             }
             session.plots = plots;
             band(ui, session, area);

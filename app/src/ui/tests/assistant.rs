@@ -139,7 +139,8 @@ fn a_finger_that_pressed_on_a_block_did_not_spoil_the_zero_of_its_sensor() {
     let lesson = session.training.lessons.all.iter().find(|l| l.id == "stack-two").map(Arc::clone).expect("a lesson");
     practising::open_lesson_now(&mut session, &lesson);
     practising::practise_lesson(&mut session);
-    // The pointer comes down on the block first, and carries it pointer::follow_expert(&mut then.session, 7.5);
+    // The pointer comes down on the block first, and carries it then.
+    pointer::follow_expert(&mut session, 7.5);
     let report = session.training.trainer.watch.report().expect("watched");
     let weight = report.parameters.iter().find(|p| p.name == "weight_N").expect("weighed");
     let (_, world) = session.training.trainer.scene().expect("a scene");

@@ -205,7 +205,8 @@ fn a_project_brings_back_what_was_done() {
     assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
     assert_eq!((session.document.cursor_s, session.workspace), (7.0, Workspace::Calibrate));
     assert_eq!(session.calibration.analysis.as_ref().expect("fitted").fit.value("block-1", "weight_N"), Some(0.5));
-    // A second recording joins the first project_files::add_log(&mut one.other.state_mut().session, &ctx, &log);
+    // A second recording joins the first one.
+    project_files::add_log(&mut other.state_mut().session, &ctx, &log);
     settle(&mut other);
     assert_eq!((other.state().session.document.recordings.len(), other.state().session.document.sources.len()), (2, 2));
 }
