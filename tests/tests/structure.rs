@@ -14,7 +14,7 @@ const CRATES: [&str; 4] = ["haptics", "estimator", "render", "app"];
 const MOST_IN_A_CIRCLE: usize = 5;
 /// Most files of the diagnosis outside its rooms.
 const MOST_FLAT_FILES: usize = 8;
-/// Most lines of a function.
+/// Most lines of a function, arms of a table (one match, one line an arm) not counted.
 const LONGEST_FUNCTION: usize = 60;
 /// Largest share of comments that begin with a relative clause or an ellipsis.
 const MOST_RIDDLES: f64 = 0.03;
@@ -213,7 +213,9 @@ fn functions_fit_a_screen() {
             }
             let close = format!("{}}}", " ".repeat(indent));
             let last = (first..lines.len()).find(|k| lines[*k].starts_with(&close)).unwrap_or(first);
-            let length = last - first + 1;
+            // A table: one match with an arm a line.
+            let arms = lines[first..=last].iter().filter(|l| l.contains(" => ") && l.ends_with(',')).count();
+            let length = last - first + 1 - if lines[first + 1].trim() == "match self {" { arms } else { 0 };
             looked_at += 1;
             assert!(length <= LONGEST_FUNCTION, "{}:{}: {length} lines of a function", shown(&path), first + 1);
         }

@@ -8,7 +8,7 @@ use crate::text::diagnosis_words::{said_in_words, state_in_words};
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
-    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, Residual, RolloutOf, Verdict, diagnose,
+    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, Residual, RolloutOf, Validation, Verdict, diagnose,
     extended_world, validate,
 };
 use estimator::words::amount;
@@ -211,31 +211,32 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
         );
     }
     for (k, other) in diagnosis.validation.iter().enumerate() {
-        let (before, after) = (other.rms_before, other.rms_after);
-        let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
         // An object with one coordinate is compared in the unit of the first recordings.
         let unit = other.unit.as_deref().or(diagnosis.baseline.unit.as_deref());
-        let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
-        let [low, high] = other.interval.map(|share| 100.0 * share);
-        let _ = write!(
-            text,
-            "  validation {}{of}: {} unexplained before, {} after; {:.0} % of its power goes [{low:.0}, {high:.0}]",
-            k + 1,
-            said(before),
-            said(after),
-            100.0 * other.share
-        );
-        let left_out = if other.left_out.is_empty() { String::new() } else { other.left_out.join(", ") };
-        let _ = if left_out.is_empty() {
-            writeln!(text)
-        } else {
-            writeln!(text, "; {left_out} belongs to the first recordings alone, or cannot be shown here")
-        };
+        let _ = writeln!(text, "  validation {}{}", k + 1, validation_line(other, unit));
     }
     for warning in &diagnosis.warnings {
         let _ = writeln!(text, "  ! {warning}");
     }
     text
+}
+
+/// Gain on another recording, after its number.
+fn validation_line(other: &Validation, unit: Option<&str>) -> String {
+    let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
+    let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
+    let [low, high] = other.interval.map(|share| 100.0 * share);
+    let left_out = if other.left_out.is_empty() {
+        String::new()
+    } else {
+        format!("; {} belongs to the first recordings alone, or cannot be shown here", other.left_out.join(", "))
+    };
+    format!(
+        "{of}: {} unexplained before, {} after; {:.0} % of its power goes [{low:.0}, {high:.0}]{left_out}",
+        said(other.rms_before),
+        said(other.rms_after),
+        100.0 * other.share
+    )
 }
 
 /// Residual of a channel in a state.

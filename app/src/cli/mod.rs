@@ -195,33 +195,24 @@ pub fn main() -> ExitCode {
         None => return open_app(AppArgs::default()),
         Some(Command::App(args)) => return open_app(args),
         Some(Command::TorqueGuard { id }) => {
-            return match farewell::guard(std::io::stdin(), std::io::stdout(), id) {
-                Ok(()) => ExitCode::SUCCESS,
-                Err(_) => ExitCode::FAILURE,
-            };
+            let guarded = farewell::guard(std::io::stdin(), std::io::stdout(), id);
+            return if guarded.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
         }
         Some(Command::Demo(args)) => args.run(),
         Some(Command::Info(args)) => args.run(),
         Some(Command::Segment(args)) => args.run(),
         Some(Command::Fit(args)) => args.run(),
         Some(Command::Diagnose(args)) if args.is_fleet() => {
-            return match args.run_fleet() {
-                Ok(None) => ExitCode::SUCCESS,
-                Ok(Some(problem)) => fail(&anyhow::Error::msg(problem)),
-                Err(error) => fail(&error),
-            };
+            return ended(args.run_fleet());
         }
         Some(Command::Diagnose(args)) => args.run(),
         Some(Command::Simulate(args)) => args.run(),
         Some(Command::Report(args)) => {
-            return match args.run() {
-                Ok((output, problem)) => {
-                    output.say(cli.json);
-                    // The page is complete, but a log is missing in it.
-                    problem.map_or(ExitCode::SUCCESS, |problem| fail(&anyhow::Error::msg(problem)))
-                }
-                Err(error) => fail(&error),
-            };
+            // With a problem, the page is complete, but a log is missing in it.
+            return ended(args.run().map(|(output, problem)| {
+                output.say(cli.json);
+                problem
+            }));
         }
         Some(Command::Score(args)) => args.run(),
         Some(Command::History(args)) => args.run(),
@@ -248,6 +239,15 @@ pub fn main() -> ExitCode {
             output.say(cli.json);
             ExitCode::SUCCESS
         }
+        Err(error) => fail(&error),
+    }
+}
+
+/// Exit code of a command that does its work in spite of a problem, and tells it.
+fn ended(problem: anyhow::Result<Option<String>>) -> ExitCode {
+    match problem {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some(problem)) => fail(&anyhow::Error::msg(problem)),
         Err(error) => fail(&error),
     }
 }

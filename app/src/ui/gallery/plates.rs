@@ -88,63 +88,58 @@ fn of_picture(picture: &'static Picture) -> Plate {
 /// The thesis's figures as live views of the scene.
 fn views() -> Vec<Plate> {
     let bare = SceneLayers::default();
-    let view = |name: &str, sample, layers, at_s, line| Plate {
+    let view = |name: &str, sample, layers, line| Plate {
         name: format!("scene-{name}"),
         line,
         size: SCENE,
         picture: &scene::SCENE_PICTURE,
         sample,
         layers,
-        at_s,
+        at_s: None,
     };
+    let unexplained = SceneLayers { unexplained: true, ..bare };
+    let replay = SceneLayers { replay: true, path: false, ..bare };
     vec![
         view(
             "crank",
             Sample::Crank,
             SceneLayers { forces_on_path: true, ..bare },
-            None,
             "A crank: path, force of the hand, found circle and centre (thesis, figure 5.10)",
         ),
         view(
             "crank-unexplained",
             Sample::Crank,
-            SceneLayers { unexplained: true, ..bare },
-            None,
+            unexplained,
             "The force that weight and friction do not explain: the crank's own (figure 5.12)",
         ),
         view(
             "crank-virtual",
             Sample::Crank,
-            SceneLayers { replay: true, path: false, ..bare },
-            None,
+            replay,
             "Real and virtual crank, and how far they are apart (figure 5.22)",
         ),
         view(
             "blocks-virtual",
             Sample::Stack,
-            SceneLayers { replay: true, path: false, ..bare },
-            None,
+            replay,
             "Measured forces beside those of the virtual block (figures 5.18 to 5.21)",
         ),
         view(
             "door",
             Sample::Door,
-            SceneLayers { unexplained: true, ..bare },
-            None,
+            unexplained,
             "A door led by a tool: how well its hinge is known in each direction, and what it bears",
         ),
         view(
             "needle",
             Sample::Needle,
-            SceneLayers { unexplained: true, ..bare },
-            None,
+            unexplained,
             "A needle in its sheet, with the stiffness of the moment (figure 5.14)",
         ),
         view(
             "rail",
             Sample::Rail,
             bare,
-            None,
             "A recording of one coordinate: a carriage on a rail, and the force that pushes it",
         ),
     ]

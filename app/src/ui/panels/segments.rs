@@ -203,9 +203,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     if can_be_set {
         change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
     }
-    if let Some(change) = change {
-        by_hand::set_states(session, &change);
-    }
+    change.iter().for_each(|change| by_hand::set_states(session, change));
     if let Some(time) = seek {
         session.document.seek(time);
     }

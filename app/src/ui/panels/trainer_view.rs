@@ -182,32 +182,10 @@ impl Panel for TrainerView {
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
             session.training.trainer_place = Some(view.place(ui));
             over(ui, &view, session);
-            let held = session.training.trainer.held().is_some();
-            if held {
+            if session.training.trainer.held().is_some() {
                 super::comfort::paused(ui, view.rect, &mut session.training.trainer);
-            } else if session.training.trainer.operator == Operator::You
-                && session.training.trainer.hand != HandDevice::Replay
-            {
-                if let Err(problem) = steering::touches(ui, &view, &mut session.training.trainer) {
-                    session.messages.fail(problem);
-                }
-                steering::keys(ui, &mut session.training.trainer);
-                if matches!(session.training.trainer.steering, Steering::Mouse(_)) {
-                    steer(ui, &view, session, frame_s);
-                }
-                hints(ui, view.rect, &session.training.trainer.hand, session.training.comfort.left_handed);
-                if let Some(hint) = lessons::hint(session) {
-                    pill(ui, view.rect, &hint);
-                } else if let Some((_, world)) =
-                    session.training.trainer.scene().filter(|_| session.experiments.guided.is_none())
-                {
-                    pill(ui, view.rect, task_hint(world));
-                }
             } else {
-                let hint = lessons::hint(session);
-                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.training.trainer)));
-            }
-            if !held {
+                operate(ui, &view, session, frame_s);
                 guide::card(ui, &view, session);
             }
             if let Some(fault) = fault {
@@ -219,6 +197,28 @@ impl Panel for TrainerView {
         } else {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(66));
         }
+    }
+}
+
+/// Lets the trainee steer the fingers, or names the operator that does.
+fn operate(ui: &mut Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
+    if session.training.trainer.operator != Operator::You || session.training.trainer.hand == HandDevice::Replay {
+        let hint = lessons::hint(session);
+        pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.training.trainer)));
+        return;
+    }
+    if let Err(problem) = steering::touches(ui, view, &mut session.training.trainer) {
+        session.messages.fail(problem);
+    }
+    steering::keys(ui, &mut session.training.trainer);
+    if matches!(session.training.trainer.steering, Steering::Mouse(_)) {
+        steer(ui, view, session, frame_s);
+    }
+    hints(ui, view.rect, &session.training.trainer.hand, session.training.comfort.left_handed);
+    if let Some(hint) = lessons::hint(session) {
+        pill(ui, view.rect, &hint);
+    } else if let Some((_, world)) = session.training.trainer.scene().filter(|_| session.experiments.guided.is_none()) {
+        pill(ui, view.rect, task_hint(world));
     }
 }
 

@@ -103,15 +103,7 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     }
     causes.extend(ranking.0.into_iter().map(|(_, cause)| cause));
     let unnamed: Vec<Option<Unnamed>> = parts.iter().map(Part::unnamed).collect();
-    let has_much = |(part, unnamed): (&Part<'_>, &Option<Unnamed>)| {
-        let counts = match part.role {
-            Role::Channel => true,
-            Role::Coordinate => causes.is_empty() && unnamed.is_none(),
-            Role::Path => false,
-        };
-        if counts { part.much_left() } else { None }
-    };
-    let much: Vec<String> = parts.iter().zip(&unnamed).filter_map(has_much).collect();
+    let much = much_left(parts, &unnamed, causes.is_empty());
     let is_strange = !much.is_empty() || unnamed.iter().any(Option::is_some);
     warnings.extend(much);
     alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
@@ -122,14 +114,7 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     let more: Vec<NotExcited> = without_known.filter(is_new).collect();
     not_excited.extend(more);
     let passed_over = unsaid(passed, &causes, &alternatives, &not_excited);
-    let mut terms: Vec<String> = Vec::new();
-    for (part, Unnamed { cause, warning }) in parts.iter().zip(unnamed).filter_map(|(part, u)| Some((part, u?))) {
-        if part.role == Role::Channel || !terms.contains(&cause.id) {
-            terms.push(cause.id.clone());
-            causes.push(cause);
-            warnings.push(warning);
-        }
-    }
+    let terms = add_terms(parts, unnamed, &mut causes, &mut warnings);
     warnings.extend(remarks);
     let open = |alternatives: &[Alternative]| -> Vec<Alternative> {
         let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
@@ -157,6 +142,37 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     };
     let kept = parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect();
     Findings { diagnosis, kept, ..Findings::default() }
+}
+
+/// Sentences on residuals far above the noise. Along one coordinate, a cause or an unnamed term explains them.
+fn much_left(parts: &[Part<'_>], unnamed: &[Option<Unnamed>], no_cause: bool) -> Vec<String> {
+    let of = |(part, unnamed): (&Part<'_>, &Option<Unnamed>)| {
+        let counts = match part.role {
+            Role::Channel => true,
+            Role::Coordinate => no_cause && unnamed.is_none(),
+            Role::Path => false,
+        };
+        if counts { part.much_left() } else { None }
+    };
+    parts.iter().zip(unnamed).filter_map(of).collect()
+}
+
+/// Adds the unnamed terms as causes with their warnings, and returns their ids.
+fn add_terms(
+    parts: &[Part<'_>],
+    unnamed: Vec<Option<Unnamed>>,
+    causes: &mut Vec<Cause>,
+    warnings: &mut Vec<String>,
+) -> Vec<String> {
+    let mut terms: Vec<String> = Vec::new();
+    for (part, Unnamed { cause, warning }) in parts.iter().zip(unnamed).filter_map(|(part, u)| Some((part, u?))) {
+        if part.role == Role::Channel || !terms.contains(&cause.id) {
+            terms.push(cause.id.clone());
+            causes.push(cause);
+            warnings.push(warning);
+        }
+    }
+    terms
 }
 
 /// True if the answer mentions this cause as named or as possible.

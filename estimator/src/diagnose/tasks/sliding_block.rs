@@ -11,7 +11,7 @@ use super::mechanism::rows;
 use super::one_coordinate;
 use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{
-    Alternative, Cause, CauseParameter, Experiment, Gain, NextExperiment, NotExcited, Validation,
+    Alternative, Cause, CauseParameter, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
@@ -253,6 +253,16 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
 /// Causes with a constant force at every position: during motion they are equivalent.
 const CONSTANT: [&str; 2] = [force_bias::ID, friction_asymmetry::ID];
 
+/// Mean force on empty fingers and its standard error, N. One sensor has one bias: a single recording determines it for
+/// all.
+fn of_empty_fingers(read: &[Slid]) -> Option<(f64, f64)> {
+    let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
+    let count = free.len() as f64;
+    let mean = free.iter().map(|f| f.0).sum::<f64>() / count;
+    let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / count;
+    (!free.is_empty()).then_some((mean, error))
+}
+
 /// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
 /// tilted table or to friction by direction. It is ambiguous if the fingers were never empty.
 fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
@@ -260,36 +270,27 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
     let Some(cause) = found.causes.iter_mut().find(named) else { return };
     let Some(b) = cause.parameters.first().cloned() else { return };
     found.alternatives.retain(|a| !CONSTANT.contains(&a.id.as_str()) && a.instead_of != cause.id);
-    let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
-    let mean = free.iter().map(|f| f.0).sum::<f64>() / free.len().max(1) as f64;
-    let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
-    // One sensor, one bias: a single recording with empty fingers determines it for all.
-    let all_free = !free.is_empty();
+    let free = of_empty_fingers(read);
+    let (mean, error) = free.unwrap_or_default();
     let felt = mean.abs() > CONSTANT_STD_ERRORS * error
         && (b.value - mean).abs() < CONSTANT_STD_ERRORS * error.hypot(b.std_error);
-    let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
-        name: name.to_owned(),
-        value,
-        std_error,
-        unit: unit.to_owned(),
-    };
     let of_sensor = |cause: &mut Cause| {
         force_bias::ID.clone_into(&mut cause.id);
         cause.kind = Kind::Instrument;
-        cause.parameters = vec![number("b", b.value, b.std_error, "N")];
+        cause.parameters = vec![parameter("b", b.value, b.std_error, "N")];
     };
-    let (others, motion): (&[&str], &str) = if all_free && felt {
+    let (others, motion): (&[&str], &str) = if free.is_some() && felt {
         of_sensor(cause);
         cause.evidence += "; empty fingers feel it as well";
         (&[], "")
-    } else if all_free {
+    } else if free.is_some() {
         // The table's part is the difference from the reading of empty fingers.
         let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
         gravity_tilt::ID.clone_into(&mut cause.id);
         cause.kind = Kind::Plant;
-        cause.parameters = vec![number("force", tilt_n, error, "N")];
+        cause.parameters = vec![parameter("force", tilt_n, error, "N")];
         if let Some(weight_n) = weight_n.filter(|w| *w > tilt_n.abs()) {
-            cause.parameters.push(number("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
+            cause.parameters.push(parameter("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
         }
         cause.evidence = format!(
             "the sliding block is drawn to one side by {:.3} N, and empty fingers feel none of it",

@@ -59,15 +59,8 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
         ..Evidence::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
-        let within = ground.compared.study.has(fingertip_slip::ID);
         let scaled = grasp.as_ref().is_some_and(|g| g.has(length_scale::ID));
-        match regrasp::moved(ground, &seen, world) {
-            Some(cause) if scaled || carry.has(force_cross_axis::ID) => beside.warnings.push(format!(
-                "{}; what is wrong with the sensors would do the same, so no slip is named",
-                cause.evidence
-            )),
-            cause => beside.causes.extend(cause.filter(|_| !within)),
-        }
+        regrasped(ground, &seen, world, scaled || carry.has(force_cross_axis::ID), &mut beside);
     }
     unseen(&seen, &mut beside.not_excited);
     let carry_states = |_: usize, c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
@@ -106,6 +99,23 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)
+}
+
+/// Adds a slip between pick-up and placement. `faulty`: sensor faults were found that have the same effect.
+fn regrasped(
+    ground: &standing_height::Ground,
+    seen: &[Seen<'_>],
+    world: &World,
+    faulty: bool,
+    beside: &mut Evidence<'_>,
+) {
+    let within = ground.compared.study.has(fingertip_slip::ID);
+    match regrasp::moved(ground, seen, world) {
+        Some(cause) if faulty => beside
+            .warnings
+            .push(format!("{}; what is wrong with the sensors would do the same, so no slip is named", cause.evidence)),
+        cause => beside.causes.extend(cause.filter(|_| !within)),
+    }
 }
 
 /// Comparisons of net force, grip width and grip height.

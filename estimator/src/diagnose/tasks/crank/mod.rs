@@ -29,36 +29,7 @@ use haptics::recording::Recording;
 
 /// Diagnoses recordings of one crank.
 pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    let mut tracks = Vec::new();
-    let (mut paths, mut short) = (Vec::<PathFit>::new(), Vec::new());
-    let mut faults = Vec::new();
-    let mut swapped = Vec::new();
-    let mut link = None;
-    let mut scale = None;
-    for (k, recording) in recordings.iter().enumerate() {
-        options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
-        let found = sample_faults::faults(recording);
-        let (upright, mirrored, looked) = axis_signs::of_crank(recording, &found.bad)?;
-        let recording = &upright;
-        let axis_signs::Looked { signals, circle, rows, axis } = looked;
-        faults.extend(mirrored);
-        faults.extend(found.causes);
-        faults.extend(axis);
-        let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
-        rows.extra = vec![covariates::of(recording)];
-        link = link.or(of_this);
-        // The same recording with an error of the other link's angle.
-        swapped.push(other.map(|other| regression_data::Track { extra: rows.extra.clone(), ..other }));
-        let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
-        if scale.is_none() {
-            scale = known_m.and_then(|r| sample_faults::scaled("radius", circle.too_large(r)?));
-        }
-        tracks.push(rows);
-        let path = signals.path(recording);
-        short.extend(path_residual::short_arc(&path, &circle.arm, &circle.study));
-        let terms = path_residual::unexplained(&path, &circle.arm, &circle.study);
-        paths.push(PathFit { study: circle.study, terms });
-    }
+    let Geometry { tracks, swapped, paths, short, faults, mut link, scale } = geometry(recordings, options)?;
     let other = swapped.iter().any(Option::is_some).then(|| {
         let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
         regression_data::join(either.collect())
@@ -110,6 +81,51 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         found.atlas = atlas::atlas(&track, &study);
     }
     found.delay.guess_s = time_delay::guess_s(&track, &model);
+    Ok(found)
+}
+
+/// Geometry of all recordings, with the rows on their circles.
+#[derive(Default)]
+struct Geometry {
+    tracks: Vec<regression_data::Track>,
+    /// The same rows with an error of the other link's angle, if one link's angle has an error.
+    swapped: Vec<Option<regression_data::Track>>,
+    paths: Vec<PathFit>,
+    /// Warnings of arcs that are too short for a circle.
+    short: Vec<String>,
+    faults: Vec<Cause>,
+    /// The link whose angle has an error.
+    link: Option<Link>,
+    /// A scale of all lengths, by a known radius.
+    scale: Option<Cause>,
+}
+
+fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, EstimateError> {
+    let mut found = Geometry::default();
+    for (k, recording) in recordings.iter().enumerate() {
+        options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
+        let of_samples = sample_faults::faults(recording);
+        let (upright, mirrored, looked) = axis_signs::of_crank(recording, &of_samples.bad)?;
+        let recording = &upright;
+        let axis_signs::Looked { signals, circle, rows, axis } = looked;
+        found.faults.extend(mirrored);
+        found.faults.extend(of_samples.causes);
+        found.faults.extend(axis);
+        let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
+        rows.extra = vec![covariates::of(recording)];
+        found.link = found.link.or(of_this);
+        // The same recording with an error of the other link's angle.
+        found.swapped.push(other.map(|other| regression_data::Track { extra: rows.extra.clone(), ..other }));
+        let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
+        if found.scale.is_none() {
+            found.scale = known_m.and_then(|r| sample_faults::scaled("radius", circle.too_large(r)?));
+        }
+        found.tracks.push(rows);
+        let path = signals.path(recording);
+        found.short.extend(path_residual::short_arc(&path, &circle.arm, &circle.study));
+        let terms = path_residual::unexplained(&path, &circle.arm, &circle.study);
+        found.paths.push(PathFit { study: circle.study, terms });
+    }
     Ok(found)
 }
 

@@ -161,12 +161,7 @@ impl Needle {
 pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let along = along(recording)?;
     let pushes = pushes(&along);
-    if pushes.is_empty() {
-        return Err(EstimateError::Other(format!(
-            "no push into an untouched sheet was seen in {}; push the held needle in from outside",
-            recording.name
-        )));
-    }
+    demand_a_push(&pushes, recording)?;
     let sheet = Sheet::of(&along, &pushes)?;
     let time = times(recording);
     let own: Vec<f64> = along.depth_m.iter().zip(&along.force_n).map(|(d, f)| d - along.give_m_n.0 * f).collect();
@@ -179,11 +174,9 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
     let between = Between::new(&time, &depth, surface_m, &in_hole, half);
     let step_s = mean_step_s(&time);
-    let (mut rows, mut of_row): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
-    for (i, of) in phases.iter().enumerate().step_by(stride) {
-        let Some((phase, hold, push, deepest)) = *of else { continue };
-        of_row.push(i);
-        rows.push(Row {
+    let row = |(i, of): (usize, &Of)| {
+        let (phase, hold, push, deepest) = (*of)?;
+        let row = Row {
             recording: 0,
             start_s: 0.0,
             time_s: time[i] - time[0],
@@ -198,16 +191,19 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
             deepest_m: deepest - surface_m,
             stretch: 0,
             span: if phase == Phase::Hole { between.span(i) } else { Span::default() },
-        });
-    }
+        };
+        Some((row, i))
+    };
+    let (mut rows, of_row): (Vec<Row>, Vec<usize>) = phases.iter().enumerate().step_by(stride).filter_map(row).unzip();
     let period_s = stride as f64 * step_s;
     number_segments(&mut rows, period_s);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
-    let punctures = pushes.iter().filter_map(|p| Some((p, p.puncture?))).map(|(push, i)| {
+    let puncture = |push: &Push| {
+        let i = push.puncture?;
         let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
         let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
-        Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold }
-    });
+        Some(Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold })
+    };
     let mut seen = Needle {
         rows,
         fine: between.points,
@@ -219,11 +215,23 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         stiffness_n_m: sheet.loading.stiffness_n_m,
         rate_noise_m_s,
         slope_noise_m_s: slope_noise(&own, half, step_s),
-        punctures: punctures.collect(),
+        punctures: pushes.iter().filter_map(puncture).collect(),
         late: None,
     };
     seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
     Ok(seen)
+}
+
+/// # Errors
+/// A recording without a push from outside: in a sentence.
+fn demand_a_push(pushes: &[Push], recording: &Recording) -> Result<(), EstimateError> {
+    if pushes.is_empty() {
+        return Err(EstimateError::Other(format!(
+            "no push into an untouched sheet was seen in {}; push the held needle in from outside",
+            recording.name
+        )));
+    }
+    Ok(())
 }
 
 /// Mean time between samples, s.
