@@ -84,50 +84,38 @@ impl Ranking {
 
 /// The answer of one or several channels.
 pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
-    let Evidence { model, mut causes, mut alternatives, mut not_excited, mut warnings, remarks, .. } = evidence;
-    let (mut ranking, mut passed) = (Ranking::default(), Vec::<PassedOver>::new());
-    for part in parts {
-        for (k, chosen) in part.study.chosen.iter().enumerate() {
-            if let Some(excuse) = (part.excuse)(k) {
-                warnings.push(excuse);
-            } else if ranking.add(part.role, chosen.score, part.cause(k)) {
-                alternatives.extend(rivals(part.study, chosen));
-            }
-        }
-        if part.role != Role::Path {
-            let mut more = part.not_excited();
-            more.retain(|n| not_excited.iter().all(|other| other.id != n.id));
-            not_excited.extend(more);
-            join(&mut passed, passed_over(part.study));
-        }
-    }
-    causes.extend(ranking.0.into_iter().map(|(_, cause)| cause));
-    let unnamed: Vec<Option<Unnamed>> = parts.iter().map(Part::unnamed).collect();
-    let much = much_left(parts, &unnamed, causes.is_empty());
-    let is_strange = !much.is_empty() || unnamed.iter().any(Option::is_some);
-    warnings.extend(much);
+    let Evidence { model, mut causes, mut alternatives, not_excited, mut warnings, remarks, .. } = evidence;
+    let compared = compare(parts, not_excited);
+    warnings.extend(compared.excuses);
+    causes.extend(compared.ranking.0.into_iter().map(|(_, cause)| cause));
+    alternatives.extend(compared.alternatives);
     alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
-    not_excited.retain(|n| !is_said(&n.id, &causes, &alternatives));
-    let without_known = evidence.without_known.into_iter();
-    let is_new =
-        |n: &NotExcited| !is_said(&n.id, &causes, &alternatives) && not_excited.iter().all(|other| other.id != n.id);
-    let more: Vec<NotExcited> = without_known.filter(is_new).collect();
-    not_excited.extend(more);
-    let passed_over = unsaid(passed, &causes, &alternatives, &not_excited);
-    let terms = add_terms(parts, unnamed, &mut causes, &mut warnings);
+    let is_said = |id: &str| causes.iter().any(|c| c.id == id) || alternatives.iter().any(|a| a.id == id);
+    let mut not_excited = compared.not_excited;
+    not_excited.retain(|n| !is_said(&n.id));
+    let unknown = evidence.without_known.into_iter().filter(|n| !is_said(&n.id));
+    add_new(&mut not_excited, unknown.collect());
+    let passed_over = unsaid(compared.passed, &causes, &alternatives, &not_excited);
+    let mut left = left_over(parts, causes.is_empty());
+    warnings.append(&mut left.much);
+    let is_strange = left.is_strange;
+    let terms: Vec<String> = left.unnamed.iter().map(|u| u.cause.id.clone()).collect();
+    for Unnamed { cause, warning } in left.unnamed {
+        causes.push(cause);
+        warnings.push(warning);
+    }
     warnings.extend(remarks);
-    let open = |alternatives: &[Alternative]| -> Vec<Alternative> {
-        let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
-        alternatives.iter().filter(|a| a.posterior > limit).cloned().collect()
-    };
-    let next = (evidence.next)(&open(&alternatives));
+    let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
+    let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > limit).cloned().collect();
+    let next = (evidence.next)(&open);
     let mut named = Named { causes, alternatives, not_excited, next };
     (evidence.reads)(&mut named);
     let Named { causes, alternatives, not_excited, next } = named;
     let is_named = causes.iter().any(|c| !terms.contains(&c.id));
+    let is_open = alternatives.iter().any(|a| a.posterior > limit);
     let Figures { baseline, end, noise_floor } = told(parts).map_or(evidence.figures, Part::figures);
     let diagnosis = Diagnosis {
-        verdict: verdict(is_named, is_strange, !open(&alternatives).is_empty()),
+        verdict: verdict(is_named, is_strange, is_open),
         baseline: Baseline { model, ..baseline },
         noise_floor_n: noise_floor,
         residuals: parts.iter().flat_map(Part::residuals).collect(),
@@ -144,40 +132,69 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     Findings { diagnosis, kept, ..Findings::default() }
 }
 
-/// Sentences on residuals far above the noise. Along one coordinate, a cause or an unnamed term explains them.
-fn much_left(parts: &[Part<'_>], unnamed: &[Option<Unnamed>], no_cause: bool) -> Vec<String> {
-    let of = |(part, unnamed): (&Part<'_>, &Option<Unnamed>)| {
-        let counts = match part.role {
-            Role::Channel => true,
-            Role::Coordinate => no_cause && unnamed.is_none(),
-            Role::Path => false,
-        };
-        if counts { part.much_left() } else { None }
-    };
-    parts.iter().zip(unnamed).filter_map(of).collect()
+/// Results of the comparisons of all parts.
+struct Compared {
+    ranking: Ranking,
+    alternatives: Vec<Alternative>,
+    not_excited: Vec<NotExcited>,
+    passed: Vec<PassedOver>,
+    /// Warnings about chosen terms that are no causes.
+    excuses: Vec<String>,
 }
 
-/// Adds the unnamed terms as causes with their warnings, and returns their ids.
-fn add_terms(
-    parts: &[Part<'_>],
-    unnamed: Vec<Option<Unnamed>>,
-    causes: &mut Vec<Cause>,
-    warnings: &mut Vec<String>,
-) -> Vec<String> {
-    let mut terms: Vec<String> = Vec::new();
-    for (part, Unnamed { cause, warning }) in parts.iter().zip(unnamed).filter_map(|(part, u)| Some((part, u?))) {
-        if part.role == Role::Channel || !terms.contains(&cause.id) {
-            terms.push(cause.id.clone());
-            causes.push(cause);
-            warnings.push(warning);
+/// `not_excited`: causes that the task knows to be hidden.
+fn compare(parts: &[Part<'_>], not_excited: Vec<NotExcited>) -> Compared {
+    let (ranking, alternatives, passed, excuses) = (Ranking::default(), Vec::new(), Vec::new(), Vec::new());
+    let mut all = Compared { ranking, alternatives, not_excited, passed, excuses };
+    for part in parts {
+        for (k, chosen) in part.study.chosen.iter().enumerate() {
+            if let Some(excuse) = (part.excuse)(k) {
+                all.excuses.push(excuse);
+            } else if all.ranking.add(part.role, chosen.score, part.cause(k)) {
+                all.alternatives.extend(rivals(part.study, chosen));
+            }
+        }
+        if part.role != Role::Path {
+            add_new(&mut all.not_excited, part.not_excited());
+            join(&mut all.passed, passed_over(part.study));
         }
     }
-    terms
+    all
 }
 
-/// True if the answer mentions this cause as named or as possible.
-fn is_said(id: &str, causes: &[Cause], alternatives: &[Alternative]) -> bool {
-    causes.iter().any(|c| c.id == id) || alternatives.iter().any(|a| a.id == id)
+/// Adds the causes that are not there yet.
+fn add_new(all: &mut Vec<NotExcited>, mut more: Vec<NotExcited>) {
+    more.retain(|n| all.iter().all(|other| other.id != n.id));
+    all.append(&mut more);
+}
+
+/// Parts of the residuals that no known cause explains.
+struct Left {
+    /// Sentences on large residuals.
+    much: Vec<String>,
+    /// Generic terms; of a path only those that no other part has.
+    unnamed: Vec<Unnamed>,
+    is_strange: bool,
+}
+
+/// `is_nothing_named`: a large residual along a coordinate is then told.
+fn left_over(parts: &[Part<'_>], is_nothing_named: bool) -> Left {
+    let mut left = Left { much: Vec::new(), unnamed: Vec::new(), is_strange: false };
+    for part in parts {
+        let unnamed = part.unnamed();
+        let may_be_much = match part.role {
+            Role::Channel => true,
+            Role::Coordinate => is_nothing_named && unnamed.is_none(),
+            Role::Path => false,
+        };
+        let much = if may_be_much { part.much_left() } else { None };
+        left.is_strange |= much.is_some() || unnamed.is_some();
+        left.much.extend(much);
+        let is_new = |u: &Unnamed| part.role == Role::Channel || left.unnamed.iter().all(|o| o.cause.id != u.cause.id);
+        let unnamed = unnamed.filter(is_new);
+        left.unnamed.extend(unnamed);
+    }
+    left
 }
 
 /// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.

@@ -111,11 +111,8 @@ fn of_picks(
     let (mut acts, mut sum) = (Some(Vec::new()), Some(SensorFault::default()));
     for ((study, channel), picks) in channels.iter().zip(picks) {
         let solved = study.system.solve(picks)?;
-        let mut at = study.base.len();
-        let mut own = channel.base(&solved.values[..at]);
-        for candidate in picks.iter().map(|p| &study.candidates[*p]) {
-            let values = &solved.values[at..at + candidate.columns.len()];
-            at += candidate.columns.len();
+        let mut own = channel.base(&solved.values[..study.base.len()]);
+        for (candidate, values) in study.with_values(picks, &solved.values) {
             match channel.act(candidate, values) {
                 _ if candidate.kind != Kind::Plant => {}
                 Some(act) => own.push(act),
@@ -142,15 +139,8 @@ fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> 
 /// The same, added to other faults.
 fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;
-    let mut at = study.base.len();
-    for candidate in picks.iter().map(|p| &study.candidates[*p]) {
-        let end = at + candidate.columns.len();
-        if candidate.kind == Kind::Instrument && !add_to_fault(&mut sum, candidate, &values[at..end]) {
-            return None;
-        }
-        at = end;
-    }
-    Some(sum)
+    let mut faults = study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Instrument);
+    faults.all(|(fault, values)| add_to_fault(&mut sum, fault, values)).then_some(sum)
 }
 
 /// Equivalent force of a tilted plane: w cos θ + a sin θ = W cos(θ − δ). `None` without an eccentric mass on a circle.

@@ -1,7 +1,7 @@
 //! Laws along one coordinate, over the locked blocks.
 
 use super::integrate::{Moment, Side as Driven, run};
-use super::windows::{Compared, LEAST_WINDOWS, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, TOO_FEW, told};
+use super::windows::{Compared, Errors, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
@@ -9,6 +9,7 @@ use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::Study;
 use crate::diagnose::selection::normal_equations::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
+use std::ops::Range;
 
 /// Largest deviation of the laws from the regressors, as a share of the cause's effect.
 const FAITHFUL: f64 = 0.5;
@@ -33,15 +34,15 @@ pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<
     if !(faithful(track, study, &without, &with) && faithful(track, study, &with, &without)) {
         return Err(NOT_FAITHFUL.to_owned());
     }
-    let windows = windows(track, study);
-    if windows.len() < LEAST_WINDOWS {
-        return Err(TOO_FEW.to_owned());
-    }
     let driven = inertia(&without.effects) > 0.0 && inertia(&with.effects) > 0.0 && !track.planar;
-    let errors = |side: &Side| -> Vec<(f64, f64)> {
-        let starts = memories(track, &side.effects);
-        windows.iter().map(|window| over(track, side, window.clone(), &starts[window.start], driven)).collect()
+    let sides = [&without, &with].map(|side| (side, memories(track, &side.effects)));
+    let errors = |window: Range<usize>| {
+        [0, 1].map(|k| {
+            let (side, starts) = &sides[k];
+            over(track, side, window.clone(), &starts[window.start], driven)
+        })
     };
+    let windows: Vec<[Errors; 2]> = windows(track, study).into_iter().map(errors).collect();
     let unit = match (driven, track.coordinate) {
         (true, Coordinate::Linear) => "m",
         (true, Coordinate::Angular) => "rad",
@@ -49,7 +50,7 @@ pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<
         (false, Coordinate::Angular) => "N m",
     };
     let of = if driven { RolloutOf::Position } else { RolloutOf::Force };
-    told(&Compared { of, unit, window_s: ROLLOUT_WINDOW_S, in_turn: false }, &errors(&without), &errors(&with))
+    told(&Compared { of, unit, window_s: ROLLOUT_WINDOW_S, in_turn: false }, &windows)
 }
 
 fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
@@ -86,8 +87,8 @@ fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
 }
 
 /// Rows along the motion that follow each other.
-fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
-    let mut found: Vec<std::ops::Range<usize>> = Vec::new();
+fn stretches(track: &Track) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
     for i in track.along() {
         match found.last_mut() {
             Some(last) if last.end == i && track.follows(i) => last.end = i + 1,
@@ -98,7 +99,7 @@ fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
 }
 
 /// Segments of the locked blocks.
-fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
+fn windows(track: &Track, study: &Study) -> Vec<Range<usize>> {
     let rows = (ROLLOUT_WINDOW_S / track.period_s).round().max(4.0) as usize;
     let mut found = Vec::new();
     for stretch in stretches(track) {
@@ -139,7 +140,7 @@ fn memories(track: &Track, effects: &[Effect]) -> Vec<Memories> {
 }
 
 /// Sum of the squared errors over a window, and their number.
-fn over(track: &Track, side: &Side, window: std::ops::Range<usize>, start: &Memories, driven: bool) -> (f64, f64) {
+fn over(track: &Track, side: &Side, window: Range<usize>, start: &Memories, driven: bool) -> Errors {
     let moment = |i: usize| Moment { motion: track.rows[i].motion, drive: side.drive[i], beside: [0.0; 2] };
     let moments: Vec<Moment> = window.map(moment).collect();
     let nothing = &mut |_: &Motion, _: [f64; 2]| 0.0;

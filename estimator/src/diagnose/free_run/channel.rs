@@ -2,7 +2,7 @@
 //! no window is left that took part in nothing. Each window is left out of the fit in turn; its rows took part in the
 //! choice.
 
-use super::windows::{Compared, ROLLOUT_WINDOW_S, told};
+use super::windows::{Compared, Errors, ROLLOUT_WINDOW_S, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::selection::comparison::Study;
 
@@ -27,7 +27,7 @@ pub trait Forward {
     }
     /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
     /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String>;
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<Errors, String>;
 }
 
 /// Columns of the model and of the candidates with their values.
@@ -64,14 +64,14 @@ pub fn in_turn(study: &Study, channel: &dyn Forward, k: usize) -> Result<Rollout
     let mut windows = channel.windows();
     windows.retain(|w| w.iter().filter(acts).count() as f64 >= ACTS * w.len() as f64);
     let every = windows.len().div_ceil(MOST_WINDOWS).max(1);
-    let (mut before, mut after) = (Vec::new(), Vec::new());
+    let mut compared: Vec<[Errors; 2]> = Vec::new();
     for window in windows.iter().step_by(every) {
         let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
         // A value that only this window determines is unknown without it.
         let (Some(without), Some(with)) = solved else { continue };
-        before.push(channel.errors(study, window, &rest, &without)?);
-        after.push(channel.errors(study, window, &picks, &with)?);
+        let errors = |picks: &[usize], values: &[f64]| channel.errors(study, window, picks, values);
+        compared.push([errors(&rest, &without)?, errors(&picks, &with)?]);
     }
     let (of, unit) = channel.of();
-    told(&Compared { of, unit, window_s: channel.window_s(), in_turn: true }, &before, &after)
+    told(&Compared { of, unit, window_s: channel.window_s(), in_turn: true }, &compared)
 }

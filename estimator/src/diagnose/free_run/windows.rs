@@ -11,7 +11,7 @@ use crate::diagnose::selection::held_out_gain::DRAWS;
 /// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const ROLLOUT_WINDOW_S: f64 = 0.5;
 /// Fewer windows say nothing.
-pub(crate) const LEAST_WINDOWS: usize = 3;
+const LEAST_WINDOWS: usize = 3;
 /// Relative difference of errors up to which they count as equal.
 const DIFFER: f64 = 1e-3;
 /// Reasons why there is no free run.
@@ -37,18 +37,21 @@ pub struct Compared<'a> {
     pub in_turn: bool,
 }
 
-/// Errors without and with a cause, as sums of squares and numbers of moments, window by window.
-pub fn told(what: &Compared<'_>, before: &[(f64, f64)], after: &[(f64, f64)]) -> Result<Rollout, String> {
-    if before.len() < LEAST_WINDOWS {
+/// Sum of the squared errors over a window, and their number.
+pub type Errors = (f64, f64);
+
+/// Rollout of the errors without and with a cause, window by window.
+pub fn told(what: &Compared<'_>, windows: &[[Errors; 2]]) -> Result<Rollout, String> {
+    if windows.len() < LEAST_WINDOWS {
         return Err(TOO_FEW.to_owned());
     }
-    let all: Vec<usize> = (0..before.len()).collect();
-    let mean = |of: &[(f64, f64)], drawn: &[usize]| {
-        let (sum, count) = drawn.iter().fold((0.0, 0.0), |(s, n), w| (s + of[*w].0, n + of[*w].1));
+    let all: Vec<usize> = (0..windows.len()).collect();
+    let mean = |side: usize, drawn: &[usize]| {
+        let (sum, count) = drawn.iter().map(|w| windows[*w][side]).fold((0.0, 0.0), |(s, n), e| (s + e.0, n + e.1));
         sum / f64::max(count, 1.0)
     };
-    let share = |drawn: &[usize]| 1.0 - mean(after, drawn) / mean(before, drawn).max(1e-300);
-    let (rms_before, rms_after) = (mean(before, &all).sqrt(), mean(after, &all).sqrt());
+    let share = |drawn: &[usize]| 1.0 - mean(1, drawn) / mean(0, drawn).max(1e-300);
+    let [rms_before, rms_after] = [0, 1].map(|side| mean(side, &all).sqrt());
     if !(rms_before.is_finite() && rms_after.is_finite()) {
         return Err("the laws do not stay where anything was measured".to_owned());
     }
@@ -59,7 +62,7 @@ pub fn told(what: &Compared<'_>, before: &[(f64, f64)], after: &[(f64, f64)]) ->
         of: what.of,
         unit: what.unit.to_owned(),
         window_s: what.window_s,
-        windows: before.len(),
+        windows: windows.len(),
         rms_before,
         rms_after,
         share: share(&all),

@@ -49,12 +49,5 @@ fn is_steady(study: &Study, k: usize) -> bool {
 
 /// A chosen cause whose estimate no longer fits its name after another one was removed.
 fn impossible(study: &Study) -> Option<usize> {
-    let values = &study.solved.as_ref()?.values;
-    let mut at = study.system.base;
-    study.chosen.iter().position(|chosen| {
-        let candidate = &study.candidates[chosen.candidate];
-        let own = at..at + candidate.columns.len();
-        at = own.end;
-        !candidate.admits(&values[own])
-    })
+    study.found().iter().position(|(candidate, values)| !candidate.admits(values))
 }

@@ -41,10 +41,28 @@ pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
     study.found().into_iter().map(of).collect()
 }
 
+/// Sum of the effects of these causes on the rows of another recording; `None` without any. `left_out`: takes those
+/// that have no candidate there.
+pub fn effect<'a>(
+    kept: impl Iterator<Item = &'a Kept>,
+    candidates: &[Candidate],
+    left_out: &mut Vec<String>,
+) -> Option<Vec<f64>> {
+    let mut sum: Option<Vec<f64>> = None;
+    for cause in kept {
+        match (cause.column(candidates), &mut sum) {
+            (Some(column), Some(sum)) => sum.iter_mut().zip(column).for_each(|(s, c)| *s += c),
+            (column @ Some(_), None) => sum = column,
+            (None, _) => left_out.push(cause.id.to_owned()),
+        }
+    }
+    sum
+}
+
 impl Kept {
     /// Effect of the cause on the rows of another recording, from the candidates there; `None` if it has no candidate
     /// there.
-    pub fn column(&self, candidates: &[Candidate]) -> Option<Vec<f64>> {
+    fn column(&self, candidates: &[Candidate]) -> Option<Vec<f64>> {
         if self.searched.iter().any(|s| OF_ONE_RECORDING.contains(&s.name)) {
             return None;
         }
@@ -82,29 +100,21 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
     sorted.sort_by_key(|c| place(c));
     for channel in sorted {
         let study = &channel.study;
-        let mut sum = vec![0.0; study.y.len()];
-        let mut is_any = false;
-        for cause in kept.iter().filter(|k| k.channel == channel.channel) {
-            match cause.column(&study.candidates) {
-                Some(column) => {
-                    sum.iter_mut().zip(column).for_each(|(s, c)| *s += c);
-                    is_any = true;
-                }
-                None => left_out.push(cause.id.to_owned()),
-            }
-        }
+        let own = kept.iter().filter(|k| k.channel == channel.channel);
+        let sum = effect(own, &study.candidates, &mut left_out);
+        let is_any = sum.is_some();
         // Without causes, the figures are of the first channel.
         if found.as_ref().is_some_and(|v| v.of.is_some()) || (found.is_some() && !is_any) {
             continue;
         }
-        let after: Vec<f64> = study.y.iter().zip(&sum).map(|(y, s)| y - s).collect();
+        let after = sum.map_or_else(|| study.y.clone(), |s| study.y.iter().zip(&s).map(|(y, s)| y - s).collect());
         // Rows that are held out in turn represent their neighbours. Other rows of the channel (empty fingers) count
         // with them.
         let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
         found = Some(Validation {
             of: is_any.then(|| channel.channel.to_owned()),
             unit: is_any.then(|| channel.unit.to_owned()),
-            ..compared(&open(channel, &study.y)?, &open(channel, &after)?, &squares)
+            ..compared(&open(study, &study.y)?, &open(study, &after)?, &squares)
         });
     }
     let missing = kept.iter().filter(|k| channels.iter().all(|c| c.channel != k.channel));
@@ -115,8 +125,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
 }
 
 /// Residual of a target after a fit of the base model, row by row.
-fn open(channel: &Compared, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
-    let study = &channel.study;
+fn open(study: &Study, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
     let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let mut left = y.to_vec();

@@ -1,6 +1,6 @@
 //! Gain of the extended model on other recordings, without any fit to them.
 
-use super::fitted_terms::Kept;
+use super::fitted_terms::{Kept, effect};
 use crate::diagnose::contract::Validation;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data::{Place, Track};
@@ -63,26 +63,23 @@ fn predicted(track: &Track, effects: &[Effect]) -> Vec<f64> {
         .collect()
 }
 
-/// Contribution of the found sensor faults to the rows. `known`: forces that are completely known.
-fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], left_out: &mut Vec<String>) -> Vec<f64> {
-    let mut sum = vec![0.0; track.rows.len()];
-    let of_sensors: Vec<&Kept> = kept.iter().filter(|k| k.kind == Kind::Instrument).collect();
-    if of_sensors.is_empty() {
-        return sum;
-    }
+/// Contribution of the found sensor faults to the rows; `None` without any. `known`: forces that are completely known.
+fn faults(
+    track: &Track,
+    predicted: &[f64],
+    known: &[Effect],
+    kept: &[Kept],
+    left_out: &mut Vec<String>,
+) -> Option<Vec<f64>> {
+    let mut of_sensors = kept.iter().filter(|k| k.kind == Kind::Instrument).peekable();
+    of_sensors.peek()?;
     let grid = Grid::coarse(track);
     let fixed: Vec<Vec<f64>> = known.iter().map(|e| column(track, e)).collect();
     let (resisting, dry) = (predicted, &dry_of(track, predicted));
     let columns = &Columns::default();
     let dictionary =
         Dictionary { track, predicted, resisting, dry, fixed: &fixed, without: &[], grid: &grid, columns }.candidates();
-    for fault in of_sensors {
-        match fault.column(&dictionary) {
-            Some(column) => sum.iter_mut().zip(column).for_each(|(s, c)| *s += c),
-            None => left_out.push(fault.id.to_owned()),
-        }
-    }
-    sum
+    effect(of_sensors, &dictionary, left_out)
 }
 
 /// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count
@@ -93,7 +90,7 @@ pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &
     let (without, mut with) = (of(track, before), of(track, after));
     let mut left_out = Vec::new();
     let sensed = faults(track, &with, known, kept, &mut left_out);
-    with.iter_mut().zip(sensed).for_each(|(w, s)| *w += s);
+    with.iter_mut().zip(sensed.into_iter().flatten()).for_each(|(w, s)| *w += s);
     let along = || track.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along);
     let weight: Vec<f64> = along().map(|(_, r)| r.motion.direction.powi(4)).collect();
     let left = |model: &[f64]| -> Vec<f64> { along().map(|(i, r)| r.y - model[i]).collect() };

@@ -194,7 +194,7 @@ fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
 impl Grasp {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
-        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
+        self.compared.study.has(id)
     }
 
     /// For the answer.
@@ -222,16 +222,8 @@ impl Grasp {
 
     /// Compliance of one pad at zero force, m/N: as found, or as in the model.
     fn first_give(&self) -> f64 {
-        let Some(solved) = &self.compared.study.solved else { return self.modelled };
-        let mut at = self.compared.study.base.len();
-        for chosen in &self.compared.study.chosen {
-            let candidate = &self.compared.study.candidates[chosen.candidate];
-            if candidate.id == pad_compliance::ID {
-                return solved.values[at];
-            }
-            at += candidate.columns.len();
-        }
-        self.modelled
+        let found = self.compared.study.found();
+        found.iter().find(|(c, _)| c.id == pad_compliance::ID).map_or(self.modelled, |(_, values)| values[0])
     }
 
     /// Sentence on how the residual shows a cause.

@@ -62,8 +62,7 @@ pub fn curve(
     period_s: f64,
     rules: Rules,
 ) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
-    let viscous =
-        push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == viscous_friction::ID);
+    let viscous = push.compared.study.has(viscous_friction::ID);
     let mut times = Vec::new();
     let mut points = Vec::new();
     for (row, found_n) in &push.rows {

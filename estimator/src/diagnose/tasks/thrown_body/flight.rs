@@ -1,7 +1,7 @@
 //! Scale of the lengths from free fall, whose acceleration is g.
 
 use crate::diagnose::contract::{Alternative, Cause, Gain, RolloutOf, parameter};
-use crate::diagnose::free_run::windows::{Compared, told};
+use crate::diagnose::free_run::windows::{Compared, Errors, told};
 use crate::diagnose::hypotheses::{channel_fault, length_scale};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::selection::rules::THRESHOLD;
@@ -108,8 +108,8 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     // A flight is tied to the measurement only by its start, which is fitted.
     let mean_s = tracks.iter().map(|t| t.time_s[end(t).max(1) - 1] - t.time_s[0]).sum::<f64>() / tracks.len() as f64;
     let what = Compared { of: RolloutOf::Position, unit: "m", window_s: mean_s, in_turn: false };
-    let errors = |k: usize| squares.iter().map(|s| (s[k], s[3])).collect::<Vec<(f64, f64)>>();
-    let forward = told(&what, &errors(0), &errors(1));
+    let errors: Vec<[Errors; 2]> = squares.iter().map(|s| [(s[0], s[3]), (s[1], s[3])]).collect();
+    let forward = told(&what, &errors);
     // Leaving out one flight after the other (jackknife).
     let n = squares.len() as f64;
     let parts: Vec<f64> = (0..squares.len())

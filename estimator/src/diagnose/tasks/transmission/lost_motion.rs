@@ -75,7 +75,7 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
         };
         let searched = tried[0].values().iter().map(gap).chain(tried[1].values().iter().map(bend));
         let candidates = searched.chain(plain.iter().cloned()).collect();
-        fit(of(&|r| r.output), &base, candidates, &rows)
+        fit(of(&|r| r.output), &base, candidates, rows)
     };
     let mut tried = [backlash::ID, hysteresis::ID].map(|id| Tried::new(id, high - low));
     let study = closer(&mut tried, &once)?;
