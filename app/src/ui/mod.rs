@@ -43,6 +43,7 @@ pub mod keys;
 pub mod learning;
 pub mod lessons;
 pub mod mapping;
+pub mod mapping_actions;
 pub mod markdown;
 pub mod menu;
 pub mod message_list;

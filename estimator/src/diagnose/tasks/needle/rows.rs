@@ -164,16 +164,14 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     demand_a_push(&pushes, recording)?;
     let sheet = Sheet::of(&along, &pushes)?;
     let time = times(recording);
+    let (half, step_s) = (half_width(&time), mean_step_s(&time));
     let own: Vec<f64> = along.depth_m.iter().zip(&along.force_n).map(|(d, f)| d - along.give_m_n.0 * f).collect();
     let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
     let acceleration = smooth(&time, &depth.slope).slope;
     let surface_m = sheet.loading.surface_m;
     let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
-    let half = half_width(&time);
-    let stride = 2 * half;
     let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
     let between = Between::new(&time, &depth, surface_m, &in_hole, half);
-    let step_s = mean_step_s(&time);
     let row = |(i, of): (usize, &Of)| {
         let (phase, hold, push, deepest) = (*of)?;
         let row = Row {
@@ -194,10 +192,10 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         };
         Some((row, i))
     };
-    let (mut rows, of_row): (Vec<Row>, Vec<usize>) = phases.iter().enumerate().step_by(stride).filter_map(row).unzip();
-    let period_s = stride as f64 * step_s;
+    let (mut rows, of_row): (Vec<Row>, Vec<usize>) =
+        phases.iter().enumerate().step_by(2 * half).filter_map(row).unzip();
+    let period_s = (2 * half) as f64 * step_s;
     number_segments(&mut rows, period_s);
-    let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
     let puncture = |push: &Push| {
         let i = push.puncture?;
         let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
@@ -205,15 +203,15 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         Some(Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold })
     };
     let mut seen = Needle {
+        rate_noise_m_s: white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>()),
         rows,
+        period_s,
         fine: between.points,
         joined: false,
         recordings: 1,
         holds: along.holds.len(),
-        period_s,
         two_fingered: along.two_fingered,
         stiffness_n_m: sheet.loading.stiffness_n_m,
-        rate_noise_m_s,
         slope_noise_m_s: slope_noise(&own, half, step_s),
         punctures: pushes.iter().filter_map(puncture).collect(),
         late: None,
