@@ -9,15 +9,15 @@ use crate::ui::tour_progress::Tour;
 
 /// The application.
 pub struct App {
-    /// What it knows.
+    /// Data of the window.
     pub session: Session,
-    /// Where panels stand.
+    /// Positions of the panels.
     pub dock: Dock,
     /// The command palette.
     pub palette: CommandPalette,
     /// The tour.
     pub tour: Tour,
-    /// What a killed program had open.
+    /// State that a killed program left behind.
     pub left_behind: Option<Box<State>>,
     /// Keeps what is open.
     pub autosave: Option<Autosave>,

@@ -21,7 +21,7 @@ const MOST_POINTS: usize = 2_000;
 /// Means over ranges, broken where there were none.
 pub type Line = Vec<Vec<[f64; 2]>>;
 
-/// What everything of a channel is drawn by.
+/// Scale that all suspects of a channel are drawn by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// The channel in words; nothing for the force along the motion.
@@ -39,11 +39,11 @@ pub struct Scale {
 pub struct Cell {
     /// Out of the catalogue.
     pub id: String,
-    /// What it is drawn by.
+    /// Scale that the suspect is drawn by.
     pub scale: Scale,
     /// In words.
     pub title: String,
-    /// What it explains alone, in units of 2 ln(likelihood), parameters paid.
+    /// Evidence for the suspect alone: 2 ln(likelihood ratio) less the price of its parameters.
     pub score: f64,
     /// It was named.
     pub named: bool,
@@ -53,9 +53,9 @@ pub struct Cell {
     pub unit: &'static str,
     /// Shown range of the variable.
     pub range: (f64, f64),
-    /// What is left, forwards and backwards; one line where the direction does not matter.
+    /// Mean residual, forwards and backwards; one line where the direction does not matter.
     pub left: Vec<Line>,
-    /// What the suspect alone takes of it, over the same ranges.
+    /// Part of the residual that the suspect alone explains, over the same ranges.
     pub taken: Vec<Line>,
     /// Single rows, thinned.
     pub cloud: Vec<[f64; 2]>,
@@ -95,7 +95,7 @@ impl Sheet {
 }
 
 impl Cell {
-    /// What it is called among all: a cause may be a suspect in several channels.
+    /// Key of the suspect in the whole atlas: a cause may be a suspect in several channels.
     pub fn key(&self) -> String {
         if self.scale.channel.is_empty() {
             self.id.clone()
@@ -298,7 +298,7 @@ fn means(points: impl Iterator<Item = ([f64; 2], f64)>, (low, high): (f64, f64))
     parts.map(|part| part.iter().flatten().copied().collect()).collect()
 }
 
-/// Where nearly all values are; never empty. A few that are far out would press the others together.
+/// Range that holds nearly all values; never empty. A few outliers would compress the others.
 fn range(values: &[f64]) -> (f64, f64) {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

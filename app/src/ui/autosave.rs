@@ -1,4 +1,4 @@
-//! What is open is kept on the disk as it changes: a killed program loses seconds, not work.
+//! Automatic saves of the open work as it changes: a killed program loses seconds, not work.
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
@@ -24,22 +24,22 @@ const EVERY: Duration = Duration::from_secs(2);
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct State {
-    /// What is open.
+    /// Open project.
     pub project: Project,
     /// The project file that it belongs to.
     #[serde(with = "crate::path_bytes")]
     pub project_path: Option<PathBuf>,
-    /// Where panels stand.
+    /// Positions of the panels.
     pub dock: Dock,
     /// Files that were open before.
     pub recent: Recent,
     /// False while the program runs: it was killed when the next start finds it so.
     pub ended: bool,
-    /// What makes training comfortable.
+    /// Settings that make training comfortable.
     pub comfort: Comfort,
     /// True once the user has been shown around.
     pub toured: bool,
-    /// What the assistant shows.
+    /// Settings of the assistant.
     pub assistant: Assistant,
 }
 
@@ -49,7 +49,7 @@ pub struct Autosave {
     writer: Option<Writer>,
     problems: Receiver<String>,
     path: PathBuf,
-    /// What was written last.
+    /// State that was written last.
     last: State,
     next: Instant,
     /// Locked as long as the window is open.
@@ -126,13 +126,14 @@ impl Autosave {
 }
 
 impl Drop for Autosave {
-    /// What was given to the thread is on the disk before another window may have the folder.
+    /// Writes the last state to the disk before another window may have the folder.
     fn drop(&mut self) {
         self.finish();
     }
 }
 
-/// What stands in the file. One that cannot be read is as good as none; it is put aside, because this window writes its own there.
+/// Reads the state from the file. An unreadable file counts as none; it is put aside, because this window writes its
+/// own there.
 fn read(path: &Path) -> Option<State> {
     let text = match haptics::text_file::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
@@ -140,7 +141,7 @@ fn read(path: &Path) -> Option<State> {
     };
     let state = text.and_then(|text| serde_json::from_str(&text).ok());
     if state.is_none() {
-        // Where that is refused it is written over: the window has to go on.
+        // A file that cannot be renamed is overwritten: the window has to go on.
         let _ = std::fs::rename(path, path.with_extension("broken.json"));
     }
     state

@@ -18,33 +18,33 @@ pub enum Change {
     Move {
         /// The interval before it.
         interval: usize,
-        /// Where to.
+        /// New time of the boundary, s.
         to_s: f64,
     },
     /// An interval is of another state.
     State {
-        /// Which.
+        /// Index of the interval.
         interval: usize,
-        /// What it is.
+        /// New state.
         state: SystemState,
     },
     /// An interval belongs to another subtask, or to none.
     Subtask {
-        /// Which.
+        /// Index of the interval.
         interval: usize,
         /// The subtask.
         subtask: Option<String>,
     },
     /// An interval becomes two.
     Split {
-        /// Which.
+        /// Index of the interval.
         interval: usize,
-        /// Where, s.
+        /// Time of the split, s.
         at_s: f64,
     },
     /// An interval and the next one become one, like the first.
     Join {
-        /// Which.
+        /// Index of the first of the two.
         interval: usize,
     },
 }

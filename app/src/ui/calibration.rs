@@ -17,11 +17,11 @@ pub struct Calibration {
     pub choice: FitChoice,
     /// The choice that the fit on the screen was made with differs from `choice`.
     pub stale: bool,
-    /// What refits have in common.
+    /// Data that refits share.
     pub refits: Refits,
     /// The parameter that is looked at closely, `object.name`.
     pub selected_parameter: Option<String>,
-    /// How the force depends on the parameters.
+    /// Sensitivity of the force to the parameters.
     pub sensitivity: Option<Arc<Sensitivity>>,
     /// Values that are tried.
     pub what_if: WhatIf,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Checking a diagnosis on other recordings.
 pub const CHECK: JobKind = JobKind::new("check").after(&DIAGNOSE);
 
-/// What the answer is checked on.
+/// Recordings that the answer is checked on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum On {
     /// Other files of the same object.
@@ -34,7 +34,7 @@ pub struct Checked {
     pub unit: String,
 }
 
-/// What the figures say of an extension, in one word.
+/// Verdict of the figures on an extension, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// It explains this recording, too.

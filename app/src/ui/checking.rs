@@ -1,4 +1,4 @@
-//! What a diagnosis is worth on recordings that took no part in it.
+//! Checks of a diagnosis on held-out recordings.
 
 use super::jobs::{change, no_change};
 use super::session::Session;

@@ -1,10 +1,10 @@
-//! What makes training comfortable: the side of the hand, a pause when the window loses the focus, how loud it is. Remembered from one
-//! start to the next.
+//! Settings that make training comfortable: the side of the hand, a pause when the window loses the focus, and the
+//! volume. They are kept from one start to the next.
 
 use egui::PointerButton;
 use serde::{Deserialize, Serialize};
 
-/// What a person has chosen.
+/// Settings that a person has chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Comfort {
@@ -12,7 +12,7 @@ pub struct Comfort {
     pub left_handed: bool,
     /// The world stands still while another window has the keyboard.
     pub pauses: bool,
-    /// How loud, 0 to 1.
+    /// Volume, 0 to 1.
     pub volume: f32,
     /// Not at all.
     pub muted: bool,
@@ -35,7 +35,7 @@ impl Comfort {
         if self.left_handed { PointerButton::Primary } else { PointerButton::Secondary }
     }
 
-    /// How loud it sounds, 0 to 1.
+    /// Effective volume, 0 to 1; 0 when muted.
     pub fn loudness(&self) -> f32 {
         if self.muted { 0.0 } else { self.volume.clamp(0.0, 1.0) }
     }

@@ -246,7 +246,7 @@ fn the_page_fits_small_windows() {
         harness.set_size(egui::Vec2::from(size));
         harness.run_steps(4);
         for label in ["Now", "Timing", "Passivity", "Over the network"] {
-            // What lies below the edge can be scrolled to; nothing stands beyond the right edge.
+            // Labels below the edge can be scrolled to; nothing stands beyond the right edge.
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= 0.0 && rect.right() <= size[0], "{label} at {rect:?} in {size:?}");
         }

@@ -75,7 +75,7 @@ pub fn feel(session: &mut Session) {
     }
 }
 
-/// What the trainer switches between; an error says why the worlds cannot be felt.
+/// Worlds that the trainer switches between; an error says why they cannot be felt.
 pub fn comparison(session: &Session) -> Result<Compare, String> {
     let worlds = session.diagnosing.worlds.as_ref().ok_or("Extend the model first.")?;
     let world = &worlds.after;

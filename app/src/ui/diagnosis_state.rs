@@ -30,9 +30,9 @@ pub const SIMULATE_EXTENDED: JobKind = JobKind::new("simulate-extended").after(&
 pub enum StartFrom {
     /// Inertia alone.
     Mass,
-    /// … and friction in proportion to speed.
+    /// Inertia and viscous friction.
     Viscous,
-    /// … and dry friction.
+    /// Inertia, viscous friction and dry friction.
     #[default]
     Coulomb,
 }
@@ -51,11 +51,11 @@ impl StartFrom {
 /// A diagnosis, ready to be shown.
 #[derive(Debug)]
 pub struct Answer {
-    /// What was found.
+    /// Findings of the diagnosis.
     pub diagnosis: Findings,
     /// Its curves, one a recording.
     pub residuals: Vec<Residuals>,
-    /// What every suspect would take of the force, one a recording.
+    /// Residual atlas: the share of the force that each suspect would explain, one sheet a recording.
     pub atlas: Vec<Sheet>,
     /// The model that it started from.
     pub from: StartFrom,
@@ -66,13 +66,13 @@ pub struct Answer {
 pub struct Diagnosing {
     /// The model of a mechanism to start from.
     pub from: StartFrom,
-    /// Whether the atlas is shown in place of the curves.
+    /// True if the atlas is shown in place of the curves.
     pub shows_atlas: bool,
     /// The suspect that is shown large.
     pub atlas_open: Option<String>,
     /// The cause that was asked about: why not?
     pub asked_about: Option<String>,
-    /// What came out.
+    /// Answer to the last question.
     pub answer: Option<Arc<Answer>>,
     /// Why nothing did, in one sentence.
     pub problem: Option<String>,
@@ -82,9 +82,9 @@ pub struct Diagnosing {
     pub worlds_problem: Option<String>,
     /// The recordings' motion through the extended world, once that is there.
     pub replays: Vec<Option<Replayed>>,
-    /// What the experiment that is asked for would settle, rehearsed on simulated objects.
+    /// Rehearsal of the requested experiment on simulated objects: the causes that it would tell apart.
     pub rehearsal: Option<Arc<Rehearsal>>,
-    /// What the answer is worth on other recordings.
+    /// Checks of the answer on other recordings.
     pub checked: Vec<Checked>,
     /// The path field of a recording to check on.
     pub check_field: String,

@@ -1,4 +1,4 @@
-//! What is open: recordings, their files, and the time that is looked at.
+//! Open recordings, their files, and the time that is looked at.
 
 use super::prepare::Prepared;
 use super::project::Source;
@@ -36,13 +36,13 @@ pub struct Document {
     pub unfinished: Vec<PathBuf>,
     /// Videos of the hand.
     pub videos: Videos,
-    /// What can be taken back.
+    /// History of changes that can be undone.
     pub undo: Undo,
     /// The time that is looked at.
     pub cursor_s: f64,
     /// The part of the recording that plots show.
     pub view_s: (f64, f64),
-    /// Whether the cursor runs.
+    /// True if the cursor runs.
     pub playing: bool,
     /// Playback speed, times real time.
     pub speed: f64,

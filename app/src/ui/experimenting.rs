@@ -105,7 +105,7 @@ pub fn save_motion_plan(session: &mut Session, ctx: &egui::Context, plan: &Motio
     });
 }
 
-/// Where the tool went that was recorded, and whether in a plane; nothing where the coordinate itself was recorded.
+/// Path of the recorded tool, and true if it lies in a plane; `None` where the coordinate itself was recorded.
 pub fn path_of_tool(session: &Session) -> Option<(MechanismPath, bool)> {
     let recording = &session.document.recordings.first()?.recording;
     if recording.channel("q_m").or(recording.channel("q_rad")).is_some() {
@@ -125,7 +125,7 @@ fn folder_of_recordings(session: &mut Session) -> Option<PathBuf> {
     folder
 }
 
-/// Which of the open recordings were simulated.
+/// Names of the open recordings that were simulated.
 pub fn simulated(session: &Session) -> Vec<&str> {
     let simulated = session.document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
     simulated.map(|p| p.recording.name.as_str()).collect()

@@ -20,10 +20,10 @@ pub const REHEARSE: JobKind = JobKind::new("rehearse").after(&DIAGNOSE);
 /// Preparing that experiment for a person.
 pub(crate) const GUIDE: JobKind = JobKind::new("guide");
 
-/// How often every object is simulated.
+/// Number of simulations of every object.
 pub const ROUNDS: u64 = 3;
 
-/// What the window keeps about experiments while recordings come and go.
+/// State of the experiments that the window keeps while recordings come and go.
 #[derive(Default)]
 pub struct Experiments {
     /// The path field of a recording that was made elsewhere.
@@ -32,13 +32,13 @@ pub struct Experiments {
     pub shows_plan: bool,
     /// The experiment that a person does in Train.
     pub guided: Option<Box<Guided>>,
-    /// Where a picture's recording goes: it lives as long as the session.
+    /// Folder for the recording of a gallery picture; it lives as long as the session.
     pub scratch: Option<tempfile::TempDir>,
     /// A recording is being added: the question is asked again once it is there.
     pub asks_again: bool,
 }
 
-/// Which object a person does the experiment on.
+/// Object that a person does the experiment on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The world that stands in Train.

@@ -17,7 +17,7 @@ pub(crate) const START_BYTES: u64 = 4096;
 /// Endings that the log of a sidecar may have.
 pub(crate) const LOG_ENDINGS: [&str; 6] = ["csv", "mcap", "parquet", "tsv", "txt", "dat"];
 
-/// What a file is.
+/// Kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
     /// A table of samples in any format, or what the reader of logs will refuse in one sentence.

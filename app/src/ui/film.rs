@@ -84,7 +84,7 @@ impl Film {
     }
 }
 
-/// What both fingers touch.
+/// Surface that both fingers touch.
 fn held_by_both(contacts: &[Contact]) -> Option<Surface> {
     let touched = |finger: u8| {
         contacts.iter().filter_map(move |c| match (c.on, c.by) {

@@ -1,4 +1,4 @@
-//! How recordings are to be segmented and fitted: everything about the estimation that a user chooses, and can undo.
+//! Settings of segmentation and fit: everything about the estimation that a user chooses, and can undo.
 
 use super::prepare::Prepared;
 use crate::tasks::Chosen;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How the fit is to be made.
+/// Settings of segmentation and fit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FitChoice {
@@ -21,23 +21,23 @@ pub struct FitChoice {
     pub own: Option<Arc<Definition>>,
     /// Thresholds given by hand; absent: chosen above the noise.
     pub thresholds: Option<Thresholds>,
-    /// How states are told apart.
+    /// Method of segmentation into states.
     pub method: Method,
     /// Intervals that were set by hand, by recording.
     pub segments: BTreeMap<usize, Arc<Vec<Segment>>>,
-    /// What is stated of parameters.
+    /// Prior statements about parameters.
     pub stated: Stated,
     /// Only this time enters the fit, s.
     pub only_s: Option<(f64, f64)>,
 }
 
-/// What is stated of parameters beforehand; names as in sidecars.
+/// Prior statements about parameters; names as in sidecars.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Stated {
     /// Values that are not to be estimated.
     pub known: BTreeMap<String, f64>,
-    /// What was believed before.
+    /// Prior distributions.
     pub prior: BTreeMap<String, Prior>,
     /// Least and largest values.
     pub bounds: BTreeMap<String, [Option<f64>; 2]>,
@@ -52,7 +52,7 @@ impl Stated {
         }
     }
 
-    /// How many statements there are.
+    /// Number of statements.
     pub fn len(&self) -> usize {
         self.known.len() + self.prior.len() + self.bounds.len()
     }

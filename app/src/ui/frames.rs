@@ -1,4 +1,5 @@
-//! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
+//! Processor time of a picture: layout of a panel, and tessellation of its shapes. The work of the graphics card is not
+//! included.
 
 use super::app::App;
 use super::panel::Picture;
@@ -26,7 +27,7 @@ const PICTURE_S: f64 = 1.0 / 60.0;
 /// Pictures before anything is measured: layouts settle, curves are computed.
 const WARM_UP: usize = 6;
 
-/// What a page shows beside the log.
+/// Content that a page shows beside the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum With {
     /// Nothing more.
@@ -39,7 +40,7 @@ enum With {
     Servo,
 }
 
-/// What is measured.
+/// Picture that is measured.
 #[derive(Clone, Copy)]
 pub struct Subject {
     /// In words.
@@ -90,7 +91,7 @@ pub struct Cost {
     pub triangles: usize,
 }
 
-/// What a panel costs.
+/// Processor time of a panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Costs {
     /// While the cursor runs.
@@ -109,7 +110,8 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// What was done `once`, over and over until there are so many samples. Fitted is the once: no task repeats itself so often.
+    /// Repeats the recording `once` until there are `samples` samples. The fit uses one repetition: no task repeats
+    /// itself so often.
     pub fn over_and_over(once: Recording, samples: usize) -> Result<Self, String> {
         let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
         let long = repeated(&once, samples, period_s);

@@ -11,7 +11,7 @@ use haptics::recording::Meta;
 use haptics::world::World;
 use std::path::PathBuf;
 
-/// How far a person is.
+/// Progress of a person in an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {
     /// Nothing has begun.
@@ -27,11 +27,11 @@ pub enum Phase {
 /// The experiment, and how far it is.
 #[derive(Clone, Debug)]
 pub struct Guided {
-    /// What is to be done when.
+    /// Timetable of the steps.
     pub table: Timetable,
-    /// How far it is.
+    /// Progress of the experiment.
     pub phase: Phase,
-    /// Which object is simulated for it; nothing where the world of Train stays what it is.
+    /// Object that is simulated for it; `None` where the world of Train stays as it is.
     pub about: Option<String>,
     asked: Experiment,
 }
@@ -42,7 +42,7 @@ impl Guided {
         Self { table, phase: Phase::Ready, about, asked }
     }
 
-    /// What a diagnosis asks for, in the world that stands in Train.
+    /// The experiment that a diagnosis asks for, in the world that stands in Train.
     pub fn in_world(world: &World, diagnosis: &Findings) -> Result<Self, String> {
         let next = diagnosis.next_experiment.as_ref().ok_or("Nothing is open.")?;
         let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.")?;
@@ -67,14 +67,14 @@ impl Guided {
         Some(trainer.scene()?.0.state.time_s - start_s)
     }
 
-    /// What is to be done now, how long still, s, and where the hand is wanted.
+    /// Current step, its remaining time, s, and the wanted position of the hand.
     pub fn now(&self, trainer: &Trainer) -> Option<(&Step, f64, HandGoal)> {
         let time_s = self.time_s(trainer)?;
         let (step, left_s) = self.table.step_at(time_s)?;
         Some((step, left_s, self.table.route.at(time_s).0))
     }
 
-    /// What its recording states of itself: what was simulated, and what was hung on.
+    /// Metadata that its recording states: the simulated object, and the added mass.
     fn stated(&self) -> Meta {
         let mut stated = Meta { known: what_is_known(&self.asked), ..Meta::default() };
         if let Some(about) = &self.about {

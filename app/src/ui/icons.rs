@@ -9,7 +9,7 @@ pub const SIZE: f32 = 16.0;
 /// Beside small words.
 pub const SMALL: f32 = 14.0;
 
-/// What an icon stands for.
+/// Meaning of an icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, strum::EnumIter)]
 #[expect(missing_docs, reason = "each name says what it stands for")]
 pub enum Icon {
@@ -85,7 +85,7 @@ pub enum Icon {
     Up,
     GoTo,
     More,
-    // How grave something is.
+    // Severities.
     Doubt,
     Wrong,
     Good,
@@ -212,12 +212,12 @@ pub fn font() -> egui::FontData {
     egui::FontData::from_static(lucide_icons::LUCIDE_FONT_BYTES)
 }
 
-/// What stands on a button: words, with an icon before them or without.
+/// Face of a button: words, with an icon before them or without.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<'a> {
     /// Before the words.
     pub icon: Option<Icon>,
-    /// What it says; what a screen reader says.
+    /// Text on the button, and for the screen reader.
     pub words: &'a str,
 }
 

@@ -135,7 +135,7 @@ pub struct Progress {
     pub kind: JobKind,
     /// Its title.
     pub title: String,
-    /// How much is done, 0 … 1, where that is known.
+    /// Share of the work that is done, 0 … 1; `None` if unknown.
     pub share: Option<f64>,
     /// Since when.
     pub elapsed: Duration,
@@ -253,7 +253,7 @@ impl<T: 'static> Jobs<T> {
         })
     }
 
-    /// What a long read of this kind has brought so far.
+    /// Preview and progress of a long read of this kind; `None` before the first samples.
     pub fn preview(&self, kind: JobKind) -> Option<(&Preview, Progress)> {
         let progress = self.progress().filter(|p| p.kind == kind)?;
         let reading = self.running.iter().find(|r| r.kind == kind)?;

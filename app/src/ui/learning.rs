@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Points of a drawn curve.
 pub(crate) const POINTS: usize = 80;
 
-/// How much farther than the last attempt the curve goes, as a share of all.
+/// Length of the curve beyond the last attempt, as a share of all attempts.
 pub(crate) const AHEAD: f64 = 0.15;
 
 /// A lesson under its conditions.
@@ -37,7 +37,7 @@ impl Practised {
 pub struct Learned {
     /// Their attempts, the oldest first.
     pub attempts: Vec<Attempt>,
-    /// Those with a score: their number from 1, and what learning is followed by.
+    /// Attempts with a score: their number from 1, and the measures that learning is followed by.
     pub tries: Vec<(usize, Try)>,
     /// Means of sessions: number of the first and last attempt, mean, half of its 95 % interval.
     pub sessions: Vec<(usize, usize, f64, Option<f64>)>,
@@ -49,7 +49,7 @@ pub struct Learned {
     pub proficient_at: Option<usize>,
 }
 
-/// What the window knows of the history.
+/// Training history, as far as the window needs it.
 #[derive(Default)]
 pub struct Learning {
     pub(crate) history: Option<History>,
@@ -63,14 +63,14 @@ pub struct Learning {
     pub attempts: Vec<Attempt>,
     /// The lesson that is looked at; the one that was practised last when absent.
     pub chosen: Option<Practised>,
-    /// What an expert scores, by lesson.
+    /// Scores of the experts, by lesson.
     pub experts: BTreeMap<String, f64>,
     /// The curve that is shown.
     pub learned: Learned,
 }
 
 impl Learning {
-    /// Whether anything is kept.
+    /// True if attempts are kept.
     pub fn is_kept(&self) -> bool {
         self.history.is_some()
     }

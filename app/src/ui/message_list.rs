@@ -4,7 +4,7 @@ use crate::text::file_name::name_of;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How grave a message is.
+/// Severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Something did not work.
@@ -16,17 +16,17 @@ pub enum Tone {
 /// A message above the workspace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Banner {
-    /// How grave.
+    /// Severity.
     pub tone: Tone,
     /// One sentence.
     pub text: String,
     /// More about it, for those who point at it.
     pub hint: String,
-    /// When it goes by itself; `None`: when it is dismissed.
+    /// Time at which the message vanishes; `None` if it stays until it is dismissed.
     pub until: Option<Instant>,
 }
 
-/// How long one reads that something was done.
+/// Time for which the message of a completed action stays.
 const DONE_LASTS: Duration = Duration::from_secs(6);
 
 /// The messages above the workspace.

@@ -7,8 +7,8 @@ use crate::ui::message_list::Tone;
 use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 
-/// What went wrong stays above the workspace until it is dismissed; what was done floats over its lower edge and goes by itself, so
-/// that nothing moves under the pointer.
+/// Draws the messages. Errors stay above the workspace until they are dismissed. Other messages float over its lower
+/// edge and vanish by themselves, so that nothing moves under the pointer.
 pub fn banners(ui: &mut Ui, session: &mut Session) {
     let now = Instant::now();
     session.messages.banners.retain(|banner| banner.until.is_none_or(|until| now < until));

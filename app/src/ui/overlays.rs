@@ -73,7 +73,7 @@ pub(crate) fn aligned(session: &mut Session, recording: usize, found: Result<f64
     }
 }
 
-/// When a recording is touched for the first time, s; `None` where its states are not known.
+/// Time of the first contact in a recording, s; `None` where its states are not known.
 pub fn first_contact_s(session: &Session, recording: usize) -> Option<f64> {
     let states = &session.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
     let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
@@ -89,7 +89,7 @@ pub fn align_by_contact(session: &mut Session, recording: usize) -> bool {
     both.is_some()
 }
 
-/// What to add to the times of `moved`, s, by the most telling signal that both have.
+/// Shift of the times of `moved`, s, by correlation of the most telling signal that both have.
 fn most_alike(fixed: &Arc<Prepared>, moved: &Arc<Prepared>) -> Result<f64, String> {
     let values = |prepared: &Prepared, trace: &Trace| -> Vec<f64> {
         let samples = trace.levels.samples(&prepared.recording);

@@ -54,11 +54,11 @@ pub fn show(ui: &Ui, app: &mut App) {
     }
 }
 
-/// What has the letters that were typed.
+/// Actions that match the typed letters.
 fn found_for(app: &App) -> Vec<Action> {
     let mut found = search::matching(app, &app.palette.query);
     if app.palette.query.is_empty() {
-        // What can be done now stands first.
+        // Actions that are possible now stand first.
         found.sort_by_key(|action| action.why_not(app).is_some());
     }
     found

@@ -59,9 +59,9 @@ pub struct Picture {
     pub name: &'static str,
     /// Its place in lists.
     pub place: u8,
-    /// What it shows, for the help of the command line.
+    /// Content of the picture, for the help of the command line.
     pub help: &'static str,
-    /// What it shows, for the gallery.
+    /// Content of the picture, for the gallery.
     pub line: &'static str,
     /// Pixels in the gallery.
     pub size: [u32; 2],
@@ -69,11 +69,11 @@ pub struct Picture {
     pub sample: Sample,
     /// The session that is drawn.
     pub session: fn(&PictureInput) -> anyhow::Result<Session>,
-    /// What is drawn of it.
+    /// Part of the session that is drawn.
     pub framing: Framing,
 }
 
-/// What is drawn of a session.
+/// Part of a session that is drawn.
 #[derive(Clone, Copy)]
 pub enum Framing {
     /// A panel with a margin around it.

@@ -22,6 +22,6 @@ pub struct PictureInput {
     pub video: Option<VideoSource>,
     /// A person at the mouse instead of the scripted operator.
     pub by_hand: bool,
-    /// Where the cursor stands, s (in the trainer: how far the scripted operator is); two fifths of the way when absent.
+    /// Time of the cursor, s (in the trainer: of the scripted operator); two fifths of the way when absent.
     pub time_s: Option<f64>,
 }

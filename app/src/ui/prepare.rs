@@ -31,7 +31,7 @@ pub struct Trace {
 /// Curves of one quantity, drawn in one plot.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// What they are.
+    /// Name of the quantity.
     pub title: String,
     /// The shown unit.
     pub unit: String,
@@ -44,7 +44,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// What tells it from the recording's other groups, and is the same in every recording.
+    /// Key of the group: unique within a recording, and the same in every recording.
     pub fn key(&self) -> String {
         format!("{}/{}", self.title, self.unit)
     }
@@ -63,7 +63,7 @@ pub struct Prepared {
     pub tips: Option<[TipSeries; 2]>,
     /// The single tool, where it has one.
     pub tool: Option<TipSeries>,
-    /// How the velocities that states are told from were obtained, where there are such signals.
+    /// Source of the velocities that states are told from; `None` without such signals.
     pub velocity_from: Option<String>,
     /// Plots.
     pub groups: Vec<Group>,

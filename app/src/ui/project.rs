@@ -37,7 +37,7 @@ pub struct Project {
     /// Videos of the hand.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub videos: Vec<VideoSource>,
-    /// How they are fitted.
+    /// Settings of their fit.
     pub choice: FitChoice,
     /// The recording that is shown.
     pub current: usize,
@@ -47,7 +47,7 @@ pub struct Project {
     pub view_s: (f64, f64),
     /// The open workspace.
     pub workspace: Workspace,
-    /// What the plots show.
+    /// Settings of the plots.
     pub plots: KeptChoices,
 }
 
@@ -94,7 +94,7 @@ impl Project {
     }
 }
 
-/// Whether a JSON file is a project.
+/// True if a JSON file is a project.
 pub fn is_project(path: &Path) -> bool {
     let text = haptics::text_file::read(path).unwrap_or_default();
     let value: Option<serde_json::Value> = serde_json::from_str(&text).ok();

@@ -14,7 +14,7 @@ use estimator::log::Watch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a session has open.
+/// Project that holds all that a session has open.
 pub fn project_of(session: &Session) -> Project {
     Project {
         touchstone_project: VERSION,

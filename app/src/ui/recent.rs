@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// So many are kept.
+/// Largest number of kept files.
 const MOST: usize = 10;
 
 /// Files that were open, the newest first.

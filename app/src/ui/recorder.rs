@@ -58,7 +58,7 @@ fn whereto(session: &Session) -> String {
     folder.map_or_else(|| "R".to_owned(), |folder| format!("R\nGoes to {}", folder.display()))
 }
 
-/// What the file lacks, in one sentence.
+/// Samples that the file lacks, in one sentence; `None` if it is complete.
 fn losses(status: &Status) -> Option<String> {
     match (status.dropped, status.left_out) {
         (0, 0) => None,

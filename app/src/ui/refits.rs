@@ -31,20 +31,20 @@ pub(crate) const JUDGE: JobKind = JobKind::new("judge");
 /// A fit that took no longer follows every change at once.
 pub(crate) const AT_ONCE: Duration = Duration::from_millis(700);
 
-/// What refits have in common, and how long they take.
+/// Data that refits share, and the duration of the last one.
 #[derive(Clone)]
 pub struct Refits {
-    /// What of the recordings does not depend on the choice; for one chosen part of them.
+    /// Parts of the recordings that do not depend on the choice; for one chosen part of them.
     shared: Arc<pipeline::Prepared>,
     part_s: Option<(f64, f64)>,
-    /// What the running or the last fit was asked.
+    /// Choice of the running or the last fit.
     pub(crate) asked: Option<FitChoice>,
     pub(crate) begun: Instant,
-    /// How long the last one took.
+    /// Duration of the last fit.
     pub(crate) took: Option<Duration>,
-    /// Whether the fit follows every change.
+    /// True if the fit follows every change, unless it is slower than `at_once`.
     pub live: bool,
-    /// … as long as it takes no longer than this.
+    /// Longest duration of a fit that follows every change at once.
     pub at_once: Duration,
 }
 
@@ -73,7 +73,7 @@ impl Refits {
         self.took.is_some_and(|took| took < self.at_once)
     }
 
-    /// How long the last fit took.
+    /// Duration of the last fit.
     pub fn took(&self) -> Option<Duration> {
         self.took
     }
@@ -134,7 +134,7 @@ pub(crate) fn place_in_whole(found: &mut Segmentation, whole: &Prepared, part: &
     found.posterior = None;
 }
 
-/// What is still missing for the parameters of a fit.
+/// Data that is still missing for the parameters of a fit.
 pub fn judge(analysis: &Analysis, recordings: &[Arc<Prepared>]) -> Vec<Enough> {
     let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
     estimator::online::enough_for(&plain, analysis.task, &analysis.fit, &Wanted::default())

@@ -34,7 +34,7 @@ impl Rules {
         let like = self.draft.like;
         SystemState::ALL.into_iter().filter(move |state| match state {
             SystemState::FreeMotion => true,
-            // What is in no state needs no rule.
+            // No rule is needed for samples without a state.
             SystemState::NoState => false,
             SystemState::HoldOnGround | SystemState::HoldAboveGround | SystemState::SlidingOnGround => {
                 matches!(like, Task::BlockStack | Task::Barrel)

@@ -13,7 +13,7 @@ use crate::ui::workspace;
 use anyhow::Context as _;
 use std::path::PathBuf;
 
-/// What the window opens with.
+/// Options that the window opens with.
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// A log to calibrate from.
@@ -56,7 +56,7 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
     }
 }
 
-/// What chooses the graphics interface, for wgpu.
+/// Environment variable that chooses the graphics interface of wgpu.
 const BACKEND: &str = "WGPU_BACKEND";
 
 /// The system's own interface alone: to look for OpenGL as well takes a tenth of a second on every start.
@@ -73,7 +73,7 @@ fn with_open_gl() -> anyhow::Result<()> {
         .env(BACKEND, "gl")
         .status()
         .context("the window could not be opened, and neither with OpenGL")?;
-    // What was in the way there it has said itself.
+    // The child process has printed its own error.
     anyhow::ensure!(
         again.success(),
         "there is no graphics driver but OpenGL's, and the window did not stay open with that one"

@@ -75,7 +75,7 @@ pub static PRACTICE: Picture = page(
     TABLE,
     stage::practice,
 );
-/// What came of an attempt at a lesson.
+/// Picture of the result of an attempt at a lesson.
 pub static DEBRIEF: Picture = page(
     150,
     ["debrief", "What came of an attempt at a lesson", "What came of an attempt, beside the experts"],
@@ -241,7 +241,7 @@ pub(super) fn app_for(session: Session, picture: &'static Picture) -> App {
     app
 }
 
-/// Where a window of this size (points) shows the plane of the trainer's world.
+/// Place of the trainer's view plane in a window of this size, points.
 pub fn trainer_place(size: [f32; 2]) -> Option<view::Place> {
     let mut session = Session::new();
     session.training.trainer.clock = Clock::Manual;

@@ -1,4 +1,4 @@
-//! How much the simulated force depends on every parameter, and which parameters stand in for each other.
+//! Sensitivity of the simulated force to every parameter, and the parameters that are correlated.
 
 use super::jobs::JobKind;
 use super::prepare::Prepared;
@@ -14,7 +14,7 @@ pub const SENSITIVITY: JobKind = JobKind::new("sensitivity");
 /// Parameters are changed by this share of their value …
 pub const CHANGE: f64 = 0.1;
 
-/// What a change of one parameter does.
+/// Effect of a change of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
     /// `object.name`.
@@ -108,7 +108,7 @@ pub(crate) fn correlations(analysis: &Analysis) -> Vec<Correlations> {
     several
         .filter_map(|group| {
             let error = |i: usize| group.covariance[i][i].sqrt();
-            // What is known exactly, or not at all, goes together with nothing.
+            // Parameters that are known exactly, or not at all, correlate with nothing.
             let kept: Vec<usize> =
                 (0..group.parameters.len()).filter(|i| error(*i) > 0.0 && error(*i).is_finite()).collect();
             let row = |i: usize| kept.iter().map(|j| group.covariance[i][*j] / (error(i) * error(*j))).collect();

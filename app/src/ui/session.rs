@@ -1,4 +1,4 @@
-//! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
+//! Data of the window: recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::experiments::Experiments;

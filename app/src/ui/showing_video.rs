@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Which video the shown recording has.
+/// Video of the shown recording.
 pub fn video_source(session: &Session) -> Option<&VideoSource> {
     session.document.videos.sources.iter().find(|s| s.recording == session.document.current)
 }
@@ -147,7 +147,7 @@ pub(crate) fn picture_came(
     session.document.videos.shown = Some(Shown { file, index, texture });
 }
 
-/// Where the video begins, on the recording's clock, s.
+/// Sets the time at which the video begins, on the recording's clock, s.
 pub fn shift_video(session: &mut Session, begins_at_s: f64) {
     if let Some(source) = video_source_mut(session).filter(|_| begins_at_s.is_finite()) {
         source.begins_at_s = begins_at_s;

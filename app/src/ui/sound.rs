@@ -59,7 +59,8 @@ impl Sound {
         Ok(Self { strikes, now, _stream: stream })
     }
 
-    /// How loud all of it is, 0 to 1; how fast something slips in the fingers, m/s; whether a force is larger than allowed.
+    /// Sets the loudness, 0 to 1, the slip speed in the fingers, m/s, and `excess`: true if a force is larger than
+    /// allowed.
     pub fn follow(&self, loudness: f32, slip_m_s: f64, excess: bool) {
         self.now.loudness.store(loudness.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
         self.now.slip_m_s.store((slip_m_s as f32).to_bits(), Ordering::Relaxed);
@@ -73,7 +74,7 @@ impl Sound {
     }
 }
 
-/// What goes on now, as the window says it.
+/// Current state of the sound, as the window sets it.
 #[derive(Debug, Default)]
 struct Now {
     loudness: AtomicU32,

@@ -122,7 +122,7 @@ pub fn rehearsed(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| rehearse(session))
 }
 
-/// That experiment, half done by hand.
+/// The requested experiment, half done by hand.
 pub fn guided(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| half_done_by_hand(session))
 }
@@ -214,7 +214,7 @@ fn with_lessons() -> anyhow::Result<Session> {
     session.experiments.scratch = Some(folder);
     session.workspace = Workspace::Train;
     session.training.lessons.shown = true;
-    // Those of whoever makes the picture do not belong into it.
+    // Lessons of the user who makes the picture do not belong in it.
     session.training.lessons.folder = Some(PathBuf::new());
     session.training.lessons.load();
     Ok(session)
@@ -323,7 +323,7 @@ fn try_another_value(session: &mut Session) {
     trying_values::try_now(session);
 }
 
-/// What the window's jobs would bring.
+/// Diagnoses and extends the model at once, without the window's jobs.
 fn diagnose(session: &mut Session) {
     session.workspace = Workspace::Diagnose;
     let from = session.diagnosing.from;

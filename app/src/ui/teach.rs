@@ -1,11 +1,11 @@
-//! What quantities mean, for tooltips: what it is, and how it acts.
+//! Explanations of quantities for tooltips: the meaning, and the effect as a formula.
 
 /// A quantity in two sentences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lesson {
-    /// What it is.
+    /// Meaning of the quantity.
     pub what: &'static str,
-    /// How it acts, as a formula; empty where there is none.
+    /// Effect of the quantity as a formula; empty where there is none.
     pub formula: &'static str,
 }
 
@@ -13,7 +13,7 @@ const fn lesson(what: &'static str, formula: &'static str) -> Lesson {
     Lesson { what, formula }
 }
 
-/// What a parameter of a fit means; `None` for one that explains itself.
+/// Explanation of a fitted parameter; `None` for one that explains itself.
 pub fn parameter(name: &str) -> Option<Lesson> {
     let of_a_turn = name.ends_with("_Nm") || name.ends_with("_Nm_s");
     let stem = stem(name);

@@ -137,8 +137,8 @@ pub fn recording(dark: bool, place: usize) -> Color32 {
     role(dark, ColorRole::Block([4, 1, 2, 5, 3][place % 5]))
 }
 
-/// Where in the course of time something is, 0 … 1: from dark to bright without red beside green (after viridis, van der Walt and
-/// Smith 2015), less the end that would be lost on the background.
+/// Color of a time as a share of the whole, 0 … 1: from dark to bright without red beside green (after viridis, van der
+/// Walt and Smith 2015). It leaves out the end that would be lost on the background.
 pub fn time_color(dark: bool, share: f32) -> Color32 {
     const STOPS: [[u8; 3]; 6] = [
         [0x44, 0x01, 0x54],

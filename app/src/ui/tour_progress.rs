@@ -56,7 +56,7 @@ pub(crate) const STEPS: [Step; 7] = [
     },
 ];
 
-/// Where in the tour somebody is.
+/// Progress of a user in the tour.
 #[derive(Debug, Default)]
 pub struct Tour {
     pub(crate) step: Option<usize>,

@@ -94,7 +94,7 @@ fn attempt_kept(session: &mut Session, attempt: Attempt) {
     }
 }
 
-/// Where there is one trainee, they practise.
+/// Takes over the known trainees. A single one is chosen at once.
 fn trainees_known(session: &mut Session, names: Vec<String>) {
     session.training.learning.trainees = names;
     if let ([only], None) = (session.training.learning.trainees.as_slice(), &session.training.learning.trainee) {

@@ -13,15 +13,15 @@ use haptics::world::World;
 pub struct Training {
     /// The live world.
     pub trainer: Trainer,
-    /// What makes training comfortable.
+    /// Settings that make training comfortable.
     pub comfort: Comfort,
     /// Who practises, and how they get better.
     pub learning: Learning,
-    /// What the assistant shows over the trainer's picture.
+    /// Settings of the assistant over the trainer's picture.
     pub assistant: Assistant,
     /// Lessons.
     pub lessons: Lessons,
-    /// Where the trainer's picture was drawn last.
+    /// Place at which the trainer's picture was drawn last.
     pub trainer_place: Option<Place>,
     /// A world that was opened from a file, for the trainer to take.
     pub opened_world: Option<Box<World>>,

@@ -7,19 +7,19 @@ use egui::util::undoer::{Settings, Undoer};
 /// Changes that follow each other faster are one.
 pub(crate) const ONE_CHANGE_S: f32 = 0.6;
 
-/// So many are kept.
+/// Largest number of kept changes.
 pub(crate) const KEPT: usize = 200;
 
-/// What can be taken back, and brought back.
+/// History of changes, for undo and redo.
 pub struct Undo {
     pub(crate) undoer: Undoer<Undoable>,
 }
 
-/// What the user changes and may want back.
+/// Choices of the user that undo covers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Undoable {
     pub(crate) choice: FitChoice,
-    /// Which recordings lie over the shown one, and how far they are shifted.
+    /// Recordings over the shown one, each with its shift in time.
     pub(crate) overlaid: Vec<Overlaid>,
 }
 
@@ -36,7 +36,7 @@ impl Default for Undo {
     }
 }
 
-/// What differs between two choices, in words.
+/// Differences between two choices, in words.
 pub(crate) fn difference(now: &Undoable, then: &Undoable) -> String {
     let (a, b) = (&now.choice, &then.choice);
     let changed = [

@@ -39,7 +39,7 @@ pub(crate) struct Shown {
 /// The videos of the open recordings.
 #[derive(Default)]
 pub struct Videos {
-    /// Which files, at most one a recording.
+    /// Video files, at most one a recording.
     pub sources: Vec<VideoSource>,
     /// While the video is looked at by itself: where in it, s from its beginning.
     pub loose_s: Option<f64>,
@@ -57,7 +57,7 @@ impl Videos {
     }
 }
 
-/// How far the video of the shown recording is.
+/// State of the shown recording's video.
 pub enum State {
     /// It has none.
     None,
@@ -101,7 +101,7 @@ pub(crate) fn decoded(video: &Video, index: usize) -> Option<ColorImage> {
     Some(ColorImage::from_rgb([picture.width() as usize, picture.height() as usize], picture.as_raw()))
 }
 
-/// Where a video begins on the recording's clock, s, by what moves in both.
+/// Time at which a video begins on the recording's clock, s, by correlation of the motion in both.
 pub(crate) fn begins_at(prepared: &Prepared, times: &[f64], changes: &[f64]) -> Result<f64, String> {
     let nothing = "Nothing moves in the video when the recorded hand moves; look at the video by itself, find a moment that \
                    you recognise, put the cursor there, and press They belong together.";
@@ -111,7 +111,7 @@ pub(crate) fn begins_at(prepared: &Prepared, times: &[f64], changes: &[f64]) -> 
     found.map(|l| l.offset_s).ok_or_else(|| nothing.to_owned())
 }
 
-/// How fast whatever was recorded moved, in one unit or another; `None` without positions.
+/// Speed of the recorded motion, in the unit of its position per second; `None` without positions.
 pub(crate) fn hand_speed(prepared: &Prepared) -> Option<Vec<f64>> {
     if prepared.clockless() || prepared.times.len() < 3 {
         return None;

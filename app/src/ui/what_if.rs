@@ -1,4 +1,4 @@
-//! What if a parameter had another value: the world with it, its replay and what that leaves of the measured force, live.
+//! Trial values of parameters: the world with them, its replay and its residual force, live.
 
 use super::jobs::JobKind;
 use super::replayed::Replayed;
@@ -51,7 +51,7 @@ pub fn world(analysis: &Analysis, recordings: &[Recording], values: &BTreeMap<St
     let mut fit = analysis.fit.clone();
     for parameter in &mut fit.parameters {
         if let Some(value) = values.get(&parameter.full_name()) {
-            // What is tried holds exactly, like what is known.
+            // A trial value counts as exact, like a known one.
             (parameter.value, parameter.std_error) = (Some(*value), None);
             parameter.identified = true;
         }
@@ -72,7 +72,7 @@ pub fn world(analysis: &Analysis, recordings: &[Recording], values: &BTreeMap<St
     calibrate::world(analysis.task, recordings, &fit, &analysis.segmentations)
 }
 
-/// What a world leaves of the measured force, N (or Nm) RMS over all channels and recordings; `None` where it predicts nothing.
+/// RMS residual of the force in a world, N (or Nm), over all channels and recordings; `None` if it predicts nothing.
 pub fn residual_rms(replays: &[Option<Replayed>]) -> Option<f64> {
     let simulations = replays.iter().flatten().filter_map(|r| r.simulation.as_ref());
     let rms: Vec<f64> = simulations.flat_map(|s| s.residual_rms.iter().map(|(_, rms)| *rms)).collect();

@@ -50,7 +50,7 @@ pub fn sheet(ui: &Ui) -> Frame {
     Frame::new().fill(p.card).stroke(Stroke::new(1.0, p.border)).corner_radius(CornerRadius::same(CARD_RADIUS))
 }
 
-/// What a screen reader calls a widget whose words stand elsewhere, or nowhere.
+/// Sets the name that a screen reader reads for a widget without words of its own.
 pub fn call(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
@@ -149,7 +149,7 @@ pub fn remark(ui: &mut Ui, mark: Icon, text: impl Into<String>) -> Response {
     .inner
 }
 
-/// What to do where there is nothing yet.
+/// Notice for a panel that is still empty, with the action that fills it.
 pub fn empty_state<'a>(ui: &mut Ui, face: impl Into<Face<'a>>, text: &str, action: impl FnOnce(&mut Ui)) {
     let height = ui.available_height();
     let Face { icon, words: title } = face.into();

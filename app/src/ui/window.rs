@@ -148,7 +148,7 @@ impl App {
         });
     }
 
-    /// What is being looked at.
+    /// Name of the shown world or recording.
     fn subject(&self) -> String {
         match self.session.workspace {
             Workspace::Train | Workspace::Devices => self
@@ -184,7 +184,7 @@ impl App {
         self.progress(ui);
     }
 
-    /// Where there is something to take back.
+    /// Undo and redo buttons, if there is a change to undo or redo.
     fn undo_buttons(&mut self, ui: &mut Ui) {
         let (undo, redo) = (undoing::can_undo(&self.session), undoing::can_redo(&self.session));
         if !undo && !redo || self.session.workspace == Workspace::Train {
@@ -198,7 +198,7 @@ impl App {
         }
     }
 
-    /// What takes its time, how far it is, and the way to end it.
+    /// Title and progress of the running job, and the button that cancels it.
     fn progress(&mut self, ui: &mut Ui) {
         let Some(progress) = self.session.jobs.progress() else {
             if self.session.jobs.is_busy() {

@@ -12,9 +12,9 @@ pub enum Workspace {
     Train,
     /// Measure a real one.
     Calibrate,
-    /// What the model gets wrong about it.
+    /// Errors of the model.
     Diagnose,
-    /// What moves the fingers, and how well.
+    /// Devices that move the fingers, and their quality.
     Devices,
 }
 

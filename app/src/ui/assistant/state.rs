@@ -12,9 +12,9 @@ pub struct Assistant {
     pub on: bool,
     /// Weight, width and stiffness of the held object.
     pub held: bool,
-    /// How near it is to slipping.
+    /// Margin of the grip against slipping.
     pub slip: bool,
-    /// What may be in it.
+    /// Possible contents of the held object.
     pub contents: bool,
     /// Warning of excessive force.
     pub force: bool,

@@ -41,7 +41,7 @@ pub enum Phase {
 /// Result of an attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Debrief {
-    /// What it is worth.
+    /// Grade of the attempt.
     pub grade: Grade,
     /// Path of the recording.
     pub path: PathBuf,
@@ -51,7 +51,7 @@ pub struct Debrief {
 
 /// A lesson that is open.
 pub struct Open {
-    /// Which.
+    /// The lesson itself.
     pub lesson: Arc<Lesson>,
     /// Index of the current world among the lesson's variants.
     pub variant: usize,

@@ -50,7 +50,7 @@ pub static REGISTRATION: Registration = Registration {
     ..Registration::new(PanelId::DIAGNOSIS, "Diagnosis", Icon::Diagnose, || Box::new(DiagnosisPanel))
 };
 
-/// What a diagnosis answers, with what to record next, rehearsed.
+/// Picture of a diagnosis with the next experiment, rehearsed.
 pub static EXPERIMENT: Picture = Picture {
     name: "experiment",
     place: 190,

@@ -90,7 +90,7 @@ pub static XY: Picture = Picture {
     framing: Framing::Panel(|| Box::new(LogPanel::default())),
 };
 
-/// What the models leave of the measured forces.
+/// Picture of the residual forces.
 pub static LEFT_OVER: Picture = Picture {
     name: "left-over",
     place: 20,

@@ -79,7 +79,7 @@ pub static REGISTRATION: Registration = Registration {
     ..Registration::new(PanelId::PROGRESS, "Progress", Icon::Progress, || Box::new(ProgressPanel))
 };
 
-/// How a trainee gets better, from a made-up history.
+/// Picture of a trainee's progress, from a made-up history.
 pub static PROGRESS_PICTURE: Picture = Picture {
     name: "progress",
     place: 210,

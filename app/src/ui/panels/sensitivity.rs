@@ -46,7 +46,7 @@ pub static REGISTRATION: Registration = Registration {
     ..Registration::new(PanelId("sensitivity"), "Sensitivity", Icon::Sensitivity, || Box::new(SensitivityPanel))
 };
 
-/// What the force depends on, and which parameters go together.
+/// Picture of the sensitivity of the force, and of the correlated parameters.
 pub static SENSITIVITY_PICTURE: Picture = Picture {
     name: "sensitivity",
     place: 230,

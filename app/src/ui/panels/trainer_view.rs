@@ -105,7 +105,7 @@ pub static ASSISTANT: Picture = Picture {
     framing: Framing::Panel(|| Box::new(TrainerView::default())),
 };
 
-/// That experiment done by hand in the virtual world, half done.
+/// Picture of the requested experiment, half done by hand in the virtual world.
 pub static GUIDED: Picture = Picture {
     name: "guided",
     place: 200,

@@ -102,7 +102,7 @@ fn the_atlas_of_blocks_has_a_part_for_every_channel() {
     let bias = of("force-bias").expect("a suspect");
     assert_eq!(bias.variable, Variable::Time);
     assert!(leak.rows.len() < bias.rows.len(), "{} of {}", leak.rows.len(), bias.rows.len());
-    // What leaks takes most of what the plain weight leaves of the lift.
+    // The leak explains more than 40 % of the residual power of the lift under a constant weight.
     let power = |of: &dyn Fn(usize) -> f64| (0..leak.rows.len()).map(|k| of(k).powi(2)).sum::<f64>();
     let left = |k: usize| force.left[leak.rows[k]];
     let goes = 1.0 - power(&|k| left(k) - leak.taken[k]) / power(&left);

@@ -1,4 +1,4 @@
-//! What was found, checked on other recordings; and the residual atlas.
+//! Checks of a diagnosis on other recordings; and the residual atlas.
 
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
@@ -103,7 +103,7 @@ fn the_atlas_has_every_suspect_by_its_evidence_and_shows_one_large() {
     assert!(suspects.len() >= 10, "{}", suspects.len());
     assert!(suspects.windows(2).all(|w| w[0].score >= w[1].score), "the strongest first");
     assert_eq!((suspects[0].id.as_str(), suspects[0].variable), ("position-ripple", Variable::Place));
-    // What the cause takes is what was left: nearly all of its power goes, and of no other suspect is that so.
+    // The cause explains most of the residual's power, more than any other suspect.
     let rows = &answer.diagnosis.course.instants;
     let power = |left: &dyn Fn(usize) -> f64| (0..rows.len()).map(|i| (rows[i].weight * left(i)).powi(2)).sum::<f64>();
     let before = power(&|i| rows[i].left_before);
@@ -164,7 +164,8 @@ fn a_large_suspect_and_the_checks_are_drawn_in_both_themes() {
             screenshot::draw(pictured(Some("position-ripple")), picture("atlas"), [1280, 720], dark).expect("drawn");
         let other = screenshot::draw(pictured(Some("force-bias")), picture("atlas"), [1280, 720], dark).expect("drawn");
         keep(&format!("atlas-large-{dark}"), &named);
-        // What was named is green, what was not has the colour of suspects; the cloud and its means that of the model.
+        // The named cause is green, another suspect has the colour of suspects; the cloud and its means have that of
+        // the model.
         let simulated = theme::role(dark, render::ColorRole::Simulated);
         assert!(count_near(&named, p.good) > count_near(&other, p.good) + 300, "dark {dark}");
         assert!(count_near(&other, p.accent) > count_near(&named, p.accent) + 200, "dark {dark}");

@@ -180,7 +180,7 @@ fn what_was_chosen_is_remembered() {
     assert_eq!(again.session.training.comfort, chosen);
 }
 
-/// Where pictures are rare, several presses come with one of them.
+/// Several presses come with one picture if pictures are rare.
 #[test]
 fn keys_that_come_with_one_picture_all_count() {
     let folder = tempfile::tempdir().expect("a folder");

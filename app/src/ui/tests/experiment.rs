@@ -69,14 +69,14 @@ fn verdict(harness: &Harness<'_, App>) -> Verdict {
     harness.state().session.diagnosing.answer.as_ref().expect("an answer").diagnosis.verdict
 }
 
-/// What stands in the answer to both recordings.
+/// Pairs of causes that the answer to both recordings settled: the kept one and the excluded one.
 pub(super) fn settled(harness: &Harness<'_, App>) -> Vec<(String, String)> {
     let answer = harness.state().session.diagnosing.answer.as_ref().expect("an answer");
     answer.diagnosis.settled.iter().map(|s| (s.kept.clone(), s.excluded.clone())).collect()
 }
 
-/// What the answer to both recordings settled, without what the crank of [`ASKEW`] has beside its mass: its dry friction, which the second
-/// recording may tell from one that falls with speed.
+/// Settled pairs without dry friction against friction that falls with speed. The crank of [`ASKEW`] has dry friction
+/// beside its mass, and the second recording may tell the two apart.
 fn settled_beside_friction(harness: &Harness<'_, App>) -> Vec<(String, String)> {
     settled(harness).into_iter().filter(|settled| *settled != ("coulomb-friction".into(), "stribeck".into())).collect()
 }

@@ -72,7 +72,7 @@ fn look_at(plate: &plates::Plate, studio: &mut plates::Studio) {
     }
 }
 
-/// What a panel draws stays in its place.
+/// Checks that a panel draws nothing in its margin.
 fn nothing_outside(picture: &image::RgbaImage, window: egui::Color32, name: &str) {
     let (width, height) = picture.dimensions();
     let outside = |x: u32, y: u32| x.min(y).min(width - 1 - x).min(height - 1 - y) < MARGIN;

@@ -26,7 +26,7 @@ fn offset_s(harness: &Harness<'_, Session>) -> f64 {
     harness.state().plots.overlaid[0].offset_s
 }
 
-/// Where the hand appears, on the way down at `x`: over the other recording's curve.
+/// Highest position at `x` where the hand cursor appears: over the other recording's curve.
 fn grip(harness: &mut Harness<'_, Session>, x: f32) -> Pos2 {
     for y in 100..500_u16 {
         let at = pos2(x, f32::from(y));

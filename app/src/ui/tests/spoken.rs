@@ -1,4 +1,4 @@
-//! What a screen reader says: every widget has a name.
+//! Names for the screen reader: every widget has one.
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};

@@ -1,4 +1,4 @@
-//! What a panel says stands in one table of its own, and not where it is drawn.
+//! Texts of a panel stand in one table of their own, and not in the drawing code.
 
 use std::path::Path;
 use syn::visit::{self, Visit};
@@ -46,7 +46,7 @@ impl<'ast> Visit<'ast> for Texts {
     }
 }
 
-/// Whether a text is for people: it begins like a heading, or has two words.
+/// True if a text is for people: it begins like a heading, or has two words.
 fn is_said(text: &str) -> bool {
     let mut letters = text.chars();
     // Longer than a unit, such as Nm.

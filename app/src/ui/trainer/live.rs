@@ -32,7 +32,7 @@ pub enum Operator {
     Scripted,
 }
 
-/// How the servo is run.
+/// Clock of the servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
     /// On its own thread, in real time.
@@ -55,7 +55,7 @@ pub enum Sensors {
 /// State and logic behind the trainer's panels.
 #[derive(Default)]
 pub struct Trainer {
-    /// How the servo is run.
+    /// Clock of the servo.
     pub clock: Clock,
     /// World in the trainer.
     pub choice: WorldChoice,
@@ -67,7 +67,7 @@ pub struct Trainer {
     pub settings: HandSettings,
     /// Window side of the running device.
     pub steering: Steering,
-    /// How well the scripted operator does it, and what it does wrong.
+    /// Skill and mistakes of the scripted operator.
     pub script: Script,
     /// The force test.
     pub trial: Trial,
@@ -304,7 +304,7 @@ impl Trainer {
         (snapshot.state.bodies.len() == world.blocks.len()).then_some((snapshot, world))
     }
 
-    /// What the system granted to the servo thread.
+    /// Privileges that the system granted to the servo thread.
     pub fn privileges(&self) -> Option<Privileges> {
         self.engine.as_ref()?.privileges()
     }

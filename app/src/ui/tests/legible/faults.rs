@@ -1,4 +1,4 @@
-//! What a person could not read or reach.
+//! Faults of legibility: text that a person could not read, or widgets that they could not reach.
 
 use super::painted::{Painted, Window};
 use egui::Rect;
@@ -90,7 +90,7 @@ fn cut_words(painted: &Painted, bars: &[Rect]) -> Option<String> {
     cut.then(|| format!("“{text}” at {ink:?} is cut by {clip:?}"))
 }
 
-/// Where something is cut off.
+/// Edge at which something is cut off.
 enum Edge {
     Left(f32),
     Right(f32),

@@ -1,4 +1,4 @@
-//! Whether a person can read the window, told by machine: no words over each other, nothing cut but what can be scrolled to.
+//! Tests of legibility by machine: no words over each other, nothing cut off but what can be scrolled to.
 
 mod faults;
 mod pages;

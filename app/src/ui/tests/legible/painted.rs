@@ -1,4 +1,4 @@
-//! What a window has painted and laid out, as far as it matters for reading.
+//! Painted shapes and layout of a window, as far as they matter for reading.
 
 use egui::epaint::ClippedShape;
 use egui::{Context, LayerId, Rect, Shape};
@@ -27,7 +27,7 @@ pub struct Control {
     pub name: String,
     /// All of it.
     pub rect: Rect,
-    /// What can be seen of it.
+    /// Visible part of the widget.
     pub seen: Rect,
     /// In something that scrolls up and down, or to and fro.
     pub scrolls: bool,
@@ -38,7 +38,7 @@ pub struct Control {
 /// A window as laid out.
 #[derive(Clone, Debug, Default)]
 pub struct Window {
-    /// What was painted, by layer, those behind first.
+    /// Painted shapes by layer, those behind first.
     pub layers: Vec<Vec<Painted>>,
     /// Widgets.
     pub controls: Vec<Control>,

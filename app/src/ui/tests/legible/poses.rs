@@ -1,4 +1,4 @@
-//! What a person opens, chooses and meets on the way: menus, cards of the tour, messages, long names, every panel in every workspace.
+//! Poses of the window: menus, cards of the tour, messages, long names, every panel in every workspace.
 
 use super::pages::Stage;
 use crate::ui::app::App;
