@@ -162,8 +162,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let along = along(recording)?;
     let pushes = pushes(&along);
     demand_a_push(&pushes, recording)?;
-    let sheet = Sheet::of(&along, &pushes)?;
-    let time = times(recording);
+    let (sheet, time) = (Sheet::of(&along, &pushes)?, times(recording));
     let (half, step_s) = (half_width(&time), mean_step_s(&time));
     let own: Vec<f64> = along.depth_m.iter().zip(&along.force_n).map(|(d, f)| d - along.give_m_n.0 * f).collect();
     let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
