@@ -90,7 +90,7 @@ impl Part<'_> {
             amount(gain.heldout_rms_before, self.unit),
             amount(gain.heldout_rms_after, self.unit),
             chosen.score,
-            20.0
+            self.study.rules.threshold
         )
     }
 

@@ -8,7 +8,7 @@ use haptics::law::cause;
 pub fn passed_over(study: &Study) -> Vec<PassedOver> {
     let Study { system, candidates, .. } = study;
     let picks = study.picks();
-    let judge = Judge { study, picks: &picks, least: study.rules.unexplained };
+    let judge = Judge { study, picks: &picks, least: study.rules.threshold };
     let mut ids: Vec<&str> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         let known = candidate.expression.is_none() && system.supported(c) && cause(candidate.id).is_some();
