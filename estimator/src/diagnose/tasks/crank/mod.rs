@@ -175,7 +175,7 @@ fn turned(
 }
 
 /// True if the forces seem rotated against the motion.
-fn is_turned(study: &comparison::Study) -> bool {
+fn is_turned(study: &comparison::ChannelFit) -> bool {
     study.has("force-cross-axis")
 }
 

@@ -9,7 +9,7 @@ use crate::diagnose::contract::{Alternative, Cause, NextExperiment};
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -23,7 +23,7 @@ const ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
 
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
-pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
+pub fn told(study: &ChannelFit, recordings: &[Recording]) -> Zero {
     let is_constant =
         |c: &Candidate| matches!((c.id, c.linear[0].0), ("force-bias", "b") | ("friction-asymmetry", "dFc"));
     let Some(constant) = study.found().iter().rfind(|(c, _)| is_constant(c)).map(|(_, values)| values[0]) else {

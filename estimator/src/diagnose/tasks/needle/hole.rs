@@ -14,7 +14,7 @@ use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -213,7 +213,7 @@ fn closely(
     (track, coarse): (&Track, &Grid),
     asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
     first_n: f64,
-) -> Result<(Study, f64), EstimateError> {
+) -> Result<(ChannelFit, f64), EstimateError> {
     let mut study = channel.clone().fit()?;
     let (mut grid, mut dry_n) = (coarse.clone(), first_n);
     for step in CLOSER {
@@ -232,7 +232,7 @@ fn closely(
 }
 
 /// Estimated dry friction, N.
-fn sliding_n(study: &Study) -> Option<f64> {
+fn sliding_n(study: &ChannelFit) -> Option<f64> {
     study.found().into_iter().find(|(c, _)| c.id == "coulomb-friction").map(|(_, values)| values[0])
 }
 

@@ -8,7 +8,7 @@ use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::object::ToggleCurve;
 use haptics::law::{Effect, Inertia, Memories, Motion};
 
@@ -102,7 +102,13 @@ impl Forward for Thrown {
         self.travel.windows()
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let side = self.travel.side[window[0]].unwrap_or(0);
         let curve = self.curve(side, values);
         let is_drag = |c: &Candidate| c.id == "viscous-friction";
@@ -149,7 +155,13 @@ impl Forward for Captured {
         self.travel.windows()
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let side = self.points[window[0]].side;
         let goes_with_motion =
             |c: &Candidate| ["viscous-friction", "return-spring", "local-resistance"].contains(&c.id);
