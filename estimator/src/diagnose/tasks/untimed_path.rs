@@ -305,6 +305,7 @@ fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
     Ok(Some(compared(study, "difference of the two forces", "N", floor)))
 }
 
+/// The channel of a fit over all parts of the path.
 fn compared(study: ChannelFit, channel: &'static str, unit: &'static str, floor: f64) -> Compared {
     let (along, state) = (vec![true; study.y.len()], vec![SystemState::Turning; study.y.len()]);
     Compared { study, channel, unit, floor, along, state }

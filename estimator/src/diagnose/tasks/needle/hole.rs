@@ -165,11 +165,11 @@ fn candidates(
     candidates
 }
 
-/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 /// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
 /// reversals.
 const MUCH: f64 = 4.0;
 
+/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
