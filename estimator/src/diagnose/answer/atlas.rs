@@ -4,7 +4,7 @@ use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::hypotheses::all::best_seen_against;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use haptics::law::cause;
 use std::collections::BTreeSet;
 
@@ -132,8 +132,8 @@ impl Compared {
 
 /// Strongest candidate of every cause that the rows can show, with its evidence and the part of the base model's
 /// residual `left` that it explains; the strongest cause first.
-fn strongest<'a>(study: &'a Study, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec<f64>)> {
-    let Study { system, candidates, .. } = study;
+fn strongest<'a>(study: &'a ChannelFit, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec<f64>)> {
+    let ChannelFit { system, candidates, .. } = study;
     let selection = study.of_each();
     let mut best: Vec<(&str, usize, f64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
@@ -156,7 +156,7 @@ fn strongest<'a>(study: &'a Study, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec
 }
 
 /// The atlas of a comparison.
-pub(crate) fn atlas(track: &Track, study: &Study) -> Atlas {
+pub(crate) fn atlas(track: &Track, study: &ChannelFit) -> Atlas {
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
     let seen = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
         let taken = along.iter().map(|i| taken[*i]).collect();

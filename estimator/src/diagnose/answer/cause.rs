@@ -5,10 +5,10 @@ use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::all::twins;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::estimates::{number, parameters};
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
-use crate::diagnose::selection::stepwise::{Chosen, is_curve};
+use crate::diagnose::selection::stepwise::{SelectedTerm, is_curve};
 use crate::words::amount;
 use haptics::law::entries;
 
@@ -51,7 +51,7 @@ impl Part<'_> {
     }
 
     /// Evidence sentence of a channel that has sentences of its own.
-    fn shown(&self, shown: &str, gain: &Gain, chosen: &Chosen) -> String {
+    fn shown(&self, shown: &str, gain: &Gain, chosen: &SelectedTerm) -> String {
         let held_out = gain.no_share.clone().unwrap_or_else(|| {
             format!(
                 "on data held out{} the {} that is left goes from {} to {} RMS",
@@ -65,7 +65,7 @@ impl Part<'_> {
     }
 
     /// Evidence sentence from the catalogue's entry of a law.
-    fn by_law(&self, gain: &Gain, chosen: &Chosen) -> String {
+    fn by_law(&self, gain: &Gain, chosen: &SelectedTerm) -> String {
         let candidate = &self.study.candidates[chosen.candidate];
         let entry = entries().find(|e| e.id == candidate.id);
         let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
@@ -101,7 +101,7 @@ impl Part<'_> {
         let (term, score) = unexplained(study)?;
         // If the final residual is small, a generic term may be a small misfit of a strong cause's curve. It is then
         // not reported.
-        let misses = |c: &Chosen| is_curve(study.candidates[c.candidate].id) && score < rules.remainder * c.score;
+        let misses = |c: &SelectedTerm| is_curve(study.candidates[c.candidate].id) && score < rules.remainder * c.score;
         if self.role == Role::Channel
             && rules.much.is_some()
             && self.much_left().is_none()
@@ -161,7 +161,7 @@ impl Part<'_> {
 }
 
 /// Strongest generic term of the residual that its rules do not take for an overfit, with its evidence.
-pub fn unexplained(study: &Study) -> Option<(usize, f64)> {
+pub fn unexplained(study: &ChannelFit) -> Option<(usize, f64)> {
     let (rules, picks) = (&study.rules, study.picks());
     // A term that increases the held-out residual is an overfit to a few other rows.
     let is_overfit = |term: usize| {
@@ -174,7 +174,7 @@ pub fn unexplained(study: &Study) -> Option<(usize, f64)> {
 
 /// Amplitudes of a generic term beside the chosen causes, and the sum of the likelihoods of all such terms, relative to
 /// its own.
-fn size_of_term(study: &Study, term: usize) -> (Vec<CauseParameter>, f64) {
+fn size_of_term(study: &ChannelFit, term: usize) -> (Vec<CauseParameter>, f64) {
     let picks = study.picks();
     let with = |c: usize| study.system.solve(&[picks.as_slice(), &[c]].concat());
     let Some(solved) = with(term) else { return (Vec::new(), 1.0) };
@@ -196,7 +196,7 @@ fn size_of_term(study: &Study, term: usize) -> (Vec<CauseParameter>, f64) {
 }
 
 /// Sum of the likelihoods of a cause and its rivals, relative to its own. An equivalent cause counts as one.
-fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
+fn total_odds(study: &ChannelFit, chosen: &SelectedTerm) -> f64 {
     let own = study.candidates[chosen.candidate].id;
     let rival = |id: &str| chosen.rivals.iter().any(|(c, _)| study.candidates[*c].id == id);
     let tested = |id: &str| study.candidates.iter().any(|c| c.id == id);
@@ -205,13 +205,13 @@ fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
 }
 
 /// Probability of this evidence by chance, among all candidates that were tried.
-fn p_value(study: &Study, chosen: &Chosen) -> f64 {
+fn p_value(study: &ChannelFit, chosen: &SelectedTerm) -> f64 {
     let tried = study.candidates.iter().filter(|c| c.expression.is_none()).count() as f64;
     (tried * chi_square_tail(chosen.lambda, study.candidates[chosen.candidate].cost)).min(1.0)
 }
 
 /// Causes that explain the recording nearly as well as a chosen one.
-pub fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
+pub fn rivals(study: &ChannelFit, chosen: &SelectedTerm) -> Vec<Alternative> {
     let own = study.candidates[chosen.candidate].id;
     let total = total_odds(study, chosen);
     let alternative = |id: &str, odds: f64, why: String| Alternative {

@@ -8,7 +8,7 @@ use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::channel::Forward;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
 use crate::segment::SystemState;
 use haptics::law::entries;
@@ -39,9 +39,9 @@ pub enum Role {
 pub struct Part<'a> {
     pub role: Role,
     /// The comparison.
-    pub study: &'a Study,
+    pub study: &'a ChannelFit,
     /// The comparison with the generic terms of the residual, if there are any.
-    pub terms: Option<&'a Study>,
+    pub terms: Option<&'a ChannelFit>,
     /// Name of the channel, in words.
     pub channel: &'static str,
     /// Its unit.
@@ -134,7 +134,7 @@ impl<'a> Part<'a> {
 
     /// Causes of usual size whose effect this recording would hide.
     pub fn not_excited(&self) -> Vec<NotExcited> {
-        let Study { system, candidates, solved, rules, .. } = self.study;
+        let ChannelFit { system, candidates, solved, rules, .. } = self.study;
         let picks = self.study.picks();
         let mut best: Vec<(&str, f64, String)> = Vec::new();
         for (k, candidate) in candidates.iter().enumerate().filter(|(_, c)| !self.study.has(c.id)) {

@@ -1,12 +1,12 @@
 //! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use crate::diagnose::contract::{Alternative, Cause, NotExcited, PassedOver};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::cause;
 
 /// Causes that could have shown in this channel and were not chosen, those that would have explained most first.
-pub fn passed_over(study: &Study) -> Vec<PassedOver> {
-    let Study { system, candidates, .. } = study;
+pub fn passed_over(study: &ChannelFit) -> Vec<PassedOver> {
+    let ChannelFit { system, candidates, .. } = study;
     let picks = study.picks();
     let judge = Judge { study, picks: &picks, least: study.rules.threshold };
     let mut ids: Vec<&str> = Vec::new();
@@ -45,14 +45,14 @@ pub fn unsaid(
 }
 
 struct Judge<'a> {
-    study: &'a Study,
+    study: &'a ChannelFit,
     picks: &'a [usize],
     least: f64,
 }
 
 impl Judge<'_> {
     fn one(&self, id: &str) -> PassedOver {
-        let Study { system, candidates, .. } = self.study;
+        let ChannelFit { system, candidates, .. } = self.study;
         let selection = self.study.of_each();
         let of = |c: &usize| candidates[*c].id == id && system.supported(*c);
         let best = |with: &[usize]| {

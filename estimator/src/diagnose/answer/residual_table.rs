@@ -1,12 +1,12 @@
 //! Residual table: RMS of every channel in every state, beside the noise.
 
 use crate::diagnose::contract::Residual;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::segment::SystemState;
 
 /// Residuals of a comparison in each state. `state`: channel and state of a row; `None` for a row of no channel.
 pub fn residuals(
-    study: &Study,
+    study: &ChannelFit,
     (unit, floor): (&str, f64),
     state: &dyn Fn(usize) -> Option<(&'static str, SystemState)>,
 ) -> Vec<Residual> {

@@ -1,7 +1,7 @@
 //! Measured and modelled values row by row, for the plots of a diagnosis.
 
 use crate::diagnose::data::regression_data::{Place, Track};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Use;
 
 /// One instant of the course along the motion.
@@ -90,7 +90,7 @@ impl Course {
 }
 
 /// The rows along the motion with their residuals, without and with the chosen causes.
-pub(crate) fn course(track: &Track, study: &Study) -> Course {
+pub(crate) fn course(track: &Track, study: &ChannelFit) -> Course {
     let (before, after) = (study.residual(&[]), study.residual(&study.picks()));
     let instants = track.rows.iter().enumerate().filter(|(_, row)| row.place == Place::Along).map(|(i, row)| Instant {
         recording: row.recording,

@@ -7,7 +7,7 @@ use super::separation::{Imagined, separation};
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::{eccentric_mass, gravity_tilt};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
@@ -31,7 +31,7 @@ const HUNG_MOMENTS: f64 = 10.0;
 const LEVER_M: f64 = 0.1;
 
 /// Next experiment, which separates the found causes from the `open` alternatives; `None` if no question is open.
-pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
+pub fn propose(track: &Track, model: &Model, study: &ChannelFit, open: &[Alternative]) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let pairs: Vec<(&str, &str)> = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str())).collect();
     pairs.first()?;
@@ -89,7 +89,7 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
 
 /// An eccentric mass and a tilted plane are equivalent in every motion of the object. A known weight on it separates
 /// them.
-fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<NextExperiment> {
+fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
     let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S[0]);

@@ -6,7 +6,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::library::{Dictionary, dry_of};
 use crate::diagnose::hypotheses::regressor_cache::Columns;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::noise_model::Whitening;
 use nalgebra::{DMatrix, DVector};
 
@@ -23,7 +23,7 @@ pub struct Imagined {
 
 impl Imagined {
     /// Predicted effects of the causes along one coordinate.
-    pub fn along(track: &Track, model: &Model, study: &Study) -> Self {
+    pub fn along(track: &Track, model: &Model, study: &ChannelFit) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
         let dry = dry_of(track, &predicted);
@@ -52,14 +52,14 @@ impl Imagined {
 }
 
 /// Mean residual power of a row in a study.
-fn variance(study: &Study) -> Option<f64> {
+fn variance(study: &ChannelFit) -> Option<f64> {
     let solved = study.solved.as_ref()?;
     Some(solved.variance(study.system.rows).max(1e-24))
 }
 
 /// Expected evidence λ in the worse of two cases: the found cause is true, or its rival is. In each, the model and the
 /// other cause explain as much of the effect as they can on this motion. The noise keeps its autocorrelation.
-pub fn separation(imagined: &Imagined, study: &Study, pair: (&str, &str)) -> Option<f64> {
+pub fn separation(imagined: &Imagined, study: &ChannelFit, pair: (&str, &str)) -> Option<f64> {
     let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
     let mut picks = study.picks();
     let eye = Eye::new(imagined, study)?;
@@ -81,7 +81,7 @@ struct Eye<'a> {
 }
 
 impl<'a> Eye<'a> {
-    fn new(on: &'a Imagined, study: &'a Study) -> Option<Self> {
+    fn new(on: &'a Imagined, study: &'a ChannelFit) -> Option<Self> {
         let white = Whitening::new(&on.stretch, &on.weight, &study.system.coefficients);
         Some(Self {
             on,
@@ -92,7 +92,7 @@ impl<'a> Eye<'a> {
     }
 
     /// Part of the k-th of `picks`, with its estimated size, that the model and `other` cannot explain.
-    fn lambda(&self, study: &Study, picks: &[usize], k: usize, other: &str) -> Option<f64> {
+    fn lambda(&self, study: &ChannelFit, picks: &[usize], k: usize, other: &str) -> Option<f64> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
         let at = study.base.len() + picks[..k].iter().map(|c| study.candidates[*c].columns.len()).sum::<usize>();

@@ -7,7 +7,7 @@ use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::all::{add_to_fault, twins};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::SensorFault;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
 
 /// Effects in the object, in the form that its task uses.
@@ -38,7 +38,7 @@ pub(crate) struct Hypothesis {
 const LEANS: f64 = 0.1;
 
 /// The hypothesis as found, and those of every rival cause.
-pub(crate) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hypothesis> {
+pub(crate) fn hypotheses(track: &Track, model: &Model, study: &ChannelFit) -> Vec<Hypothesis> {
     let picks = study.picks();
     let mut all = Vec::new();
     for (k, chosen) in study.chosen.iter().enumerate() {
@@ -82,7 +82,7 @@ pub(crate) trait Simulated {
 }
 
 /// The same for objects without laws along one coordinate: each question of each channel, the others answered as found.
-pub(crate) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothesis> {
+pub(crate) fn of_channels(channels: &[(&ChannelFit, &dyn Simulated)]) -> Vec<Hypothesis> {
     let found: Vec<Vec<usize>> = channels.iter().map(|(study, _)| study.picks()).collect();
     let mut all = Vec::new();
     for (c, (study, _)) in channels.iter().enumerate() {
@@ -105,7 +105,7 @@ pub(crate) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothes
 
 /// Acts and faults of some candidates of each channel; `None` if they cannot be solved.
 fn of_picks(
-    channels: &[(&Study, &dyn Simulated)],
+    channels: &[(&ChannelFit, &dyn Simulated)],
     picks: &[Vec<usize>],
 ) -> Option<(Option<Vec<Act>>, Option<SensorFault>)> {
     let (mut acts, mut sum) = (Some(Vec::new()), Some(SensorFault::default()));
@@ -132,12 +132,12 @@ fn of_picks(
 }
 
 /// The sensor faults among some candidates; `None` if one of them cannot be added to a recording.
-fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
+fn fault(study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     add_faults(&SensorFault::default(), study, picks, values)
 }
 
 /// The same, added to other faults.
-fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
+fn add_faults(beside: &SensorFault, study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;
     let mut faults = study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Instrument);
     faults.all(|(fault, values)| add_to_fault(&mut sum, fault, values)).then_some(sum)

@@ -7,14 +7,14 @@ use crate::diagnose::hypotheses::dry_share::DryFriction;
 use crate::diagnose::hypotheses::free_motion;
 use crate::diagnose::hypotheses::hypothesis::Found;
 use crate::diagnose::hypotheses::relations::Relation;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Solved;
 use crate::diagnose::selection::profile_likelihood::{settled, shares};
 use haptics::law::{Effect, Kind, Role};
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own.
 /// Instruments' faults are no part of a world.
-pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
+pub fn effects(track: &Track, model: &Model, study: &ChannelFit) -> Vec<Effect> {
     let Some(settled) = settled(study) else { return model.clone() };
     let searched: Vec<Vec<f64>> =
         settled.searched.iter().map(|all| all.iter().map(|known| known.value).collect()).collect();
@@ -26,7 +26,7 @@ pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
 pub fn effects_of(
     track: &Track,
     model: &Model,
-    study: &Study,
+    study: &ChannelFit,
     picks: &[usize],
     solved: &Solved,
 ) -> Option<Vec<Effect>> {
@@ -101,7 +101,7 @@ fn laws_of(found: &Found<'_>) -> Vec<Effect> {
 }
 
 /// The model's laws fitted without any cause.
-pub fn plain(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
+pub fn plain(track: &Track, model: &Model, study: &ChannelFit) -> Vec<Effect> {
     let Some(solved) = study.system.solve(&[]) else { return model.clone() };
     free_motion::whole(track, model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect())
 }

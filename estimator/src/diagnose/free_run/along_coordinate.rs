@@ -6,7 +6,7 @@ use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
 use std::ops::Range;
@@ -26,7 +26,7 @@ struct Side {
 
 /// The rollout without and with the k-th of the chosen causes, all others in. The error is the reason why it cannot be
 /// done faithfully: a cause without a law in a world, or too little held-out motion.
-pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<Rollout, String> {
+pub fn rollout(track: &Track, model: &Model, study: &ChannelFit, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
     let sides = side(track, model, study, &rest).zip(side(track, model, study, &picks));
@@ -53,7 +53,7 @@ pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<
     told(&Compared { of, unit, window_s: ROLLOUT_WINDOW_S, in_turn: false }, &windows)
 }
 
-fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
+fn side(track: &Track, model: &Model, study: &ChannelFit, picks: &[usize]) -> Option<Side> {
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
     let left = study.residual_of(picks, &solved);
@@ -68,7 +68,7 @@ fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<
 }
 
 /// True if the laws agree with the force of the regressors.
-fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
+fn faithful(track: &Track, study: &ChannelFit, side: &Side, other: &Side) -> bool {
     let (mut off, mut worth) = (0.0, 0.0);
     for stretch in stretches(track) {
         let motions: Vec<Motion> = track.rows[stretch.clone()].iter().map(|r| r.motion).collect();
@@ -99,7 +99,7 @@ fn stretches(track: &Track) -> Vec<Range<usize>> {
 }
 
 /// Segments of the locked blocks.
-fn windows(track: &Track, study: &Study) -> Vec<Range<usize>> {
+fn windows(track: &Track, study: &ChannelFit) -> Vec<Range<usize>> {
     let rows = (ROLLOUT_WINDOW_S / track.period_s).round().max(4.0) as usize;
     let mut found = Vec::new();
     for stretch in stretches(track) {

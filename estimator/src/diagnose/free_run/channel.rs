@@ -4,7 +4,7 @@
 
 use super::windows::{Compared, Errors, ROLLOUT_WINDOW_S, told};
 use crate::diagnose::contract::{Rollout, RolloutOf};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Most windows, taken evenly from the whole recording; more add no information.
 const MOST_WINDOWS: usize = 60;
@@ -27,11 +27,15 @@ pub trait Forward {
     }
     /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
     /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<Errors, String>;
+    fn errors(&self, study: &ChannelFit, window: &[usize], picks: &[usize], values: &[f64]) -> Result<Errors, String>;
 }
 
 /// Columns of the model and of the candidates with their values.
-pub fn columns<'a>(study: &'a Study, picks: &'a [usize], values: &'a [f64]) -> impl Iterator<Item = (&'a [f64], f64)> {
+pub fn columns<'a>(
+    study: &'a ChannelFit,
+    picks: &'a [usize],
+    values: &'a [f64],
+) -> impl Iterator<Item = (&'a [f64], f64)> {
     let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|column| column.as_slice());
     study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
 }
@@ -56,7 +60,7 @@ pub fn consecutive(
 }
 
 /// The rollout without and with the k-th of the chosen causes, all others in, over the windows in which it acts.
-pub fn in_turn(study: &Study, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
+pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
     let own = &study.candidates[picks[k]].columns;

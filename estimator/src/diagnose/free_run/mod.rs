@@ -6,7 +6,7 @@ pub(crate) mod windows;
 
 use crate::diagnose::contract::Rollout;
 use crate::diagnose::data::regression_data::{Model, Track};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use channel::Forward;
 
 /// Free-run simulation of a compared channel.
@@ -22,7 +22,7 @@ pub enum FreeRun<'a> {
 
 impl FreeRun<'_> {
     /// Errors without and with the k-th of the chosen causes, all others in, or the reason why there are none.
-    pub fn rollout(&self, study: &Study, k: usize) -> Result<Rollout, String> {
+    pub fn rollout(&self, study: &ChannelFit, k: usize) -> Result<Rollout, String> {
         match self {
             Self::Channel(channel) => channel::in_turn(study, *channel, k),
             Self::Coordinate(track, model) => along_coordinate::rollout(track, model, study, k),

@@ -2,7 +2,7 @@
 
 use super::channel::{Forward, columns, consecutive};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 
 /// A channel of positions, with the rate of the position among the regressors of its model.
 pub struct Pads {
@@ -31,7 +31,13 @@ impl Forward for Pads {
 
     /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is
     /// noise, and none.
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let lag_s = (-values[self.rate]).max(0.0);
         let given: Vec<(&[f64], f64)> = columns(study, picks, values)
             .enumerate()

@@ -2,7 +2,7 @@
 
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::hypotheses::time_delay;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::estimates::parameters;
 
 /// Largest offset of one whole sample between channels that sampling alone explains, s.
@@ -14,7 +14,7 @@ pub(crate) const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// Offset between force and motion if sampling alone can explain it, s. A commanded force is recorded when it is given
 /// and acts in the sample after. For a late force, only the difference of the clocks is allowed.
-pub fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
+pub fn skew(study: &ChannelFit, k: usize, track: &Track) -> Option<f64> {
     if study.candidates[study.chosen[k].candidate].id != time_delay::ID {
         return None;
     }
@@ -28,7 +28,7 @@ pub fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
 }
 
 /// The same for any chosen causes.
-pub fn skewed_s(study: &Study, track: &Track) -> Option<f64> {
+pub fn skewed_s(study: &ChannelFit, track: &Track) -> Option<f64> {
     (0..study.chosen.len()).find_map(|k| skew(study, k, track))
 }
 
@@ -44,7 +44,7 @@ pub fn apart(skew_s: f64) -> String {
 }
 
 /// Delay estimated beside the causes found, and its standard error, s.
-pub fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
+pub fn rest_s(study: &ChannelFit, picks: &[usize]) -> Option<[f64; 2]> {
     let is_delay = |c: &usize| study.candidates[*c].id == time_delay::ID;
     let delay = (0..study.candidates.len()).find(is_delay)?;
     let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();

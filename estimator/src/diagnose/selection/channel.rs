@@ -3,14 +3,14 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
-use super::comparison::{Study, residual};
+use super::comparison::{ChannelFit, residual};
 use super::layout::Layout;
 use super::noise_model::whitener;
 use super::normal_equations::{System, solve, uses};
 use super::prescreen::Rough;
 use super::pruning::leave_out_what_is_unsure;
 use super::rules::Rules;
-use super::stepwise::Selection;
+use super::stepwise::Stepwise;
 use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
@@ -42,7 +42,7 @@ impl Channel {
     }
 
     /// Selects among the candidates that differ from zero, and removes what the held-out rows do not confirm.
-    pub fn fit(mut self) -> Result<Study, EstimateError> {
+    pub fn fit(mut self) -> Result<ChannelFit, EstimateError> {
         let seen = |c: &Candidate| {
             c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
         };
@@ -56,7 +56,7 @@ impl Channel {
         if !made.rules.has_dry_friction && lifts_nothing(&made) {
             // The dry friction beside which the change was found was removed: a change of friction without friction is
             // not possible.
-            let Study { y, base, mut candidates, layout, rules, .. } = made;
+            let ChannelFit { y, base, mut candidates, layout, rules, .. } = made;
             candidates.retain(|c| !relations(c.id).contains(&Relation::OfDryFriction));
             return Self::new(y, base, candidates, layout, rules).fit();
         }
@@ -65,7 +65,7 @@ impl Channel {
 
     /// Selects among the candidates, without a final check. `before`: an earlier round, whose whitening stays as long
     /// as the weights do (the same terms together have the same residual), and from whose choice the search starts, too.
-    pub fn select(self, before: Option<Study>) -> Result<Study, EstimateError> {
+    pub fn select(self, before: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
         let Self { y, base, resisting, candidates, layout, rules } = self;
         let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
         let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
@@ -82,15 +82,15 @@ impl Channel {
         };
         system.resisting = resisting;
         system.pieces = layout.pieces();
-        let chosen = Selection::new(&system, &candidates, &rules).run(&start);
+        let chosen = Stepwise::new(&system, &candidates, &rules).run(&start);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
-        Ok(Study { candidates, chosen, system, solved, y, base, layout, rules, shares_of: [1.0, 0.0] })
+        Ok(ChannelFit { candidates, chosen, system, solved, y, base, layout, rules, shares_of: [1.0, 0.0] })
     }
 }
 
 /// True if a change of dry friction was chosen without any dry friction.
-fn lifts_nothing(study: &Study) -> bool {
+fn lifts_nothing(study: &ChannelFit) -> bool {
     let is = |relation: Relation| study.picks().iter().any(|c| relations(study.candidates[*c].id).contains(&relation));
     is(Relation::OfDryFriction) && !is(Relation::DryFriction)
 }

@@ -1,14 +1,14 @@
 use super::layout::Layout;
 use super::normal_equations::{Solved, System};
 use super::rules::Rules;
-use super::stepwise::{Chosen, Selection};
+use super::stepwise::{SelectedTerm, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::segment::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
 pub struct Compared {
     /// The comparison.
-    pub study: Study,
+    pub study: ChannelFit,
     /// Name of the channel, in words.
     pub channel: &'static str,
     /// Its unit.
@@ -22,9 +22,9 @@ pub struct Compared {
 }
 
 /// Result of one comparison of causes, from which texts and figures are made.
-pub struct Study {
+pub struct ChannelFit {
     pub candidates: Vec<Candidate>,
-    pub chosen: Vec<Chosen>,
+    pub chosen: Vec<SelectedTerm>,
     pub system: System,
     /// Solution of all chosen causes on the training rows.
     pub solved: Option<Solved>,
@@ -40,7 +40,7 @@ pub struct Study {
     pub shares_of: [f64; 2],
 }
 
-impl Study {
+impl ChannelFit {
     /// Candidates that were chosen.
     pub fn picks(&self) -> Vec<usize> {
         self.chosen.iter().map(|c| c.candidate).collect()
@@ -52,8 +52,8 @@ impl Study {
     }
 
     /// Evidence of single candidates.
-    pub fn of_each(&self) -> Selection<'_> {
-        Selection::of_each(&self.system, &self.candidates)
+    pub fn of_each(&self) -> Stepwise<'_> {
+        Stepwise::of_each(&self.system, &self.candidates)
     }
 
     /// Residual of a fit with these candidates, row by row; without a solution, the target.
@@ -72,8 +72,9 @@ impl Study {
         let candidates: Vec<Candidate> = found.chain(terms).collect();
         let Self { y, base, layout, rules, .. } = self;
         let system = System::new(base, &candidates, y, layout, self.system.coefficients.clone());
-        let as_before = |(candidate, c): (usize, &Chosen)| Chosen { candidate, rivals: Vec::new(), ..c.clone() };
-        let chosen: Vec<Chosen> = self.chosen.iter().enumerate().map(as_before).collect();
+        let as_before =
+            |(candidate, c): (usize, &SelectedTerm)| SelectedTerm { candidate, rivals: Vec::new(), ..c.clone() };
+        let chosen: Vec<SelectedTerm> = self.chosen.iter().enumerate().map(as_before).collect();
         let solved = system.solve(&(0..chosen.len()).collect::<Vec<usize>>());
         let (y, base, layout, shares_of) = (y.clone(), base.clone(), layout.clone(), self.shares_of);
         Self { candidates, chosen, system, solved, y, base, layout, rules: *rules, shares_of }

@@ -1,4 +1,4 @@
-use super::comparison::Study;
+use super::comparison::ChannelFit;
 use super::profile_likelihood::{firsts, settled};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::Track;
@@ -7,7 +7,7 @@ use crate::diagnose::hypotheses::pad_compliance;
 use crate::diagnose::hypotheses::return_spring::{self, about_its_rest};
 use haptics::law::{Coordinate, Law as _, ReturnSpring};
 
-pub(crate) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
+pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
     let Some(settled) = settled(study) else { return Vec::new() };
     let picks = study.picks();
     let (own, first) = (&study.candidates[picks[k]], firsts(study, &picks)[k]);
@@ -38,7 +38,7 @@ pub(crate) fn of_channel(candidate: &Candidate, name: &str, value: f64, std_erro
 
 /// Parameters of a hardening spring: stiffness, force, hardening and rest position, from the coefficients of two
 /// cubics. Errors are to first order.
-pub(crate) fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<CauseParameter>> {
+pub(crate) fn of_hardening_spring(track: &Track, study: &ChannelFit, k: usize) -> Option<Vec<CauseParameter>> {
     let candidate = &study.candidates[study.chosen[k].candidate];
     if candidate.id != return_spring::ID || candidate.columns.len() != 4 {
         return None;

@@ -1,6 +1,6 @@
 //! Gain of a cause on the locked blocks, which took part in neither the choice nor the fit.
 
-use super::comparison::Study;
+use super::comparison::ChannelFit;
 use super::normal_equations::{Use, solve};
 use crate::diagnose::contract::Gain;
 use crate::diagnose::hypotheses::candidate::Column;
@@ -29,17 +29,17 @@ struct Parts {
 }
 
 /// Weighted residuals of a subset of the chosen causes, all rows.
-fn left(study: &Study, picks: &[usize]) -> Vec<f64> {
+fn left(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
     let Some(solved) = study.system.solve(picks) else { return study.y.clone() };
     weighted(study, &study.residual_of(picks, &solved))
 }
 
-fn weighted(study: &Study, left: &[f64]) -> Vec<f64> {
+fn weighted(study: &ChannelFit, left: &[f64]) -> Vec<f64> {
     left.iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
 }
 
 /// Root mean square over the locked rows, and over those that train.
-pub fn rms(study: &Study, picks: &[usize], along: &[bool]) -> (f64, f64) {
+pub fn rms(study: &ChannelFit, picks: &[usize], along: &[bool]) -> (f64, f64) {
     let residual = left(study, picks);
     let over = |wanted: &dyn Fn(Use) -> bool| {
         let (sum, n) = (0..residual.len())
@@ -53,14 +53,14 @@ pub fn rms(study: &Study, picks: &[usize], along: &[bool]) -> (f64, f64) {
 }
 
 /// The gain by the k-th of the chosen causes, all others in.
-pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
+pub fn gain(study: &ChannelFit, k: usize, floor: f64) -> Gain {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
     gain_between(study, &rest, &picks, floor)
 }
 
 /// Gain by additional causes. Effects on standing rows are tested there, too.
-pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
+pub fn gain_between(study: &ChannelFit, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
     let more: Vec<usize> = picks.iter().filter(|p| !rest.contains(p)).copied().collect();
     let in_turn = !holds_out(study);
     let parts = if in_turn {
@@ -93,12 +93,12 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
 }
 
 /// True if rows were kept out of both choice and fit. A short recording has too few.
-pub fn holds_out(study: &Study) -> bool {
+pub fn holds_out(study: &ChannelFit) -> bool {
     study.system.uses.iter().any(|u| matches!(u, Use::Locked(_)))
 }
 
 /// Each fold predicted by a fit to all other rows, for recordings too short to lock any rows.
-fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
+fn parts_in_turn(study: &ChannelFit, rest: &[usize], picks: &[usize]) -> Parts {
     let mut parts = Parts::default();
     for (fold, (products, rows)) in study.system.folds.iter().enumerate().filter(|(_, (_, rows))| *rows > 0.0) {
         let others = &study.system.train - products;
@@ -116,18 +116,18 @@ fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
 
 /// Evidence for the k-th chosen cause, beside all others, on the rows that neither chose nor fitted it: 2
 /// ln(likelihood) of the whitened rows. Negative if it increases the error.
-pub fn confirmed(study: &Study, k: usize) -> f64 {
+pub fn confirmed(study: &ChannelFit, k: usize) -> f64 {
     held_out(study, k, &|before, after| before * before - after * after)
 }
 
 /// True if those rows could speak for or against it.
-pub fn is_tested(study: &Study, k: usize) -> bool {
+pub fn is_tested(study: &ChannelFit, k: usize) -> bool {
     held_out(study, k, &|before, after| (before - after).powi(2)) > TESTED
 }
 
 /// Sum over the held-out, whitened rows of a function of the residuals without and with the k-th chosen cause, beside
 /// all others. The noise has unit variance.
-fn held_out(study: &Study, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
+fn held_out(study: &ChannelFit, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
     let white = |picks: &[usize]| whitened(study, picks);
@@ -143,7 +143,7 @@ fn held_out(study: &Study, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
 }
 
 /// Rows whitened by the noise's autoregression; `None` at the start of a segment, before enough rows precede.
-fn whitened(study: &Study, picks: &[usize]) -> Vec<Option<f64>> {
+fn whitened(study: &ChannelFit, picks: &[usize]) -> Vec<Option<f64>> {
     let (values, segment, coefficients) = (left(study, picks), &study.layout.segment, &study.system.coefficients);
     let mut since = 0;
     (0..values.len())
@@ -156,7 +156,7 @@ fn whitened(study: &Study, picks: &[usize]) -> Vec<Option<f64>> {
 }
 
 /// True if some of these causes affect held-out rows that are not about the force.
-pub fn shows_beside(study: &Study, picks: &[usize]) -> bool {
+pub fn shows_beside(study: &ChannelFit, picks: &[usize]) -> bool {
     let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
     let shows = |column: &Column| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
     picks.iter().any(|p| study.candidates[*p].columns.iter().any(shows))
@@ -180,14 +180,14 @@ pub fn bootstrap(pieces: usize, draws: usize, figure: &dyn Fn(&[usize]) -> f64) 
     [0.025, 0.975].map(|q| figures.get(((figures.len().saturating_sub(1)) as f64 * q) as usize).copied().unwrap_or(0.0))
 }
 
-fn mean_square_weight(study: &Study) -> f64 {
+fn mean_square_weight(study: &ChannelFit) -> f64 {
     let is_held_out = |u: Use| if holds_out(study) { matches!(u, Use::Locked(_)) } else { matches!(u, Use::Fold(_)) };
     let locked = (0..study.layout.rows()).filter(|i| is_held_out(study.system.uses[*i]));
     let (sum, n) = locked.fold((0.0, 0_u32), |(s, n), i| (s + study.layout.weight[i].powi(2), n + 1));
     if n > 0 { sum / f64::from(n) } else { 1.0 }
 }
 
-fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Parts {
+fn parts(study: &ChannelFit, before: &[f64], after: &[f64], with_beside: bool) -> Parts {
     let locked: Vec<(usize, usize)> = study
         .system
         .uses
@@ -226,7 +226,7 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
 
 /// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own
 /// autoregression.
-pub fn whiteness_p(study: &Study, picks: &[usize]) -> f64 {
+pub fn whiteness_p(study: &ChannelFit, picks: &[usize]) -> f64 {
     let white: Vec<f64> = whitened(study, picks).into_iter().flatten().collect();
     let n = white.len() as f64;
     let power: f64 = white.iter().map(|v| v * v).sum();

@@ -1,7 +1,7 @@
 //! Whitened normal equations of all regressors, one set per block: every fit, comparison and cross-validation is
 //! then a small solve.
 
-use super::comparison::Study;
+use super::comparison::ChannelFit;
 use super::gram;
 use super::gram::{Weighed, gram, mean_squares};
 use super::layout::{Held, Layout};
@@ -193,9 +193,9 @@ impl System {
     }
 
     /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
-    pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], y: &[f64], layout: &Layout) -> Self {
+    pub fn after(before: ChannelFit, base: &[Vec<f64>], candidates: &[Candidate], y: &[f64], layout: &Layout) -> Self {
         let columns = columns_of(base, candidates, y);
-        let Study { system, candidates: had, base: had_base, y: had_y, layout: had_layout, .. } = before;
+        let ChannelFit { system, candidates: had, base: had_base, y: had_y, layout: had_layout, .. } = before;
         let coefficients = system.coefficients.clone();
         let known = (had_layout.weight == layout.weight && system.uses == uses(layout))
             .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });

@@ -3,7 +3,7 @@
 use super::gram::{STRIP, Weighed};
 use super::layout::Layout;
 use super::normal_equations::{FOLDS, System, Use, columns_of, counted, energy, places, uses};
-use super::stepwise::{Selection, cheapest};
+use super::stepwise::{Stepwise, cheapest};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::DMatrix;
 
@@ -111,7 +111,7 @@ impl<'a> Rough<'a> {
         let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
             let (system, candidates) = (&self.system, self.candidates);
-            let selection = Selection::of_each(system, candidates);
+            let selection = Stepwise::of_each(system, candidates);
             if chosen.len() == selection.most() {
                 return chosen;
             }
@@ -188,7 +188,7 @@ mod tests {
                 assert_eq!(rough.system.train[(*a, *b)].to_bits(), whole.train[(*a, *b)].to_bits(), "{a} {b}");
             }
         }
-        let selection = Selection::of_each(&whole, &candidates);
+        let selection = Stepwise::of_each(&whole, &candidates);
         let mut wanted = Vec::new();
         while wanted.len() < selection.most() {
             wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));

@@ -1,6 +1,6 @@
 //! Uncertainty of searched values, from the likelihood of their neighbours on the grid.
 
-use super::comparison::Study;
+use super::comparison::ChannelFit;
 use crate::diagnose::hypotheses::all::is_share;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use haptics::law::{Law, PositionRipple};
@@ -31,7 +31,7 @@ pub struct Settled {
 }
 
 /// Estimates interpolated between the tried values. `None` without a solution.
-pub fn settled(study: &Study) -> Option<Settled> {
+pub fn settled(study: &ChannelFit) -> Option<Settled> {
     let solved = study.solved.as_ref()?;
     let picks = study.picks();
     let variance = solved.variance(study.system.rows);
@@ -68,13 +68,13 @@ pub fn settled(study: &Study) -> Option<Settled> {
 }
 
 /// First index of the values of each of these causes.
-pub fn firsts(study: &Study, picks: &[usize]) -> Vec<usize> {
+pub fn firsts(study: &ChannelFit, picks: &[usize]) -> Vec<usize> {
     let counts = picks.iter().map(|p| study.candidates[*p].columns.len());
     counts.scan(study.system.base, |at, count| Some(std::mem::replace(at, *at + count))).collect()
 }
 
 /// First index of the values of those causes that are shares of the dry friction.
-pub fn shares<'a>(study: &'a Study, picks: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
+pub fn shares<'a>(study: &'a ChannelFit, picks: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
     firsts(study, picks)
         .into_iter()
         .zip(picks)
@@ -83,7 +83,7 @@ pub fn shares<'a>(study: &'a Study, picks: &'a [usize]) -> impl Iterator<Item = 
 }
 
 /// All values and −2 ln(likelihood), with another candidate in the place of the k-th chosen cause.
-fn fitted(study: &Study, k: usize, candidate: usize) -> Option<(Vec<f64>, f64)> {
+fn fitted(study: &ChannelFit, k: usize, candidate: usize) -> Option<(Vec<f64>, f64)> {
     let mut with = study.picks();
     with[k] = candidate;
     study.system.least(&with).map(|(values, rss)| (values, study.system.rows * rss.max(1e-300).ln()))
@@ -91,7 +91,7 @@ fn fitted(study: &Study, k: usize, candidate: usize) -> Option<(Vec<f64>, f64)> 
 
 /// Change of all values if one searched value differs from the tried one, on the parabola through the solutions of its
 /// neighbours.
-fn moved(study: &Study, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
+fn moved(study: &ChannelFit, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
     let own = study.picks()[k];
     let place = |candidate: usize| study.candidates[candidate].searched[which].value;
     let [below, above] = neighbours(study, own, which);
@@ -108,7 +108,7 @@ fn moved(study: &Study, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
 
 /// Estimate of the `which`-th searched value of the k-th chosen cause: vertex of −2 ln(likelihood) through it and its
 /// neighbours, all else fitted again beside each. Its standard error follows from the curvature.
-pub fn known(study: &Study, k: usize, which: usize) -> Known {
+pub fn known(study: &ChannelFit, k: usize, which: usize) -> Known {
     let own = study.picks()[k];
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
     let price = |candidate: usize| fitted(study, k, candidate).map(|(_, price)| price);
@@ -130,7 +130,7 @@ pub fn known(study: &Study, k: usize, which: usize) -> Known {
 /// Standard errors of all solved values due to those of the searched values of the k-th chosen cause: a wider gap takes
 /// a smaller share. Computed from the slope over the neighbours and from the likelihood-weighted solutions at all other
 /// tried values; the larger one counts.
-fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
+fn carried_over(study: &ChannelFit, k: usize, searched: &[Known]) -> Vec<f64> {
     let own = study.picks()[k];
     let Some((best, least)) = fitted(study, k, own).filter(|_| !searched.is_empty()) else { return Vec::new() };
     let mut by_slope = vec![0.0_f64; best.len()];
@@ -161,7 +161,7 @@ fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
 }
 
 /// The candidates with the next smaller and the next larger of one searched value, all others equal.
-fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
+fn neighbours(study: &ChannelFit, own: usize, which: usize) -> [Option<usize>; 2] {
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
     let here = value(own);
     let beside = || {

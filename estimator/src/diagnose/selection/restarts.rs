@@ -1,14 +1,14 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
-use super::comparison::Study;
-use super::stepwise::{MANY, Selection};
+use super::comparison::ChannelFit;
+use super::stepwise::{MANY, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
 
 /// Number of causes, strongest alone, that are tried as the first of a pair.
 const FIRST_OF_A_PAIR: usize = 6;
 
-impl Selection<'_> {
+impl Stepwise<'_> {
     /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the
     /// other.
     pub fn pair(&self) -> Option<Vec<usize>> {
@@ -80,9 +80,9 @@ impl Selection<'_> {
 
 /// The candidates around which the next round searches: those that were chosen, and what else may turn out better once
 /// it is searched for as closely.
-pub fn to_refine(study: &Study) -> Vec<&Candidate> {
-    let Study { system, candidates, rules, .. } = study;
+pub fn to_refine(study: &ChannelFit) -> Vec<&Candidate> {
+    let ChannelFit { system, candidates, rules, .. } = study;
     let picks = study.picks();
-    let others = Selection::new(system, candidates, rules).left_behind(&picks);
+    let others = Stepwise::new(system, candidates, rules).left_behind(&picks);
     picks.iter().chain(&others).map(|c| &candidates[*c]).collect()
 }

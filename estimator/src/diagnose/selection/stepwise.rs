@@ -25,7 +25,7 @@ const SPARED: f64 = 0.05;
 
 /// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
-pub struct Chosen {
+pub struct SelectedTerm {
     /// Index of the candidate.
     pub candidate: usize,
     /// Evidence lost without it, 2 ln(likelihood) with penalty.
@@ -37,7 +37,7 @@ pub struct Chosen {
 }
 
 /// Chooses among the candidates.
-pub struct Selection<'a> {
+pub struct Stepwise<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
     pub rules: Rules,
@@ -57,7 +57,7 @@ pub fn is_curve(id: &str) -> bool {
     matches!(form(id), Form::Curve(_))
 }
 
-impl<'a> Selection<'a> {
+impl<'a> Stepwise<'a> {
     /// A selection by these rules.
     pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
         let relations = candidates.iter().map(|candidate| relations(candidate.id)).collect();
@@ -70,7 +70,7 @@ impl<'a> Selection<'a> {
     }
 }
 
-impl Selection<'_> {
+impl Stepwise<'_> {
     /// Most causes at once.
     pub(crate) fn most(&self) -> usize {
         if self.rules.has_dry_friction { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
@@ -174,7 +174,7 @@ impl Selection<'_> {
 
     /// Causes after forward selection, swaps and pruning, strongest first. `before`: choice of an earlier round. The
     /// search then starts from it, and from nothing.
-    pub fn run(&self, before: &[usize]) -> Vec<Chosen> {
+    pub fn run(&self, before: &[usize]) -> Vec<SelectedTerm> {
         // On a coarse grid, two causes may be needed to describe one, but they do not tell which.
         let is_fine = !before.is_empty();
         let mut chosen = self.settled(Vec::new(), is_fine);
@@ -368,15 +368,15 @@ impl Selection<'_> {
             .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
     }
 
-    fn describe(&self, chosen: &[usize]) -> Vec<Chosen> {
+    fn describe(&self, chosen: &[usize]) -> Vec<SelectedTerm> {
         let whole = self.price(chosen);
-        let mut found: Vec<Chosen> = (0..chosen.len())
+        let mut found: Vec<SelectedTerm> = (0..chosen.len())
             .map(|k| {
                 let rest = without(chosen, k);
                 // Without the cause, a remaining sign may be impossible. Its price is used all the same.
                 let score = self.plain_price(&rest).unwrap_or(whole) - whole;
                 let cost = self.candidates[chosen[k]].cost * self.system.rows.ln();
-                Chosen {
+                SelectedTerm {
                     candidate: chosen[k],
                     score,
                     lambda: score + cost,

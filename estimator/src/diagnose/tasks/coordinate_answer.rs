@@ -16,7 +16,7 @@ use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::estimates::of_hardening_spring;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::segment::SystemState;
@@ -24,12 +24,18 @@ use crate::signal::noise::white_noise;
 
 /// Comparison of a path, and the same with generic terms if its residual needs some.
 pub struct PathFit {
-    pub study: Study,
-    pub terms: Option<Study>,
+    pub study: ChannelFit,
+    pub terms: Option<ChannelFit>,
 }
 
 /// The answer of one object's recordings.
-pub fn explain(track: &Track, model: &Model, study: &Study, paths: &[PathFit], evidence: Evidence<'_>) -> Findings {
+pub fn explain(
+    track: &Track,
+    model: &Model,
+    study: &ChannelFit,
+    paths: &[PathFit],
+    evidence: Evidence<'_>,
+) -> Findings {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let picks = study.picks();
     let (end, end_train) = rms(study, &picks, &along);

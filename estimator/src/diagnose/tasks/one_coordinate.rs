@@ -14,14 +14,14 @@ use crate::diagnose::hypotheses::{
     backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
 };
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
 use crate::diagnose::selection::layout::{Blocks, Held, Layout};
 use crate::diagnose::selection::noise_model::Noise;
 use crate::diagnose::selection::pruning::leave_out_what_is_unsure;
 use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::selection::stepwise::Chosen;
+use crate::diagnose::selection::stepwise::SelectedTerm;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
@@ -33,7 +33,7 @@ const REFINEMENTS: usize = 2;
 const REFINEMENTS_OF_FREE: usize = 5;
 
 /// Compares all causes on a track. `fixed`: laws that are completely known.
-pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<Study, EstimateError> {
+pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelFit, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
     // Without a force, a stick phase under load cannot be distinguished from one without.
@@ -47,7 +47,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<Study, E
     for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
         // them. The long means of a free motion show so much more of a place that one alone is not near enough either.
-        let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
+        let searched = |c: &SelectedTerm| !made.candidates[c.candidate].searched.is_empty();
         let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
         if made.chosen.is_empty() || enough {
             break;
@@ -67,8 +67,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<Study, E
     }
     // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
     // estimated too small, which looks like friction that rises there or like a misfit of the curves.
-    let rises = |study: &Study| study.has(Stribeck.id());
-    let bends = |study: &Study| {
+    let rises = |study: &ChannelFit| study.has(Stribeck.id());
+    let bends = |study: &ChannelFit| {
         study.of_each().unexplained(&study.picks()).is_some_and(|(_, score)| score > study.rules.threshold)
     };
     let (rose, bent) = (rises(&made), !track.planar && bends(&made));
@@ -93,7 +93,7 @@ const SAME_NOISE: f64 = 0.2;
 /// Residual RMS of the extended model along the motion, as the noise of the rows. `None` if the noise was measured, or
 /// is not much less than the base model's residual. Hidden causes count as noise at first, and beside such noise an
 /// uncertain direction hardly reduces a row's weight.
-fn calmer(track: &Track, made: &Study) -> Option<f64> {
+fn calmer(track: &Track, made: &ChannelFit) -> Option<f64> {
     if track.noise_is_measured {
         return None;
     }
@@ -111,7 +111,7 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
 }
 
 /// Removes the sensor faults found from the force across the motion; true if the load changed.
-fn correct_load(track: &mut Track, study: &Study) -> bool {
+fn correct_load(track: &mut Track, study: &ChannelFit) -> bool {
     if !track.planar {
         return false;
     }
@@ -159,8 +159,8 @@ fn compare(
     (model, fixed): (&Model, &Model),
     made: &Known,
     [coarse, fine]: [&Grid; 2],
-    before: Option<Study>,
-) -> Result<Study, EstimateError> {
+    before: Option<ChannelFit>,
+) -> Result<ChannelFit, EstimateError> {
     let Asked { mut base, known, y } = asked(track, model, fixed);
     let Look { mut predicted, mut resisting, weight, slides: mut dry } =
         first_look(track, model, (&base, &y), made.noise)?;

@@ -23,7 +23,7 @@ use crate::diagnose::hypotheses::{
 };
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::sample_faults;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain;
 use crate::diagnose::validation::on_other_recordings;
 use crate::estimate::EstimateError;
@@ -352,7 +352,7 @@ fn let_go(found: &mut Named, track: &Track) {
 }
 
 /// Ratio of an estimated to a known mass, and its error, if it differs from one.
-fn scale(study: &Study, model: &Model, mass_kg: Option<f64>) -> Option<(f64, f64)> {
+fn scale(study: &ChannelFit, model: &Model, mass_kg: Option<f64>) -> Option<(f64, f64)> {
     let (known, solved) = (mass_kg?, study.solved.as_ref()?);
     let k = model.iter().position(|e| e.law().id() == Inertia.id())?;
     let variance = solved.variance(study.system.rows);

@@ -17,7 +17,7 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::{ConstraintKind, EstimateError};
@@ -310,7 +310,8 @@ fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
     Ok(Some(compared(study, "difference of the two forces", "N", floor)))
 }
 
-fn compared(study: Study, channel: &'static str, unit: &'static str, floor: f64) -> Compared {
+/// The channel of a fit over all parts of the path.
+fn compared(study: ChannelFit, channel: &'static str, unit: &'static str, floor: f64) -> Compared {
     let (along, state) = (vec![true; study.y.len()], vec![SystemState::Turning; study.y.len()]);
     Compared { study, channel, unit, floor, along, state }
 }

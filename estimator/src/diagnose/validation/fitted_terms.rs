@@ -4,7 +4,7 @@ use super::on_other_recordings::compared;
 use crate::diagnose::contract::Validation;
 use crate::diagnose::hypotheses::candidate::{Candidate, Searched};
 use crate::diagnose::options;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
@@ -29,7 +29,7 @@ pub struct Kept {
 }
 
 /// All causes chosen in a comparison.
-pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
+pub fn of_study(channel: &'static str, study: &ChannelFit) -> Vec<Kept> {
     let of = |(candidate, values): (&Candidate, &[f64])| Kept {
         channel,
         id: candidate.id,
@@ -125,7 +125,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
 }
 
 /// Residual of a target after a fit of the base model, row by row.
-fn open(study: &Study, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
+fn open(study: &ChannelFit, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
     let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let mut left = y.to_vec();

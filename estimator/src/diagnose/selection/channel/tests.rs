@@ -3,7 +3,7 @@
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::held_out_gain::{gain, holds_out};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::normal_equations::Use;
@@ -30,7 +30,7 @@ fn to_and_fro() -> Vec<f64> {
     (0..ROWS).map(|i| if i / 7 % 2 == 0 { 1.0 } else { -1.0 }).collect()
 }
 
-fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> Study {
+fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> ChannelFit {
     let channel = Channel {
         y,
         base: vec![vec![1.0; ROWS]],
@@ -107,7 +107,7 @@ fn what_has_no_name_has_a_gain_and_a_size() {
 }
 
 /// The first rows of the same, too few to keep any out of the choice.
-fn short(size: f64, seed: u64) -> Study {
+fn short(size: f64, seed: u64) -> ChannelFit {
     const FEW: usize = 44;
     let (noise, column) = (noise(seed), to_and_fro());
     let channel = Channel {

@@ -3,7 +3,7 @@
 use super::rows::{Place, Rows};
 use crate::diagnose::hypotheses::added_constraint;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::{AddedConstraint, Kind};
@@ -168,7 +168,7 @@ fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64>
 
 /// Standard errors of stiffness, anchor and length of a found cable, with the uncertainty of its searched values.
 /// `None` if they cannot be computed.
-pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
+pub fn errors(rows: &Rows<'_>, study: &ChannelFit, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     const STEP_M: f64 = 1e-4;
     let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == added_constraint::ID)?;

@@ -8,7 +8,7 @@ use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::{added_constraint, inertia, viscous_friction};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::Vec2;
 use haptics::law::{Effect, Inertia, Memories, Motion, ViscousFriction};
 use haptics::world::{Cable, World};
@@ -107,7 +107,13 @@ impl Forward for Airborne {
         consecutive(&carried, &|i| self.rows[i].time_s, self.period_s, &|a, b| of(a) == of(b))
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let Row { number, axis, .. } = self.rows[window[0]];
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };

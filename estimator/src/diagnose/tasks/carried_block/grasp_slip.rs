@@ -3,7 +3,7 @@
 use super::standing_height::{Rows, Stand};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::fingertip_slip;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 
@@ -44,7 +44,7 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
 
 /// Distance of every chosen slip with its time and duration free (`Heights::way_m`): time, s, distance, m, and its
 /// standard error, m. `model`: regressors of the height beside slips.
-pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) -> Vec<[f64; 3]> {
+pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &ChannelFit) -> Vec<[f64; 3]> {
     let rests = rests(stands);
     let heights = rows.heights(&rests);
     let chosen: Vec<&Candidate> = study.picks().into_iter().map(|p| &study.candidates[p]).collect();

@@ -18,10 +18,10 @@ use crate::diagnose::hypotheses::{
 };
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::selection::stepwise::Chosen;
+use crate::diagnose::selection::stepwise::SelectedTerm;
 use crate::estimate::EstimateError;
 use crate::identify::block::signals::object;
 use crate::segment::SystemState;
@@ -105,10 +105,10 @@ const OF_A_CABLE: f64 = 0.05;
 const REMOVAL_ROUNDS: usize = 4;
 
 /// Comparison without causes that may be misfit of a cable or wall.
-fn without_remainders(mut channel: Channel) -> Result<Study, EstimateError> {
+fn without_remainders(mut channel: Channel) -> Result<ChannelFit, EstimateError> {
     let mut study = channel.clone().fit()?;
     for _ in 0..REMOVAL_ROUNDS {
-        let of = |c: &Chosen| &study.candidates[c.candidate];
+        let of = |c: &SelectedTerm| &study.candidates[c.candidate];
         let cable =
             study.chosen.iter().filter(|c| of(c).id == added_constraint::ID).map(|c| c.score).fold(0.0, f64::max);
         let rests: Vec<(&str, Option<String>)> = study
@@ -190,9 +190,9 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
 /// The comparison, with a check for pad compliance. A block swings in compliant pads and lags behind the grip, which
 /// looks like inertia. Inertia is named only if it is also found beside each block's swinging. The swinging is no
 /// regular part of the model, because its regressor contains noise of the forces.
-fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<Study, EstimateError> {
+fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<ChannelFit, EstimateError> {
     let plain = without_remainders(channel.clone())?;
-    let has_mass = |study: &Study| study.has(inertia::ID);
+    let has_mass = |study: &ChannelFit| study.has(inertia::ID);
     if !has_mass(&plain) {
         return Ok(plain);
     }
@@ -213,7 +213,7 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
 }
 
 /// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
-fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
+fn floor(rows: &Rows<'_>, study: &ChannelFit) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let left = study.residual_of(&study.picks(), solved);
     let mean = |free: bool| {

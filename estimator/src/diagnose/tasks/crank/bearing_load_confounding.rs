@@ -5,7 +5,7 @@ use crate::diagnose::answer::cause::unexplained;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
@@ -28,10 +28,10 @@ const CONFOUNDING_ROUNDS: usize = 2;
 /// [`load`] from seeing the weight.
 pub fn beside_causes(
     track: &Track,
-    (looked_at, study): (&Track, &Study),
+    (looked_at, study): (&Track, &ChannelFit),
     (model, fixed): (&Model, &Model),
     gravity_m_s2: f64,
-) -> Result<Option<(f64, Track, Study)>, EstimateError> {
+) -> Result<Option<(f64, Track, ChannelFit)>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
     let mistaken = MISTAKEN.iter().any(|id| study.has(id));
     if !rubs || !track.planar || !(mistaken || unexplained(study).is_some()) {
@@ -58,7 +58,7 @@ pub fn beside_causes(
 /// the causes that it resembles.
 fn may_be(
     track: &Track,
-    study: &Study,
+    study: &ChannelFit,
     model: &Model,
     weight_n: f64,
     gravity_m_s2: f64,
@@ -78,14 +78,14 @@ fn may_be(
 }
 
 /// Weight that a comparison estimates, N.
-fn weight_of(study: &Study, model: &Model, fixed: &Model) -> f64 {
+fn weight_of(study: &ChannelFit, model: &Model, fixed: &Model) -> f64 {
     let place = model.iter().position(|e| e.law().id() == Weight.id());
     let found_n = place.and_then(|k| study.solved.as_ref()?.values.get(k).copied());
     known_n(fixed) + found_n.unwrap_or(0.0)
 }
 
 /// Penalised deviance of a comparison: −2 ln(likelihood) plus ln(rows) for each parameter.
-fn price(track: &Track, study: &Study) -> f64 {
+fn price(track: &Track, study: &ChannelFit) -> f64 {
     let picks = study.picks();
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let (heldout, train) = rms(study, &picks, &along);

@@ -192,7 +192,7 @@ fn turned(
 }
 
 /// True if the forces seem rotated against the motion.
-fn is_turned(study: &comparison::Study) -> bool {
+fn is_turned(study: &comparison::ChannelFit) -> bool {
     study.has(force_cross_axis::ID)
 }
 

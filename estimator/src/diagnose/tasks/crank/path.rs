@@ -4,7 +4,7 @@ use super::grasp_slip::{Course, SLIP_STARTS, jump};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
 use crate::diagnose::selection::pruning::leave_out_what_is_unsure;
 use crate::diagnose::selection::rules::Rules;
@@ -76,7 +76,7 @@ impl Arm {
 /// The circle, and the causes found that distort it.
 pub struct Geometry {
     pub arm: Arm,
-    pub study: Study,
+    pub study: ChannelFit,
 }
 
 impl Geometry {
@@ -144,7 +144,7 @@ fn compare(
     (center_m, bent): (Vec2, &[Displaced]),
     courses: &[Course],
     rules: Rules,
-) -> Result<Study, EstimateError> {
+) -> Result<ChannelFit, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
     // The known displacement enters exactly. The target keeps its linear part, which the regressors explain.
@@ -214,7 +214,7 @@ fn finger(candidate: &Candidate) -> usize {
 }
 
 /// Displacement of the positions by the causes found.
-fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
+fn corrections(path: &Path, study: &ChannelFit, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
     let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };
     let found = study.found();

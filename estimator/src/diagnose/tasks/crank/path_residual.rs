@@ -2,7 +2,7 @@
 
 use super::path::{Arm, Path};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
@@ -39,7 +39,7 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 }
 
 /// The comparison of the path with generic terms beside the causes found; `None` if the residual is near the noise.
-pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<Study> {
+pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
     if rms < STRANGE_PATH_RATIO * white_noise(&study.y) {
@@ -51,7 +51,7 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<Study> {
 
 /// Sentence on an arc that is too short, for the noise of its positions, to determine its circle well. The error is the
 /// drift of a centre estimated from ever less of a slow motion.
-pub fn short_arc(path: &Path, arm: &Arm, study: &Study) -> Option<String> {
+pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let solved = study.solved.as_ref()?;
     let mut before = 0.0_f64;
     let angles = path.points.iter().map(|point| {

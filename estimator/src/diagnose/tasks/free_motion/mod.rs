@@ -22,7 +22,7 @@ use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism;
@@ -220,7 +220,7 @@ fn fixed(track: &Track) -> Model {
 }
 
 /// Inertia from a known parameter and its value per unit of inertia, with its relative standard error.
-fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
+fn inertia_by(stated: Stated, model: &Model, study: &ChannelFit) -> Option<(f64, f64)> {
     let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
     let solved = study.solved.as_ref()?;
     let variance = solved.variance(study.system.rows);

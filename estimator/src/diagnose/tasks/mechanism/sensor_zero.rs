@@ -10,7 +10,7 @@ use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{force_bias, friction_asymmetry, gravity_tilt};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -24,7 +24,7 @@ const AGREEMENT_STD_ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
 
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
-pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
+pub fn told(study: &ChannelFit, recordings: &[Recording]) -> Zero {
     let is_constant =
         |c: &Candidate| matches!((c.id, c.linear[0].0), (force_bias::ID, "b") | (friction_asymmetry::ID, "dFc"));
     let Some(constant) = study.found().iter().rfind(|(c, _)| is_constant(c)).map(|(_, values)| values[0]) else {

@@ -11,7 +11,7 @@ use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::coulomb_friction;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Effect, Inertia, Kind, Memories, Motion};
 
@@ -38,7 +38,7 @@ impl Model {
 }
 
 /// Measured force less the contribution of these regressors in a row, N.
-fn drive(study: &Study, row: usize, columns: &[(&[f64], f64)]) -> f64 {
+fn drive(study: &ChannelFit, row: usize, columns: &[(&[f64], f64)]) -> f64 {
     study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
 }
 
@@ -88,7 +88,13 @@ impl Forward for Pressed {
         consecutive(&order, &|i| self.rows[i].time_s, self.model.period_s, &|a, b| of(a) == of(b))
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let Model { law, holds, .. } = &self.model;
         let law = law.as_ref();
         let elastic = |x: f64| first_push_n(self.stiffness_n_m, law, x);
@@ -154,7 +160,13 @@ impl Forward for Sliding {
         consecutive(&all, &|i| self.rows[i].time_s, self.model.period_s, &|a, b| of(a) == of(b))
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let no_law = || NO_LAW.to_owned();
         let mass = self.model.holds;
         let mut plant: Vec<(&Candidate, &[f64])> =

@@ -18,7 +18,7 @@ use crate::diagnose::hypotheses::{
     viscous_friction,
 };
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -169,11 +169,11 @@ fn candidates(
     candidates
 }
 
-/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 /// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
 /// reversals.
 const SHAFT_RESIDUAL_RATIO: f64 = 4.0;
 
+/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
@@ -217,7 +217,7 @@ fn closely(
     (track, coarse): (&Track, &Grid),
     asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
     first_n: f64,
-) -> Result<(Study, f64), EstimateError> {
+) -> Result<(ChannelFit, f64), EstimateError> {
     let mut study = channel.clone().fit()?;
     let (mut grid, mut dry_n) = (coarse.clone(), first_n);
     for step in HOLE_REFINEMENT_STEPS {
@@ -236,7 +236,7 @@ fn closely(
 }
 
 /// Estimated dry friction, N.
-fn sliding_n(study: &Study) -> Option<f64> {
+fn sliding_n(study: &ChannelFit) -> Option<f64> {
     study.found().into_iter().find(|(c, _)| c.id == coulomb_friction::ID).map(|(_, values)| values[0])
 }
 

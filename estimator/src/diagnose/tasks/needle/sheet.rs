@@ -11,7 +11,7 @@ use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
 };
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -278,7 +278,7 @@ fn said_by_a_row(
 }
 
 /// Sensor reading at a puncture without the sheet, N: held weight and the sensor faults found.
-pub fn level_n(study: &Study, at: &Puncture) -> f64 {
+pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
     let mut place = study.base.len();

@@ -9,7 +9,7 @@ use crate::diagnose::free_run::channel::{Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Moment, Side, run};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{local_resistance, return_spring, viscous_friction};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::object::ToggleCurve;
 use haptics::law::{Effect, Inertia, Memories, Motion};
 
@@ -103,7 +103,13 @@ impl Forward for Thrown {
         self.travel.windows()
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let side = self.travel.side[window[0]].unwrap_or(0);
         let curve = self.curve(side, values);
         let is_drag = |c: &Candidate| c.id == viscous_friction::ID;
@@ -150,7 +156,13 @@ impl Forward for Captured {
         self.travel.windows()
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let side = self.points[window[0]].side;
         let goes_with_motion =
             |c: &Candidate| [viscous_friction::ID, return_spring::ID, local_resistance::ID].contains(&c.id);

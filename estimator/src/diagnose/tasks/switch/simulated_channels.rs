@@ -5,7 +5,7 @@ use crate::diagnose::hypotheses::{
     added_constraint, coulomb_friction, friction_asymmetry, local_resistance, pad_compliance, return_spring,
     viscous_friction,
 };
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Causes that a world's switch or its pads can have. A world has no change of friction over time and no length scale.
 pub(crate) const POSSIBLE: [&str; 7] = [
@@ -39,7 +39,8 @@ impl Simulated for Channel {
 }
 
 /// The hypothesis as found, and those of every rival cause.
-pub fn hypotheses(studies: &[&Study]) -> Vec<Hypothesis> {
-    let channels: Vec<(&Study, &dyn Simulated)> = studies.iter().map(|s| (*s, &Channel as &dyn Simulated)).collect();
+pub fn hypotheses(studies: &[&ChannelFit]) -> Vec<Hypothesis> {
+    let channels: Vec<(&ChannelFit, &dyn Simulated)> =
+        studies.iter().map(|s| (*s, &Channel as &dyn Simulated)).collect();
     of_channels(&channels)
 }

@@ -11,7 +11,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -226,7 +226,7 @@ pub fn best_seen(id: &str) -> Variable {
 }
 
 /// Contribution of the chosen causes to the rows.
-fn of_found(study: &Study, rows: usize) -> Vec<f64> {
+fn of_found(study: &ChannelFit, rows: usize) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     let Some(solved) = &study.solved else { return sum };
     let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].columns);

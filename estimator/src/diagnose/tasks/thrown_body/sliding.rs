@@ -8,7 +8,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
@@ -117,7 +117,13 @@ impl Forward for Slides<'_> {
         self.step_s * longest.saturating_sub(1) as f64
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let columns: Vec<(&[f64], f64)> = columns(study, picks, values).collect();
         let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| value * column[*i]).sum::<f64>();
         Ok((window.iter().map(|i| left(i).powi(2)).sum(), window.len() as f64))

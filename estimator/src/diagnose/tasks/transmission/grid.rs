@@ -1,6 +1,6 @@
 //! Search grids for half gaps and presliding distances: over the input's travel, then finer around the values found.
 
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::profile_likelihood::known;
 use crate::estimate::EstimateError;
 
@@ -32,7 +32,7 @@ impl Tried {
     }
 
     /// Adds values in these steps around the one found; false if finer values would not improve the estimate.
-    fn close_in(&mut self, study: &Study, step: f64) -> bool {
+    fn close_in(&mut self, study: &ChannelFit, step: f64) -> bool {
         let Some(k) = study.chosen.iter().position(|c| study.candidates[c.candidate].id == self.id) else {
             return false;
         };
@@ -55,8 +55,8 @@ impl Tried {
 /// Compares repeatedly, with a finer grid around the values found.
 pub fn closer(
     tried: &mut [Tried],
-    once: &dyn Fn(&[Tried]) -> Result<Study, EstimateError>,
-) -> Result<Study, EstimateError> {
+    once: &dyn Fn(&[Tried]) -> Result<ChannelFit, EstimateError>,
+) -> Result<ChannelFit, EstimateError> {
     let mut study = once(tried)?;
     for step in GAP_REFINEMENT_STEPS {
         let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);

@@ -10,7 +10,7 @@ use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::{
     coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
 };
@@ -45,7 +45,7 @@ impl Input {
     }
 
     /// Laws of the causes; `None` if one has no law.
-    fn effects(&self, study: &Study, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
+    fn effects(&self, study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
         let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
         for (candidate, own) in study.with_values(picks, values) {
             match candidate.id {
@@ -89,7 +89,13 @@ impl Forward for Input {
         })
     }
 
-    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+    fn errors(
+        &self,
+        study: &ChannelFit,
+        window: &[usize],
+        picks: &[usize],
+        values: &[f64],
+    ) -> Result<(f64, f64), String> {
         let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
         // The sensors' zeros and the load drive it; they are no laws.
         let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();

@@ -3,7 +3,7 @@
 use super::rows::Row;
 use crate::diagnose::contract::Alternative;
 use crate::diagnose::hypotheses::{coulomb_friction, force_gain};
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::{Use, solve};
 use crate::signal::noise::white_noise;
 
@@ -28,7 +28,7 @@ pub struct Told {
 impl Told {
     /// Separability in a comparison whose base model has the load as regressor `load`. `direction`: the regressor of
     /// dry friction, a value per row.
-    pub fn of(study: &Study, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
+    pub fn of(study: &ChannelFit, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
         let used: Vec<usize> = (0..rows.len())
             .filter(|i| study.layout.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
             .collect();

@@ -7,7 +7,7 @@ use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
-use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::tasks::transmission::{Side, fit, generic};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
@@ -85,7 +85,7 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
 /// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known
 /// better than the gap is.
 pub fn as_of_input(
-    study: &Study,
+    study: &ChannelFit,
     k: usize,
     mut found: Vec<CauseParameter>,
     (names, step): (&Columns, f64),
@@ -116,7 +116,7 @@ pub fn as_of_input(
 }
 
 /// Noise share of a candidate's first regressor after whitening.
-fn noise_of_own(study: &Study, candidate: usize) -> f64 {
+fn noise_of_own(study: &ChannelFit, candidate: usize) -> f64 {
     let system = &study.system;
     let first = system.places[candidate].start;
     let whitened = 1.0 + system.coefficients.iter().map(|a| a * a).sum::<f64>();

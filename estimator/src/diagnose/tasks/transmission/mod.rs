@@ -23,7 +23,7 @@ use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -51,7 +51,7 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    fn new(study: Study, rows: Vec<Row>, what: (&'static str, &'static str), floor: f64) -> Self {
+    fn new(study: ChannelFit, rows: Vec<Row>, what: (&'static str, &'static str), floor: f64) -> Self {
         let n = rows.len();
         let (channel, unit) = what;
         let (along, state) = (vec![true; n], vec![SystemState::Turning; n]);
@@ -171,7 +171,7 @@ fn best_seen(id: &str) -> Variable {
     }
 }
 
-fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<Study, EstimateError> {
+fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<ChannelFit, EstimateError> {
     const PERIOD_S: f64 = 1.0 / TRANSMISSION_ROW_HZ;
     let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], PERIOD_S);
     Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(PERIOD_S)).fit()
