@@ -17,7 +17,7 @@ pub enum Place {
     FreeX,
     /// Vertical, while nothing is touched.
     FreeY,
-    /// No force, but the displacement of a standing object (`stuck.rs`), times `scale`.
+    /// No force, but the displacement of a standing object (`stick_phases.rs`), times `scale`.
     Stuck {
         /// Load on the friction as a share of it.
         share: f64,
