@@ -34,7 +34,7 @@ fn sources(folder: &str) -> Vec<PathBuf> {
             let name = entry.file_name().to_string_lossy().into_owned();
             if path.is_dir() && name != "tests" {
                 open.push(path);
-            } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
+            } else if path.extension().is_some_and(|e| e == "rs") && !name.ends_with("tests.rs") {
                 found.push(path);
             }
         }
@@ -184,8 +184,8 @@ fn import_circles_are_small_and_stay_in_their_folder() {
                 circle.len()
             );
             let has_children = |m: &&Module| imports.keys().any(|other| other.len() > m.len() && other.starts_with(m));
-            let folder = |m: &&&Module| if has_children(*m) { m.len() } else { m.len().saturating_sub(1) };
-            let folders: BTreeSet<&[String]> = circle.iter().map(|m| &m[..folder(&m)]).collect();
+            let folder = |m: &&Module| if has_children(m) { m.len() } else { m.len().saturating_sub(1) };
+            let folders: BTreeSet<&[String]> = circle.iter().map(|m| &m[..folder(m)]).collect();
             assert!(folders.len() <= 1, "{name}: an import circle across folders: {words:?}");
         }
     }
@@ -255,7 +255,7 @@ fn comments_say_first_what_a_thing_is() {
     let openings =
         ["What ", "Whatever ", "How ", "Where ", "Whether ", "Which ", "When ", "So ", "Those ", "That ", "…"];
     for name in CRATES {
-        let (mut all, mut riddles) = (0, Vec::new());
+        let (mut all, mut riddles) = (0_usize, Vec::new());
         for path in sources(&format!("{name}/src")) {
             for line in first_lines(&product(&path)) {
                 all += 1;

@@ -177,7 +177,7 @@ fn answers(asked: &Asked) -> Value {
             Ok(analysis) => {
                 said.insert("fit".to_owned(), serde_json::to_value(&analysis.fit).expect("JSON"));
                 let simulated = simulate(&analysis.world, &recordings[0]);
-                said.insert("simulation".to_owned(), or_error(simulated.map(plain)));
+                said.insert("simulation".to_owned(), or_error(simulated.as_ref().map(plain)));
                 said.insert("world".to_owned(), serde_json::to_value(&analysis.world).expect("JSON"));
             }
             Err(error) => drop(said.insert("fit".to_owned(), Value::String(error.to_string()))),
@@ -194,7 +194,7 @@ fn or_error(said: Result<Value, impl std::fmt::Display>) -> Value {
 }
 
 /// A simulation as JSON.
-fn plain(simulation: Simulation) -> Value {
+fn plain(simulation: &Simulation) -> Value {
     let channels: Map<String, Value> =
         simulation.predicted.iter().map(|c| (c.name.clone(), Value::from(c.values.clone()))).collect();
     json!({

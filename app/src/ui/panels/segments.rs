@@ -152,7 +152,6 @@ fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
 }
 
 fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, band: Rect) {
-    let dark = ui.visuals().dark_mode;
     let (mut seek, mut change) = (None, None);
     let can_be_set = by_hand::states_can_be_set(session);
     let fits_without_states = by_hand::fits_without_states(session);
@@ -163,7 +162,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
             continue;
         }
         let rect = Rect::from_x_y_ranges(left..=(right - 0.5).max(left + 0.5), band.y_range());
-        let color = state_color(dark, interval.state);
+        let color = state_color(ui.visuals().dark_mode, interval.state);
         ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
         let ink = theme::ink_on(color);
         if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, interval.state), ink) {
@@ -203,7 +202,9 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     if can_be_set {
         change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
     }
-    change.iter().for_each(|change| by_hand::set_states(session, change));
+    if let Some(change) = &change {
+        by_hand::set_states(session, change);
+    }
     if let Some(time) = seek {
         session.document.seek(time);
     }
