@@ -44,7 +44,7 @@ fn nothing_is_said_of_objects_without_anything_hidden() {
         .par_iter()
         .map(|case| (case.seed, asked(&case.recording(), None)))
         .filter(|(_, found)| found.verdict != Verdict::None)
-        .map(|(seed, found)| (seed, found.causes.into_iter().map(|c| c.id).collect()))
+        .map(|(seed, found)| (seed, found.diagnosis.causes.into_iter().map(|c| c.id).collect()))
         .collect();
     assert!(loud.is_empty(), "{loud:?}");
 }
@@ -130,12 +130,12 @@ fn what_no_free_motion_shows_is_said_and_nothing_asks_for_a_hand() {
         let hidden = found.not_excited.iter().find(|n| n.id == id).unwrap_or_else(|| panic!("{id} was not said"));
         assert!(hidden.why.contains("no force column"), "{}", hidden.why);
     }
-    let said = serde_json::to_string(&found).expect("JSON");
+    let said = serde_json::to_string(&found.diagnosis).expect("JSON");
     for word in ["squeez", "pull", "grip", "force sensor's"] {
         assert!(!said.contains(word), "`{word}` is said of what nobody touches: {said}");
     }
     assert!(found.baseline.model.starts_with("inertia+eccentric-mass+"), "{}", found.baseline.model);
-    assert!(found.next_experiment.is_none_or(|next| next.experiment.is_none()));
+    assert!(found.diagnosis.next_experiment.is_none_or(|next| next.experiment.is_none()));
 }
 
 #[test]
