@@ -238,9 +238,9 @@ impl TrainerView {
     /// reported once.
     #[cfg(feature = "sound")]
     fn knock(&mut self, session: &mut Session) {
-        let struck_m_s = session.trainer.struck_m_s.take();
-        let limit_n = session.trainer.config().limits.max_force_n;
-        let seen = session.trainer.seen().filter(|_| session.trainer.held().is_none());
+        let struck_m_s = session.training.trainer.struck_m_s.take();
+        let limit_n = session.training.trainer.config().limits.max_force_n;
+        let seen = session.training.trainer.seen().filter(|_| session.training.trainer.held().is_none());
         let slip_m_s = seen.map_or(0.0, crate::ui::trainer::heard::slip_m_s);
         let excess = seen.is_some_and(|state| state.tip_force_n.iter().any(|force| force.norm() > limit_n));
         if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
@@ -248,12 +248,12 @@ impl TrainerView {
         }
         match self.sound.get_or_insert_with(crate::ui::sound::Sound::open) {
             Ok(sound) => {
-                sound.follow(session.comfort.loudness(), slip_m_s, excess);
+                sound.follow(session.training.comfort.loudness(), slip_m_s, excess);
                 if let Some(speed_m_s) = struck_m_s {
                     sound.strike(speed_m_s);
                 }
             }
-            Err(problem) if !problem.is_empty() => session.fail(std::mem::take(problem)),
+            Err(problem) if !problem.is_empty() => session.messages.fail(std::mem::take(problem)),
             Err(_) => {}
         }
     }
