@@ -16,6 +16,10 @@ const MOST_IN_A_CIRCLE: usize = 5;
 const MOST_FLAT_FILES: usize = 8;
 /// Most lines of a function, arms of a table (one match, one line an arm) not counted.
 const LONGEST_FUNCTION: usize = 60;
+/// Most literals of cause ids in the diagnosis outside the files of the hypotheses.
+const MOST_ID_LITERALS: usize = 5;
+/// Most fields of the window's session.
+const MOST_SESSION_FIELDS: usize = 12;
 /// Largest share of comments that begin with a relative clause or an ellipsis.
 const MOST_RIDDLES: f64 = 0.03;
 /// Comments of types that the command line and JSON print belong to the texts of the program, not to its structure.
@@ -275,4 +279,55 @@ fn comments_say_first_what_a_thing_is() {
             riddles.join("\n")
         );
     }
+}
+
+#[test]
+fn a_cause_id_is_written_once() {
+    let ids: Vec<&str> = haptics::law::causes().map(|entry| entry.id).collect();
+    assert!(ids.len() > 20, "{} causes are known", ids.len());
+    let (mut own, mut elsewhere) = (0, Vec::new());
+    for path in sources("estimator/src/diagnose") {
+        let text = product(&path);
+        let count: usize = ids.iter().map(|id| text.matches(&format!("\"{id}\"")).count()).sum();
+        if path.parent().is_some_and(|folder| folder.ends_with("hypotheses")) {
+            own += count;
+        } else if count > 0 {
+            elsewhere.push((shown(&path), count));
+        }
+    }
+    assert!(own >= ids.len(), "{own} ids stand with the hypotheses");
+    let sum: usize = elsewhere.iter().map(|(_, count)| count).sum();
+    assert!(sum <= MOST_ID_LITERALS, "{sum} literals of cause ids outside the hypotheses: {elsewhere:?}");
+}
+
+#[test]
+fn a_constant_of_the_diagnosis_stands_in_one_file() {
+    let mut files: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for path in sources("estimator/src/diagnose") {
+        for line in product(&path).lines() {
+            let words: Vec<&str> = line.split_whitespace().take_while(|word| *word != "=").collect();
+            let name = words.iter().position(|word| *word == "const").and_then(|at| words.get(at + 1));
+            // An id, a text or a flag is no tuning constant.
+            let is_number =
+                ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64"].iter().any(|n| line.contains(n));
+            if let Some(name) = name.filter(|name| is_number && name.ends_with(':')) {
+                files.entry((*name).to_owned()).or_default().insert(shown(&path));
+            }
+        }
+    }
+    assert!(files.len() > 300, "{} constants were looked at", files.len());
+    let several: Vec<_> = files.iter().filter(|(_, files)| files.len() > 1).collect();
+    assert!(several.is_empty(), "{several:?}");
+}
+
+#[test]
+fn the_session_of_the_window_holds_few_things() {
+    let session = product(&workspace().join("app/src/ui/session.rs"));
+    let fields =
+        session.split("pub struct Session {").nth(1).and_then(|rest| rest.split("\n}").next()).expect("a struct");
+    let count = fields.lines().filter(|line| line.starts_with("    pub")).count();
+    assert!((1..=MOST_SESSION_FIELDS).contains(&count), "{count} fields of the session");
+    let blocks =
+        sources("app/src/ui").iter().map(|path| product(path).matches("\nimpl Session").count()).sum::<usize>();
+    assert_eq!(blocks, 1, "`impl Session`");
 }
