@@ -1,12 +1,13 @@
 //! One cause of an answer: parameters, probability, gain and evidence sentence.
 
 use super::part::{Part, Role};
-use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain};
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::all::twins;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::length_scale;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::estimates::{number, parameters};
+use crate::diagnose::selection::estimates::parameters;
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use crate::diagnose::selection::stepwise::{SelectedTerm, is_curve};
 use crate::words::amount;
@@ -75,7 +76,7 @@ impl Part<'_> {
         } else {
             ""
         };
-        let link = if candidate.id == "length-scale"
+        let link = if candidate.id == length_scale::ID
             && candidate.linear.first().is_some_and(|(n, _)| n.starts_with("link_error"))
         {
             "; the length is that of the first link (an error of the second link's, as large and the other way round, makes the same path but for the size of \
@@ -183,7 +184,7 @@ fn size_of_term(study: &ChannelFit, term: usize) -> (Vec<CauseParameter>, f64) {
     let variance = solved.variance(study.system.rows);
     let names: &[&str] = if candidate.columns.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
     let parameters = names.iter().zip(first..).map(|(name, i)| {
-        number(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), candidate.linear[i - first].1)
+        parameter(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), candidate.linear[i - first].1)
     });
     // Other generic terms with as small a residual.
     let others = (0..study.candidates.len()).filter(|c| study.candidates[*c].expression.is_some());

@@ -1,6 +1,6 @@
 use super::comparison::ChannelFit;
 use super::profile_likelihood::{firsts, settled};
-use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::pad_compliance;
@@ -20,20 +20,20 @@ pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
             match own.id {
                 // The answer states the stiffness, while the estimate is a compliance.
                 _ if own.channel.is_some() => of_channel(own, name, value, error),
-                pad_compliance::ID => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
-                _ => number(name, value, error, unit),
+                pad_compliance::ID => parameter("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
+                _ => parameter(name, value, error, unit),
             }
         })
         .collect();
     let searched = own.searched.iter().zip(&settled.searched[k]);
-    found.extend(searched.map(|(s, known)| number(s.name, known.value, known.std_error, s.unit)));
+    found.extend(searched.map(|(s, known)| parameter(s.name, known.value, known.std_error, s.unit)));
     found
 }
 
 /// Parameter of an effect in proportion to a recorded channel, per unit of that channel.
 pub(crate) fn of_channel(candidate: &Candidate, name: &str, value: f64, std_error: f64) -> CauseParameter {
     let (channel, unit) = candidate.channel.clone().unwrap_or_default();
-    number(&format!("{name} with {channel}"), value, std_error, &format!("1/{unit}"))
+    parameter(&format!("{name} with {channel}"), value, std_error, &format!("1/{unit}"))
 }
 
 /// Parameters of a hardening spring: stiffness, force, hardening and rest position, from the coefficients of two
@@ -65,9 +65,5 @@ pub(crate) fn of_hardening_spring(track: &Track, study: &ChannelFit, k: usize) -
     };
     let specs = ReturnSpring.parameters();
     let unit = |i: usize| if track.coordinate == Coordinate::Angular { specs[i].unit_angular } else { specs[i].unit };
-    Some((0..4).map(|i| number(specs[i].name, found[i], error(i), unit(i))).collect())
-}
-
-pub(crate) fn number(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter {
-    CauseParameter { name: name.to_owned(), value, std_error, unit: unit.to_owned() }
+    Some((0..4).map(|i| parameter(specs[i].name, found[i], error(i), unit(i))).collect())
 }

@@ -15,6 +15,7 @@ use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::{backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
 use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::estimates::of_hardening_spring;
@@ -119,8 +120,8 @@ fn state(track: &Track, i: usize) -> Option<(&'static str, SystemState)> {
 /// Causes that act at reversals alone, for a motion without any.
 fn without_reversals(track: &Track) -> impl Iterator<Item = NotExcited> {
     // Along one coordinate, friction by direction then equals dry friction.
-    let by_direction = (!track.planar).then_some("friction-asymmetry");
-    let hidden = ["backlash", "hysteresis"].into_iter().chain(by_direction).filter(|_| track.goes_one_way());
+    let by_direction = (!track.planar).then_some(friction_asymmetry::ID);
+    let hidden = [backlash::ID, hysteresis::ID].into_iter().chain(by_direction).filter(|_| track.goes_one_way());
     hidden.map(|id| NotExcited {
         id: id.to_owned(),
         why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
@@ -130,9 +131,9 @@ fn without_reversals(track: &Track) -> impl Iterator<Item = NotExcited> {
 /// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
 pub fn without_known(weight: bool, length: bool) -> Vec<NotExcited> {
     let hidden = [
-        ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),
+        (force_gain::ID, weight, "no weight is known; state one in the sidecar, or hang one on"),
         (
-            "length-scale",
+            length_scale::ID,
             length,
             "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
         ),
