@@ -28,7 +28,7 @@ pub fn diagnose(session: &mut Session, ctx: &egui::Context) {
     });
 }
 
-/// Makes the worlds without and with what was found, in the background.
+/// Makes the worlds of the base model and of the extended model in the background.
 pub fn extend_model(session: &mut Session, ctx: &egui::Context) {
     let Some(answer) = session.diagnosing.answer.clone() else { return };
     let (recordings, choice, from) =

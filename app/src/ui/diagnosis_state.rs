@@ -76,7 +76,7 @@ pub struct Diagnosing {
     pub answer: Option<Arc<Answer>>,
     /// Why nothing did, in one sentence.
     pub problem: Option<String>,
-    /// The worlds without and with what was found, once the model was extended.
+    /// Worlds of the base model and of the extended model, once they were made.
     pub worlds: Option<Arc<Worlds>>,
     /// Why there are none, in one sentence.
     pub worlds_problem: Option<String>,
@@ -114,7 +114,7 @@ pub fn ask(
     Ok(Answer { diagnosis, residuals, atlas, from })
 }
 
-/// The worlds without and with what was found; the sentence of an error.
+/// Worlds of the base model and of the extended model, or the sentence of an error.
 pub fn extend(
     recordings: &[Arc<Prepared>],
     choice: &FitChoice,

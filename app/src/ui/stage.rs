@@ -298,7 +298,7 @@ fn against_each_other(session: &mut Session) {
     (session.plots.xy.x, session.plots.xy.y) = (axis("y1_m"), axis("net_y_N"));
 }
 
-/// A plot of what is left over of every quantity that the model predicts, and only those quantities.
+/// One plot of the residual for each quantity that the model predicts.
 fn what_is_left(session: &mut Session) {
     let Some(prepared) = session.document.prepared().cloned() else { return };
     for group in &prepared.groups {

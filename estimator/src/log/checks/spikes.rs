@@ -136,7 +136,7 @@ fn is_spike(values: &[f64], at: usize, position: bool, least: f64) -> bool {
     rest && height > SPIKE_STEPS * usual
 }
 
-/// The largest step around a sample, but for those to and from it and `FORGIVEN` others.
+/// Largest step around a sample, without the two steps at the sample itself and `FORGIVEN` others.
 fn usual_step(values: &[f64], at: usize) -> f64 {
     let mut others = [0.0; FORGIVEN + 1];
     let (first, end) = (at.saturating_sub(AROUND), (at + AROUND).min(values.len() - 1));
