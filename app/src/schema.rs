@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 pub fn all() -> Vec<(&'static str, Value)> {
     vec![
         ("bench", of::<cli::bench::table::Said>("bench, bench diagnosis")),
+        ("bench-ablation", of::<cli::bench::ablation::Said>("bench ablation")),
         ("bench-blind", of::<cli::bench::blind::Said>("bench blind")),
         ("bench-delay", of::<cli::bench::delay::Said<'_>>("bench delay")),
         ("bench-frames", of::<cli::bench::frames::Said>("bench frames")),

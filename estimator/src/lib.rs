@@ -25,6 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "ablation")]
+pub mod ablation;
 pub mod assistant;
 pub mod calibrate;
 pub mod cancellation;

@@ -1,6 +1,7 @@
 //! `touchstone bench`. This file has `bench servo`: the timing of the servo on this machine, with and without drawing
 //! beside it. Without a subcommand, `bench` prints all figures in one table (`whole`).
 
+pub(crate) mod ablation;
 pub(crate) mod blind;
 pub(crate) mod delay;
 mod diagnosis;
@@ -55,6 +56,8 @@ enum What {
     Servo(ServoBench),
     /// How often the diagnosis names what is hidden in generated recordings, and how often something where nothing is
     Blind(blind::BlindBench),
+    /// Which constants of the estimation decide answers: each halved and doubled (for developers; builds the sources)
+    Ablation(ablation::AblationBench),
     /// How long diagnoses of a minute at 1 kHz take
     Diagnosis(diagnosis::DiagnosisBench),
     /// What a picture of each panel costs the processor, with a long log
@@ -145,6 +148,7 @@ impl What {
             Self::Servo(bench) => bench.run(),
             Self::Online(bench) => bench.run(),
             Self::Blind(bench) => bench.run(),
+            Self::Ablation(bench) => bench.run(),
             Self::Diagnosis(bench) => bench.run(),
             Self::Frames(bench) => bench.run(),
             Self::Delay(bench) => bench.run(),

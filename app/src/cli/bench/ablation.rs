@@ -1,0 +1,237 @@
+//! `touchstone bench ablation`: each numeric constant of the diagnosis and of the identification halved and doubled, and
+//! the answers that change.
+
+mod schemata;
+
+use super::super::{Output, progress};
+use anyhow::{Context, bail};
+use clap::Args;
+use schemars::JsonSchema;
+use schemata::{Constant, Sources};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// Arguments of `bench ablation`.
+#[derive(Args)]
+pub struct AblationBench {
+    /// Checkout of the sources [default: the one that this program was built from]
+    #[arg(long)]
+    source: Option<PathBuf>,
+    /// Seeds of the cases
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
+    seeds: Vec<u64>,
+    /// Only every so many cases of the blind battery
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    every: u64,
+    /// A factor of a constant is tried no more after so many changed answers of one process
+    #[arg(long, default_value_t = 3)]
+    enough: u64,
+    /// Factors of each constant
+    #[arg(long, value_delimiter = ',', default_value = "0.5,2")]
+    factors: Vec<f64>,
+    /// Only constants of these names
+    #[arg(long, value_delimiter = ',')]
+    only: Vec<String>,
+    /// Writes the table as Markdown
+    #[arg(long)]
+    write: Option<PathBuf>,
+}
+
+/// Answers that changed when a constant was multiplied by one factor.
+#[derive(Clone, Copy, Debug, Default, JsonSchema, Serialize)]
+struct Counts {
+    /// Cases that were asked.
+    asked: usize,
+    /// Cases with any other digit.
+    digits: usize,
+    /// Cases with an estimate that moved by more than half its standard error, and the same words.
+    moved: usize,
+    /// Cases with another verdict, cause, alternative, or identified parameter, still as right or wrong as before.
+    words: usize,
+    /// Right answers that became wrong.
+    worse: usize,
+    /// Wrong answers that became right.
+    better: usize,
+}
+
+/// A constant with its counts, one for each factor.
+#[derive(JsonSchema, Serialize)]
+struct Row {
+    name: String,
+    file: String,
+    line: usize,
+    value: String,
+    counts: Vec<Counts>,
+}
+
+/// What `bench ablation --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Seeds of the cases.
+    seeds: Vec<u64>,
+    /// Number of cases.
+    cases: usize,
+    /// Cases whose answer is right with all constants as they are.
+    right: usize,
+    /// Factors of each constant.
+    factors: Vec<f64>,
+    /// Names that must stay constants: lengths of arrays, patterns.
+    fixed: usize,
+    /// Each constant.
+    constants: Vec<Row>,
+}
+
+impl AblationBench {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let source = self.source.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
+        let source = source.canonicalize().with_context(|| format!("{}: no sources; give --source", source.display()))?;
+        let copy = source.join("target/ablation/sources");
+        let (constants, fixed) =
+            progress::during("building the sources with constants that vary", |_| build(&source, &copy))?;
+        let cases = self.ask(&copy, &constants)?;
+        let said = self.said(&cases, &constants, fixed);
+        if let Some(path) = &self.write {
+            std::fs::write(path, markdown(&said)).with_context(|| path.display().to_string())?;
+        }
+        Ok(Output { text: markdown(&said), json: serde_json::to_value(&said)? })
+    }
+
+    /// Asks all cases of all seeds in as many processes as there are cores.
+    fn ask(&self, copy: &Path, constants: &[Constant]) -> anyhow::Result<Vec<Value>> {
+        let parts = thread::available_parallelism().map_or(1, usize::from);
+        let named = constants.iter().enumerate().filter(|(_, c)| self.only.contains(&c.name));
+        let only: Vec<String> = named.map(|(k, _)| k.to_string()).collect();
+        let factors: Vec<String> = self.factors.iter().map(f64::to_string).collect();
+        let done = AtomicUsize::new(0);
+        let one = |seed: u64, part: usize| -> anyhow::Result<Vec<Value>> {
+            let mut child = Command::new(copy.join("../target/debug/ablate"));
+            child.env("ABLATE_SEED", seed.to_string()).env("ABLATE_PART", part.to_string());
+            child.env("ABLATE_PARTS", parts.to_string()).env("ABLATE_EVERY", self.every.to_string());
+            child.env("ABLATE_ENOUGH", self.enough.to_string()).env("ABLATE_FACTORS", factors.join(","));
+            child.env("ABLATE_ONLY", only.join(",")).env("RAYON_NUM_THREADS", "1");
+            let mut child = child.stdout(Stdio::piped()).spawn().context("the cases run")?;
+            let lines = BufReader::new(child.stdout.take().context("a process without output")?).lines();
+            let mut cases = Vec::new();
+            for line in lines {
+                cases.push(serde_json::from_str(&line?)?);
+                eprintln!("{} cases", done.fetch_add(1, Ordering::Relaxed) + 1);
+            }
+            if !child.wait()?.success() {
+                bail!("the process that asks the cases of seed {seed} ended early");
+            }
+            Ok(cases)
+        };
+        let mut all = Vec::new();
+        for &seed in &self.seeds {
+            let parts: Vec<_> = thread::scope(|scope| {
+                let one = &one;
+                let threads: Vec<_> = (0..parts).map(|part| scope.spawn(move || one(seed, part))).collect();
+                threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+            });
+            for part in parts {
+                all.extend(part?);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Counts the changes of every constant.
+    fn said(&self, cases: &[Value], constants: &[Constant], fixed: usize) -> Said {
+        let mut counts: BTreeMap<usize, Vec<Counts>> = BTreeMap::new();
+        for variant in cases.iter().filter_map(|case| case["variants"].as_array()).flatten() {
+            let (Some(index), Some(factor)) = (variant[0].as_u64(), variant[1].as_f64()) else { continue };
+            let Some(which) = self.factors.iter().position(|f| *f == factor) else { continue };
+            let of = counts.entry(index as usize).or_insert_with(|| vec![Counts::default(); self.factors.len()]);
+            let of = &mut of[which];
+            of.asked += 1;
+            match variant[2].as_str().unwrap_or_default() {
+                "digits" => of.digits += 1,
+                "moved" => of.moved += 1,
+                "words" => of.words += 1,
+                "worse" => of.worse += 1,
+                "better" => of.better += 1,
+                _ => {}
+            }
+        }
+        let row = |(k, c): (usize, &Constant)| Row {
+            name: c.name.clone(),
+            file: c.file.display().to_string(),
+            line: c.line,
+            value: c.value.clone(),
+            counts: counts.remove(&k).unwrap_or_else(|| vec![Counts::default(); self.factors.len()]),
+        };
+        Said {
+            seeds: self.seeds.clone(),
+            cases: cases.len(),
+            right: cases.iter().filter(|case| case["right"] == json!(true)).count(),
+            factors: self.factors.clone(),
+            fixed,
+            constants: constants.iter().enumerate().map(row).collect(),
+        }
+    }
+}
+
+/// Copies and rewrites the sources, and builds the program that asks the cases. Returns the constants that vary, and the
+/// number of names that do not.
+fn build(source: &Path, copy: &Path) -> anyhow::Result<(Vec<Constant>, usize)> {
+    schemata::copy(source, copy)?;
+    let mut sources = Sources::read(source)?;
+    loop {
+        let constants = sources.write(copy)?;
+        let built = Command::new("cargo")
+            .args(["build", "-p", "tests", "--bin", "ablate", "--features", "ablation", "--message-format=json"])
+            .env("CARGO_TARGET_DIR", copy.join("../target"))
+            .env("RUSTFLAGS", "-Awarnings")
+            .current_dir(copy)
+            .stderr(Stdio::null())
+            .output()
+            .context("cargo builds the copy")?;
+        if built.status.success() {
+            return Ok((constants, sources.fixed()));
+        }
+        let messages = String::from_utf8_lossy(&built.stdout);
+        if !sources.keep_fixed(copy, &messages)? {
+            let rendered = messages.lines().filter_map(|l| serde_json::from_str::<Value>(l).ok());
+            let errors = rendered.filter(|m| m["message"]["level"] == "error");
+            let first: Vec<String> =
+                errors.filter_map(|m| m["message"]["rendered"].as_str().map(str::to_owned)).take(3).collect();
+            bail!("the sources with constants that vary do not build:\n{}", first.join("\n"));
+        }
+    }
+}
+
+/// The table.
+fn markdown(said: &Said) -> String {
+    let seeds: Vec<String> = said.seeds.iter().map(u64::to_string).collect();
+    let mut text = format!(
+        "# Ablation of constants\n\n`touchstone bench ablation --seeds {}`: {} cases, {} of them right. \
+         Changed answers of those asked, by factor.\n\n| constant | value |",
+        seeds.join(","),
+        said.cases,
+        said.right
+    );
+    for factor in &said.factors {
+        let _ = write!(text, " × {factor}: asked | digits | moved | words | worse | better |");
+    }
+    let _ = write!(text, "\n|---|---|{}\n", "--:|--:|--:|--:|--:|--:|".repeat(said.factors.len()));
+    for row in &said.constants {
+        let file = row.file.trim_start_matches("estimator/src/").trim_end_matches(".rs");
+        let value = row.value.replace('|', "\\|").replace('\n', " ");
+        let _ = write!(text, "| `{file}` {} | {value} |", row.name);
+        for c in &row.counts {
+            let cells = [c.asked, c.digits, c.moved, c.words, c.worse, c.better];
+            for n in cells {
+                let _ = write!(text, " {} |", if n == 0 { "–".to_owned() } else { n.to_string() });
+            }
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,206 @@
+//! Cases of `touchstone bench ablation`: asks each with every constant that it reads multiplied by given factors.
+//!
+//! Runs in a copy of the sources whose constants can be varied. Prints one JSON line a case. Truth is opened by the
+//! scorers of the batteries alone.
+
+use blind::{Counts, Set, battery};
+use estimator::ablation::{reset, vary};
+use estimator::diagnose::{Findings, Options, diagnose};
+use estimator::pipeline::{self, analyse};
+use haptics::recording::Recording;
+use serde_json::{Value, json};
+use std::collections::{HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use tests::tasks::{barrel, blocks, needle, score, slide, switch, throw};
+
+/// An estimate has moved by this many of its standard errors.
+const MOVED_ERRORS: f64 = 0.5;
+
+/// Prints the score of an answer: right or not.
+type Judge = Box<dyn Fn(Result<Findings, String>) -> bool>;
+
+/// A case, its scorer closed over its truth.
+struct Case {
+    name: String,
+    recordings: Vec<Recording>,
+    options: Options,
+    is_right: Judge,
+}
+
+/// An answer, reduced to the parts that are compared.
+struct Outcome {
+    digits: u64,
+    estimates: HashMap<String, (f64, f64)>,
+    words: String,
+    is_right: bool,
+}
+
+/// Change of an answer, from none to a right answer that becomes wrong or the other way round.
+#[derive(Clone, Copy, PartialEq)]
+enum Change {
+    None,
+    Digits,
+    Moved,
+    Words,
+    Worse,
+    Better,
+}
+
+impl Change {
+    fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Digits => "digits",
+            Self::Moved => "moved",
+            Self::Words => "words",
+            Self::Worse => "worse",
+            Self::Better => "better",
+        }
+    }
+
+    fn between(was: &Outcome, is: &Outcome) -> Self {
+        let moved = |(name, (value, error)): (&String, &(f64, f64))| {
+            is.estimates.get(name).is_none_or(|(other, _)| (other - value).abs() > MOVED_ERRORS * error)
+        };
+        match (was.is_right, is.is_right) {
+            (true, false) => Self::Worse,
+            (false, true) => Self::Better,
+            _ if was.words != is.words => Self::Words,
+            _ if was.estimates.iter().any(moved) => Self::Moved,
+            _ if was.digits != is.digits => Self::Digits,
+            _ => Self::None,
+        }
+    }
+}
+
+fn main() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let [seed, part, parts, every, enough] =
+        ["ABLATE_SEED", "ABLATE_PART", "ABLATE_PARTS", "ABLATE_EVERY", "ABLATE_ENOUGH"]
+            .map(|name| number(name).unwrap_or_else(|| panic!("{name} is not set to a whole number")));
+    let list = |name: &str| std::env::var(name).unwrap_or_default().split(',').map(str::to_owned).collect::<Vec<_>>();
+    let factors: Vec<f64> = list("ABLATE_FACTORS").iter().filter_map(|text| text.parse().ok()).collect();
+    let only: HashSet<usize> = list("ABLATE_ONLY").iter().filter_map(|text| text.parse().ok()).collect();
+    // A constant far from its value may break an invariant: that is an answer, too, and needs no text.
+    set_hook(Box::new(|_| {}));
+    let mut changed: HashMap<(usize, usize), u64> = HashMap::new();
+    for make in cases(seed, every as usize).into_iter().skip(part as usize).step_by(parts as usize) {
+        let case = make();
+        drop(reset());
+        let was = ask(&case);
+        let read = reset();
+        let mut variants = Vec::new();
+        for &index in read.iter().filter(|index| only.is_empty() || only.contains(*index)) {
+            for (which, &factor) in factors.iter().enumerate() {
+                let changes = changed.entry((index, which)).or_default();
+                if *changes >= enough {
+                    continue;
+                }
+                vary(index, factor);
+                let change = Change::between(&was, &ask(&case));
+                drop(reset());
+                if matches!(change, Change::Words | Change::Worse | Change::Better) {
+                    *changes += 1;
+                }
+                variants.push(json!([index, factor, change.name()]));
+            }
+        }
+        println!("{}", json!({"case": case.name, "right": was.is_right, "variants": variants}));
+    }
+}
+
+/// Diagnoses and fits a case.
+fn ask(case: &Case) -> Outcome {
+    let panicked = |_| Err("panic".to_owned());
+    let diagnosed = || diagnose(&case.recordings, &case.options).map_err(|e| e.to_string());
+    let answer = catch_unwind(AssertUnwindSafe(diagnosed)).unwrap_or_else(panicked);
+    let options = pipeline::Options { task: case.options.task, ..pipeline::Options::default() };
+    let fitted = || analyse(&case.recordings, &options).map(|a| a.fit).map_err(|e| e.to_string());
+    let fit = catch_unwind(AssertUnwindSafe(fitted)).unwrap_or_else(|_| Err("panic".to_owned()));
+    let mut estimates = HashMap::new();
+    let mut words = Vec::new();
+    let mut digits = DefaultHasher::new();
+    match &answer {
+        Ok(findings) => {
+            let said = serde_json::to_value(&findings.diagnosis).unwrap_or(Value::Null);
+            said.to_string().hash(&mut digits);
+            words.push(format!("{:?}", findings.verdict));
+            words.extend(findings.causes.iter().map(|c| c.id.clone()));
+            words.push("or".to_owned());
+            words.extend(findings.alternatives.iter().map(|a| a.id.clone()));
+            for cause in &findings.causes {
+                for p in &cause.parameters {
+                    estimates.insert(format!("{} {}", cause.id, p.name), (p.value, p.std_error));
+                }
+            }
+        }
+        Err(sentence) => words.push(sentence.clone()),
+    }
+    match &fit {
+        Ok(fit) => {
+            serde_json::to_string(fit).unwrap_or_default().hash(&mut digits);
+            for p in &fit.parameters {
+                words.push(format!("{}{}", p.name, if p.identified { "" } else { "?" }));
+                if let (true, Some(value), Some(error)) = (p.identified, p.value, p.std_error) {
+                    estimates.insert(p.name.clone(), (value, error));
+                }
+            }
+        }
+        Err(sentence) => words.push(sentence.clone()),
+    }
+    Outcome { digits: digits.finish(), estimates, words: words.join(" "), is_right: (case.is_right)(answer) }
+}
+
+/// Every `every`-th case of the fast blind battery, and every kind of every other task once.
+fn cases(seed: u64, every: usize) -> Vec<Box<dyn Fn() -> Case>> {
+    let mut all: Vec<Box<dyn Fn() -> Case>> = Vec::new();
+    for job in battery(Counts::FAST, seed).into_iter().step_by(every) {
+        all.push(Box::new(move || {
+            let (case, truth) = job.make();
+            let (options, recordings) = (blind::score::options(&case), case.recordings.clone());
+            let name = format!("{} {}", job.set.name(), job.seed);
+            let job = job.clone();
+            let is_right = move |answer| {
+                let row = blind::score::Row::new(&job, &case, &truth, answer, 0.0);
+                let (named, hidden) = (row.named(), row.ids());
+                let known = |id: &&str| hidden.contains(id) || row.equals.contains(id);
+                let found = |id: &&str| named.contains(id) || row.equals.iter().any(|e| named.contains(e));
+                row.answer.is_ok()
+                    && named.iter().all(known)
+                    && (matches!(row.set, Set::Null | Set::Nameless) || hidden.iter().all(found))
+            };
+            Case { name, recordings, options, is_right: Box::new(is_right) }
+        }));
+    }
+    macro_rules! add {
+        ($task:ident) => {
+            for (name, kind) in $task::Kind::ALL {
+                all.push(Box::new(move || {
+                    let (case, truth) = $task::make(kind, seed);
+                    let is_right = move |answer| {
+                        let row = score::Row { kind: name, seed, truth: truth.clone(), answer };
+                        row.right() && row.spurious() == 0
+                    };
+                    let name = format!("{} {name} {seed}", stringify!($task));
+                    Case { name, recordings: case.recordings, options: case.options, is_right: Box::new(is_right) }
+                }));
+            }
+        };
+    }
+    add!(blocks);
+    add!(slide);
+    add!(barrel);
+    add!(needle);
+    add!(switch);
+    add!(throw);
+    // A part of the cases holds some of every task.
+    let count = all.len();
+    let stride = (1..count).rev().find(|s| gcd(*s, count) == 1 && *s < count / 2).unwrap_or(1);
+    let mut order: Vec<Option<Box<dyn Fn() -> Case>>> = all.into_iter().map(Some).collect();
+    (0..count).filter_map(|k| order[k * stride % count].take()).collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
