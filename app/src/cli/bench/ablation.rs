@@ -91,7 +91,8 @@ pub(crate) struct Said {
 impl AblationBench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let source = self.source.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
-        let source = source.canonicalize().with_context(|| format!("{}: no sources; give --source", source.display()))?;
+        let source =
+            source.canonicalize().with_context(|| format!("{}: no sources; give --source", source.display()))?;
         let copy = source.join("target/ablation/sources");
         let (constants, fixed) =
             progress::during("building the sources with constants that vary", |_| build(&source, &copy))?;

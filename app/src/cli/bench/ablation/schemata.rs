@@ -70,8 +70,7 @@ impl Sources {
             for path in paths {
                 let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
                 let product = text.find(TESTS).map_or(text.as_str(), |cut| &text[..cut]);
-                let stream: TokenStream =
-                    product.parse().map_err(|e| anyhow::anyhow!("{}: {e}", path.display()))?;
+                let stream: TokenStream = product.parse().map_err(|e| anyhow::anyhow!("{}: {e}", path.display()))?;
                 let mut tokens = Vec::new();
                 flatten(stream, &mut tokens);
                 let file = path.strip_prefix(workspace).unwrap_or(&path).to_owned();
@@ -260,7 +259,8 @@ impl Source {
             if !names.contains(name.text.as_str()) {
                 continue;
             }
-            let [keyword, colon, equals, end] = [d.name - 1, d.colon, d.equals, d.end].map(|k| self.tokens[k].at.clone());
+            let [keyword, colon, equals, end] =
+                [d.name - 1, d.colon, d.equals, d.end].map(|k| self.tokens[k].at.clone());
             let value = self.text[equals.end..end.start].trim().to_owned();
             edits.push((keyword, "fn".to_owned()));
             edits.push((colon, "() -> ".to_owned()));

@@ -5,6 +5,7 @@ use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
@@ -27,7 +28,7 @@ const OTHER_PLACE_M: f64 = 5e-4;
 /// Standard errors from which a sheet is inclined to the needle.
 const CLEARLY_ASKEW: f64 = 3.0;
 /// Tried shares of the deepest indentation that stay as a dent.
-const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
+const DENTS: Axis = Axis::geometric(0.04, 0.66, 16);
 
 /// Rows of the sheet, with the base model and all candidates.
 pub struct Columns {
@@ -187,7 +188,7 @@ fn candidates(
         let drift = Candidate::one(force_drift::ID, Kind::Instrument, "rate", "N/s", since);
         if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
     }));
-    for dent in DENTS {
+    for dent in DENTS.values() {
         candidates.push(acts(Law::Dent(dent), hysteresis::ID, "share", "1").at("dent", dent, "1"));
     }
     if law.is_some_and(|l| l.give > 0.0) {

@@ -11,7 +11,9 @@ use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::experiment::strokes::PEAK;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::local_resistance::PLACES;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
@@ -28,9 +30,8 @@ use haptics::law::{Effect, Kind, LocalResistance, Motion};
 const WORLD_STD_ERRORS: f64 = 3.0;
 /// Distance from a corner of the world's curve within which rows are left out, m.
 const CURVE_CORNER_M: f64 = 0.8e-3;
-/// Number of tried places of a local resistance, and its widths as shares of the travel.
-const CURVE_PLACES: usize = 24;
-const CURVE_WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
+/// Tried widths of a local resistance, as shares of the travel.
+const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
 const LEAST_CURVE_ROWS: usize = 40;
 /// Least number of rows in a local resistance.
 const LEAST_ON: usize = 20;
@@ -164,9 +165,8 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
     let names = vec![("k", "N/m"), ("f0", "N")];
     found.push(Candidate::several(return_spring::ID, Kind::Plant, spring, names).shaped(Shape::Spring { half }));
-    for k in 1..CURVE_PLACES {
-        let place = half * (2.0 * k as f64 / CURVE_PLACES as f64 - 1.0);
-        for width in CURVE_WIDTHS.map(|share| 2.0 * half * share) {
+    for place in PLACES.values().map(|share| half * (2.0 * share - 1.0)) {
+        for width in CURVE_WIDTHS.values().map(|share| 2.0 * half * share) {
             let bind = one(local_resistance::ID, "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
             if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
