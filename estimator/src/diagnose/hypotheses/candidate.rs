@@ -154,6 +154,12 @@ impl Candidate {
         }
     }
 
+    /// A generic term: regressors without a physical law, in this unit.
+    pub fn term(expression: String, unit: &'static str, columns: Vec<Vec<f64>>) -> Self {
+        let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
+        Self { expression: Some(expression), ..Self::several("other", Kind::Plant, columns, linear) }
+    }
+
     /// Adds one more searched value.
     pub fn at(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.searched.push(Searched { name, value, unit });

@@ -122,10 +122,7 @@ fn without_reversals(track: &Track) -> impl Iterator<Item = NotExcited> {
     // Along one coordinate, friction by direction then equals dry friction.
     let by_direction = (!track.planar).then_some(friction_asymmetry::ID);
     let hidden = [backlash::ID, hysteresis::ID].into_iter().chain(by_direction).filter(|_| track.goes_one_way());
-    hidden.map(|id| NotExcited {
-        id: id.to_owned(),
-        why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
-    })
+    hidden.map(|id| NotExcited::new(id, "no reversal in the recording; move to and fro, also in short strokes"))
 }
 
 /// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
@@ -138,6 +135,5 @@ pub fn without_known(weight: bool, length: bool) -> Vec<NotExcited> {
             "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
         ),
     ];
-    let unknown = hidden.into_iter().filter(|(_, known, _)| !known);
-    unknown.map(|(id, _, why)| NotExcited { id: id.to_owned(), why: why.to_owned() }).collect()
+    hidden.into_iter().filter(|(_, known, _)| !known).map(|(id, _, why)| NotExcited::new(id, why)).collect()
 }

@@ -1,6 +1,6 @@
 //! Correction of a time delay: the forces are shifted back and the diagnosis is repeated.
 
-use crate::diagnose::contract::{Baseline, Cause, CauseParameter, Gain, Verdict};
+use crate::diagnose::contract::{Baseline, Cause, Gain, Verdict, parameter};
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
@@ -113,11 +113,10 @@ pub(crate) fn with_delay(mut found: Findings, first: &Findings, late_s: f64, bac
 /// A delay that the first answer did not name, as a cause.
 pub(crate) fn unnamed_before(first: &Findings, late_s: f64) -> Cause {
     let before = told(first);
-    let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
     Cause {
         id: ID.to_owned(),
         kind: Kind::Instrument,
-        parameters: vec![parameter],
+        parameters: vec![parameter("tau", late_s, 0.0, "s")],
         p_value: 0.0,
         posterior: 1.0,
         gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },

@@ -66,13 +66,6 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
 }
 
-/// Causes that depend on speed or time.
-fn without_a_clock() -> impl Iterator<Item = NotExcited> {
-    [inertia::ID, viscous_friction::ID, time_delay::ID]
-        .into_iter()
-        .map(|id| NotExcited { id: id.to_owned(), why: "there is no clock; give a t_s column or rate_hz".to_owned() })
-}
-
 /// Diagnoses paths of one mechanism.
 pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut rows, mut kinds) = (Vec::new(), Vec::new());
@@ -96,12 +89,15 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
     ));
-    beside.not_excited.extend(without_a_clock());
+    // Causes that depend on speed or time.
+    let timed = [inertia::ID, viscous_friction::ID, time_delay::ID];
+    let why = "there is no clock; give a t_s column or rate_hz";
+    beside.not_excited.extend(timed.map(|id| NotExcited::new(id, why)));
     let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {
-        let why = "no force was recorded: a path alone shows its shape".to_owned();
-        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+        let why = "no force was recorded: a path alone shows its shape";
+        beside.not_excited.push(NotExcited::new(coulomb_friction::ID, why));
         return Ok(answer(&[], beside));
     }
     if drives_backwards(&rows) {
@@ -243,8 +239,7 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
     }
     candidates.extend((1..=4).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
-        let expression = Some(format!("cos({n} pi s/S)"));
-        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+        Candidate::term(format!("cos({n} pi s/S)"), "", vec![wave])
     }));
     let n = rows.len();
     let y = of(&|r| r.force);

@@ -42,6 +42,7 @@ pub struct Grasp {
 }
 
 /// Rows of all recordings.
+#[derive(Default)]
 struct Rows {
     recording: Vec<usize>,
     number: Vec<usize>,
@@ -49,21 +50,14 @@ struct Rows {
     width_m: Vec<f64>,
     grip_n: Vec<f64>,
     rate_m_s: Vec<f64>,
+    /// Middle of the tips, x and y.
+    place_m: [Vec<f64>; 2],
     state: Vec<SystemState>,
     stretch: Vec<usize>,
 }
 
 fn rows(seen: &[Seen<'_>]) -> Rows {
-    let mut rows = Rows {
-        recording: Vec::new(),
-        number: Vec::new(),
-        time_s: Vec::new(),
-        width_m: Vec::new(),
-        grip_n: Vec::new(),
-        rate_m_s: Vec::new(),
-        state: Vec::new(),
-        stretch: Vec::new(),
-    };
+    let mut rows = Rows::default();
     let mut owner = Vec::new();
     for (k, one) in seen.iter().enumerate() {
         for number in 1..=one.count {
@@ -74,6 +68,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
                 rows.width_m.push(one.blocks.width[i]);
                 rows.grip_n.push(one.blocks.grip[i]);
                 rows.rate_m_s.push(one.blocks.width_rate[i]);
+                rows.place_m.iter_mut().zip(&one.place).for_each(|(all, own)| all.push(own[i]));
                 rows.state.push(one.state(i));
                 owner.push((k, number));
             }
@@ -114,7 +109,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
         let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
         candidates.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", column));
     }
-    candidates.extend(generic(seen, &rows));
+    candidates.extend(generic(&rows));
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let means = (1..=blocks)
         .map(|k| {
@@ -170,25 +165,10 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
 }
 
 /// Generic terms of the residual: waves over time, and positions.
-fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
-    let term = |expression: String, column: Vec<f64>| Candidate {
-        expression: Some(expression),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-    };
-    let mut found: Vec<Candidate> = slow_waves(&rows.time_s, 4, "").collect();
-    let mut places = [Vec::new(), Vec::new()];
-    for one in seen {
-        for number in 1..=one.count {
-            for i in one.gripped(number) {
-                places[0].push(one.place[0][i]);
-                places[1].push(one.place[1][i]);
-            }
-        }
-    }
-    let [x, y] = places;
-    found.push(term("x".to_owned(), x));
-    found.push(term("y".to_owned(), y));
-    found
+fn generic(rows: &Rows) -> Vec<Candidate> {
+    let places = [("x", &rows.place_m[0]), ("y", &rows.place_m[1])];
+    let of_places = places.map(|(axis, place)| Candidate::term(axis.to_owned(), "", vec![place.clone()]));
+    slow_waves(&rows.time_s, 4, "").chain(of_places).collect()
 }
 
 impl Grasp {

@@ -145,7 +145,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
 
 /// Causes that no recording of this kind shows.
 fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
-    let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let mut add = |id: &str, why: &str| found.push(NotExcited::new(id, why));
     let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
     if !knows("weight_N") && !knows("mass_kg") {
         add(force_gain::ID, "no weight is known; state one in the sidecar");
@@ -175,7 +175,5 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
             0.7,
         )
     };
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power, experiment: None })
+    NextExperiment::of_first(open, motion, power)
 }

@@ -149,10 +149,7 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
     for (axis, name) in [(1, "lift"), (0, "side force")] {
         let mut term = |expression: &str, of: &dyn Fn(&Seen<'_>, &Row) -> f64| {
             let column = rows.carried(|one, row, _, a| if a == axis { of(one, row) } else { 0.0 });
-            found.push(Candidate {
-                expression: Some(format!("{expression} ({name})")),
-                ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-            });
+            found.push(Candidate::term(format!("{expression} ({name})"), "", vec![column]));
         };
         for k in 1..=4 {
             term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());

@@ -6,7 +6,7 @@ use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data;
-use crate::diagnose::data::regression_data::{Bearing, Track, Zero};
+use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::basis_functions::generic_of;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -266,9 +266,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     let along = rows
         .iter()
         .map(|r| regression_data::Row {
-            recording: 0,
             stretch: r.stretch,
-            place: regression_data::Place::Along,
             motion: Motion {
                 time_s: r.time_s - start_s,
                 position: r.depth_m,
@@ -279,10 +277,9 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
             angle_rad: r.depth_m,
             along: Vec2::x(),
             force: Vec2::new(r.force_n, 0.0),
-            force_rate: Vec2::zeros(),
             y: r.force_n,
             span: r.span,
-            open: 0.0,
+            ..regression_data::Row::default()
         })
         .collect();
     Track {
@@ -290,20 +287,10 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         fine: needle.fine.iter().map(|p| regression_data::Fine { time_s: p.time_s - start_s, ..*p }).collect(),
         period_s: needle.period_s,
         raw_period_s: needle.period_s,
-        coordinate: Coordinate::Linear,
-        radius_m: None,
-        planar: false,
         velocity_noise: if needle.fine.is_empty() { needle.rate_noise_m_s } else { needle.slope_noise_m_s },
-        position_noise: 0.0,
         force_noise: 1e-12,
-        noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
-        hung: Vec::new(),
-        bearing: Bearing::default(),
-        slope: None,
-        extra: Vec::new(),
-        freely: None,
-        zero: Zero::Open,
+        ..Track::of(Coordinate::Linear)
     }
 }
 

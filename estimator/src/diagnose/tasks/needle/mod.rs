@@ -60,11 +60,11 @@ pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
     if shaft.is_none() {
         let why = "the needle hardly moved in a hole; push it through and draw it out";
         let ids = [coulomb_friction::ID, friction_change::ID, viscous_friction::ID];
-        beside.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+        beside.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
     }
     if !seen.two_fingered {
         let why = "a single tool is held all the time: a bias of its force passes for its weight";
-        beside.not_excited.push(NotExcited { id: force_bias::ID.to_owned(), why: why.to_owned() });
+        beside.not_excited.push(NotExcited::new(force_bias::ID, why));
     }
     let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| hole::shows(f));
@@ -163,15 +163,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
 }
 
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
-    let first = open.first()?;
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment {
-        motion: "push in slowly and fast, draw back before the sheet gives way, push through at another place, move to and fro in the \
-                 hole, and end with the needle outside"
-            .to_owned(),
-        separates,
-        expected_power: 0.8,
-        experiment: None,
-    })
+    let motion = "push in slowly and fast, draw back before the sheet gives way, push through at another place, move to and fro in the \
+                  hole, and end with the needle outside";
+    NextExperiment::of_first(open, motion, 0.8)
 }

@@ -5,6 +5,7 @@ use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
@@ -193,17 +194,9 @@ fn candidates(
     if law.is_some_and(|l| l.give > 0.0) {
         candidates.retain(|c| c.id != hysteresis::ID);
     }
-    let span = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
-    let term = |expression: &str, column: Vec<f64>| Candidate {
-        expression: Some(expression.to_owned()),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-    };
     // A curve of yet another form, so that the whitening is not too optimistic.
-    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
-    candidates.extend((1..=3).map(|n| {
-        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
-        term(&format!("cos({n} pi t/T)"), wave)
-    }));
+    candidates.push(Candidate::term("x²".to_owned(), "", vec![of(&|r| pressed(r).powi(2))]));
+    candidates.extend(slow_waves(&of(&|r| r.time_s), 3, ""));
     candidates
 }
 

@@ -179,8 +179,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     for k in 1..=3 {
         let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
         for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
-            let expression = Some(format!("cos({k} pi x/X) {words}"));
-            found.push(Candidate { expression, ..one("other", "amplitude", "N", column) });
+            found.push(Candidate::term(format!("cos({k} pi x/X) {words}"), "N", vec![column]));
         }
     }
     found.into_iter().map(|c| seen(c, WORLD_STD_ERRORS * known.error_n)).collect()

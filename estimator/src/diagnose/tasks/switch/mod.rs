@@ -106,7 +106,7 @@ pub fn switch(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
 /// Causes that no recording of this kind shows.
 fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Evidence<'_>) {
     let mut add = |ids: &[&str], why: &str| {
-        beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
+        beside.not_excited.extend(ids.iter().map(|id| NotExcited::new(id, why)));
     };
     if !has_world {
         let why = "the curve is the recording's own; name a world that was captured before to compare it with";
@@ -130,15 +130,7 @@ fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Evidence<'_>) {
 
 /// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
-    let first = open.first()?;
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment {
-        motion: "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
-                 two seconds before and after"
-            .to_owned(),
-        separates,
-        expected_power: 0.8,
-        experiment: None,
-    })
+    let motion = "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
+                  two seconds before and after";
+    NextExperiment::of_first(open, motion, 0.8)
 }

@@ -268,8 +268,8 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
     for k in 1..=3 {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
         let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
-        let expression = Some(format!("cos({k} pi t/T), the same way in both directions"));
-        found.push(Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "N", column) });
+        let expression = format!("cos({k} pi t/T), the same way in both directions");
+        found.push(Candidate::term(expression, "N", vec![column]));
     }
     found
 }

@@ -51,8 +51,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         beside.causes.push(cause);
         beside.alternatives.push(alternative);
     }
-    let mut unseen =
-        |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let mut unseen = |id: &str, why: &str| beside.not_excited.push(NotExcited::new(id, why));
     if half_width_m.is_some() && blow.is_none() {
         unseen(velocity_loss::ID, "too few impacts on one corner, with free flight before and after, were seen");
     }
@@ -130,6 +129,5 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     } else {
         "let the body slide flat from several speeds, and load it with a known weight"
     };
-    let separates = vec![first.instead_of.clone(), first.id.clone()];
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None })
+    Some(NextExperiment::in_words(motion, vec![first.instead_of.clone(), first.id.clone()], 0.9))
 }

@@ -28,7 +28,6 @@ use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
-use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, columns, stretches_of};
 
@@ -72,8 +71,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let way = lost_motion::way(&seen, names)?;
     let force = input_force::force(&seen, names)?;
     if force.is_none() {
-        let why = "no force at the input was recorded".to_owned();
-        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+        beside.not_excited.push(NotExcited::new(coulomb_friction::ID, "no force at the input was recorded"));
     }
     if seen.rows.iter().all(|r| r.load.is_none()) {
         beside
@@ -85,8 +83,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
         if force.side.compared.study.has(coulomb_friction::ID) {
             beside.alternatives.extend(told.alternative());
         } else {
-            let why = load_confounding::WHY.to_owned();
-            beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+            beside.not_excited.push(NotExcited::new(coulomb_friction::ID, load_confounding::WHY));
         }
     }
     let way_states = |k: usize, _: &Candidate, found: Vec<CauseParameter>| {
@@ -179,9 +176,8 @@ fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row])
 
 fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
     let range = (high - low).max(1e-12);
-    let term = |expression: String, of: &dyn Fn(&Row) -> f64| Candidate {
-        expression: Some(expression),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", rows.iter().map(of).collect())
+    let term = |expression: String, of: &dyn Fn(&Row) -> f64| {
+        Candidate::term(expression, "", vec![rows.iter().map(of).collect()])
     };
     let mut found: Vec<Candidate> = (2..=5_u32)
         .map(|n| {
