@@ -1,5 +1,6 @@
 //! Candidate terms: effects that a cause would have on the residual.
 
+use crate::diagnose::contract::{CauseParameter, parameter};
 use haptics::law::Kind;
 use std::sync::Arc;
 
@@ -165,6 +166,12 @@ impl Candidate {
         self.searched.push(Searched { name, value, unit });
         self.cost += 1.0;
         self
+    }
+
+    /// All its parameters with these values of its regressors, as for a world.
+    pub fn parameters(&self, values: &[f64]) -> Vec<CauseParameter> {
+        let linear = self.linear.iter().zip(values).map(|((name, unit), value)| parameter(name, *value, 0.0, unit));
+        linear.chain(self.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit))).collect()
     }
 
     /// The searched value of this name.

@@ -1,11 +1,13 @@
 //! Answer of a motion along one coordinate, and of the paths beside it.
 
+use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::atlas::Atlas;
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::part::{Part, Role};
+use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::answer::time_series::course;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::data::direction::STANDS;
-use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::experiment::proposal::propose;
 use crate::diagnose::experiment::turned_track;
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
@@ -40,11 +42,7 @@ pub fn explain(
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let picks = study.picks();
     let (end, end_train) = rms(study, &picks, &along);
-    let states = |k: usize, c: &Candidate, mut found: Vec<CauseParameter>| {
-        widen(c.id, &mut found, track);
-        of_hardening_spring(track, study, k).unwrap_or(found)
-    };
-    let excuse = |k: usize| skew(study, k, track).map(apart);
+    let coordinate = Coordinate { track, study };
     let force = Part {
         role: Role::Coordinate,
         study,
@@ -54,12 +52,11 @@ pub fn explain(
         floor: if track.noise_is_measured { track.force_noise } else { end_train.min(end) },
         noise: track.force_noise,
         along: &along,
-        state: Box::new(|i| state(track, i)),
-        excuse: &excuse,
-        shows: None,
-        states: &states,
-        usual: None,
+        state: track.rows.iter().map(|row| state(track, row)).collect(),
+        view: None,
+        told: &coordinate,
         free_run: FreeRun::Coordinate(track, model),
+        in_world: None,
     };
     let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths.iter().map(PathFit::part)).collect();
     let next = |open: &[_]| {
@@ -70,16 +67,37 @@ pub fn explain(
         evidence.model = model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+");
     }
     evidence.not_excited.extend(without_reversals(track));
+    let atlas = if evidence.atlas { atlas::atlas(track, study) } else { Atlas::default() };
     Findings {
         plain: plain(track, model, study),
         effects: effects(track, model, study),
         course: course(track, study),
+        atlas,
         per_inertia: track.freely.is_some_and(|free| !free.is_known),
         delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
         hypotheses: hypotheses(track, model, study),
         ..answer(&parts, evidence)
     }
 }
+
+/// Force along a coordinate.
+struct Coordinate<'a> {
+    track: &'a Track,
+    study: &'a ChannelFit,
+}
+
+impl Told for Coordinate<'_> {
+    fn excuse(&self, k: usize) -> Option<String> {
+        skew(self.study, k, self.track).map(apart)
+    }
+
+    fn states(&self, k: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        widen(candidate.id, &mut found, self.track);
+        of_hardening_spring(self.track, self.study, k).unwrap_or(found)
+    }
+}
+
+impl Told for PathFit {}
 
 impl PathFit {
     fn part(&self) -> Part<'_> {
@@ -92,19 +110,17 @@ impl PathFit {
             floor: 0.0,
             noise: white_noise(&self.study.y),
             along: &[],
-            state: Box::new(|_| Some(("distance from the circle", SystemState::Turning))),
-            excuse: &|_| None,
-            shows: None,
-            states: &|_, _, found| found,
-            usual: None,
+            state: vec![Some(("distance from the circle", SystemState::Turning)); self.study.y.len()],
+            view: None,
+            told: self,
             free_run: FreeRun::None(AT_ONCE),
+            in_world: None,
         }
     }
 }
 
 /// Channel and state of a row.
-fn state(track: &Track, i: usize) -> Option<(&'static str, SystemState)> {
-    let row = &track.rows[i];
+fn state(track: &Track, row: &Row) -> Option<(&'static str, SystemState)> {
     match row.place {
         // A free motion has no measured force.
         Place::Along if track.freely.is_some() => Some(("force that the motion needs", SystemState::FreeMotion)),

@@ -1,8 +1,8 @@
 //! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
 
 use super::signals::Seen;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::free_run::pads::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
@@ -10,7 +10,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -31,8 +31,6 @@ const USUAL_SCALE: f64 = 0.02;
 /// The comparison with the data for its texts.
 pub struct Grasp {
     pub compared: Compared,
-    /// The rows as the atlas looks at them.
-    pub view: View,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
     /// Compliance of a pad at zero force in the model, m/N.
@@ -124,14 +122,10 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
     let (channel, state) = ("distance of the tips", rows.state);
-    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state };
-    let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
-    Ok(Some(Grasp { compared, view, means, modelled, pads }))
-}
-
-/// Variable that best shows a cause in the grip width.
-pub fn best_seen(id: &str) -> Variable {
-    if id == length_scale::ID { Variable::Width } else { Variable::Grip }
+    let over = vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
+    let view = View::of(rows.recording, over, best_seen);
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
+    Ok(Some(Grasp { compared, means, modelled, pads }))
 }
 
 fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
@@ -177,8 +171,20 @@ impl Grasp {
         self.compared.study.has(id)
     }
 
-    /// For the answer.
-    pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
+    fn first_give(&self) -> f64 {
+        let found = self.compared.study.found();
+        found.iter().find(|(c, _)| c.id == pad_compliance::ID).map_or(self.modelled, |(_, values)| values[0])
+    }
+}
+
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    if id == length_scale::ID { Variable::Width } else { Variable::Grip }
+}
+
+impl Told for Grasp {
+    fn states(&self, _: usize, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
         match candidate.id {
             stiffness_hardening::ID => {
@@ -200,14 +206,7 @@ impl Grasp {
         }
     }
 
-    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
-    fn first_give(&self) -> f64 {
-        let found = self.compared.study.found();
-        found.iter().find(|(c, _)| c.id == pad_compliance::ID).map_or(self.modelled, |(_, values)| values[0])
-    }
-
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(&self, found: &Found<'_>) -> String {
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
             pad_compliance::ID => {
@@ -235,8 +234,7 @@ impl Grasp {
         }
     }
 
-    /// Sizes that could just matter.
-    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
             pad_compliance::ID => Some((
                 USUAL_GIVE,

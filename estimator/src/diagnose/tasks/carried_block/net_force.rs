@@ -7,8 +7,8 @@ use super::net_force_candidates::{generic, instrument, plant};
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use super::time_delay::late;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -18,7 +18,7 @@ use crate::diagnose::hypotheses::{
 };
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
@@ -41,8 +41,6 @@ pub struct Carry {
     numbers: Vec<usize>,
     /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
     pub weighed: Vec<usize>,
-    /// The rows as the atlas looks at them.
-    pub view: View,
     /// Free-run simulation of carried blocks.
     pub airborne: Airborne,
 }
@@ -90,12 +88,11 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<C
     let state = along.iter().map(of_carried).collect();
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
-    let view = view(&rows);
     let late = late(&rows, &known);
     let airborne = Airborne::of(&rows, &rows.stretch, world, &known);
-    let compared = Compared { study, channel, unit: "N", floor, along, state };
+    let compared = Compared { study, channel, unit: "N", floor, along, state, view: view(&rows) };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
-    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
+    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, airborne })
 }
 
 /// Share of a cable's evidence below which another cause may only be misfit of the cable. Its law is a linear spring
@@ -133,32 +130,16 @@ fn view(rows: &Rows<'_>) -> View {
         Place::Free { finger, axis } => 2 + 2 * finger + axis,
     };
     let own = |of: &dyn Fn(&Seen<'_>, &Row, usize) -> f64| rows.carried(|one, row, _, axis| of(one, row, axis));
-    View {
-        recording: rows.all.iter().map(|r| r.recording).collect(),
-        sensor: rows.all.iter().map(sensor).collect(),
-        over: vec![
-            (Variable::Time, rows.column(|r| r.time_s)),
-            (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
-            (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
-            (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
-            (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
-            (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
-        ],
-        way: Vec::new(),
-        is_angular: false,
-    }
-}
-
-/// Variable that best shows a cause in the net force.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        inertia::ID => Variable::Acceleration,
-        viscous_friction::ID => Variable::Velocity,
-        added_constraint::ID => Variable::Place,
-        force_cross_axis::ID => Variable::Grip,
-        force_gain::ID | gravity_tilt::ID => Variable::Lift,
-        _ => Variable::Time,
-    }
+    let over = vec![
+        (Variable::Time, rows.column(|r| r.time_s)),
+        (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
+        (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
+        (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
+        (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
+        (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
+    ];
+    let recording = rows.all.iter().map(|r| r.recording).collect();
+    View { sensor: rows.all.iter().map(sensor).collect(), ..View::of(recording, over, best_seen) }
 }
 
 /// Number of the block on which a regressor acts.
@@ -244,8 +225,8 @@ impl Carry {
         found
     }
 
-    /// Parameters for the answer: the block of a change of weight or of a cable, and a cable's standard errors.
-    pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    /// The same parameters with the block of a change of weight or of a cable, and with a cable's standard errors.
+    pub fn of_blocks(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let column = &candidate.columns[0];
         let number = touched(&self.numbers, column);
         // Without a block, the cause concerns all blocks.
@@ -260,9 +241,26 @@ impl Carry {
         }
         found
     }
+}
 
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(found: &Found<'_>) -> String {
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        inertia::ID => Variable::Acceleration,
+        viscous_friction::ID => Variable::Velocity,
+        added_constraint::ID => Variable::Place,
+        force_cross_axis::ID => Variable::Grip,
+        force_gain::ID | gravity_tilt::ID => Variable::Lift,
+        _ => Variable::Time,
+    }
+}
+
+impl Told for Carry {
+    fn states(&self, _: usize, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        self.of_blocks(candidate, found)
+    }
+
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
         match found.candidate.id {
             inertia::ID => {
@@ -297,8 +295,7 @@ impl Carry {
         }
     }
 
-    /// Smallest sizes that matter, with the experiment that would show them.
-    pub fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         // One hundredth of a newton over the longest carry.
         let slow = 0.01 / self.longest_s.max(1.0);
         Some(match candidate.id {

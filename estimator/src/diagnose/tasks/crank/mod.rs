@@ -12,7 +12,6 @@ pub(crate) mod rows;
 use super::baseline_models::plain_crank;
 use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::regression_data::Model;
@@ -73,13 +72,11 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         causes: scale.into_iter().chain(faults).collect(),
         remarks: on_bearing.into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
+        atlas: options.atlas,
         reads: &|named| name_joint(named, link),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &paths, evidence);
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     found.delay.guess_s = time_delay::guess_s(&track, &model);
     Ok(found)
 }

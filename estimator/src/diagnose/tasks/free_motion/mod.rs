@@ -12,7 +12,6 @@ pub(crate) mod scale;
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::explain;
 use super::one_coordinate;
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract;
 use crate::diagnose::data::coordinate::Along;
@@ -88,14 +87,12 @@ pub(crate) fn diagnose(
         model: scale::model_name(&model),
         causes: faults,
         warnings: scale::sentence(&track, scale).into_iter().collect(),
+        atlas: options.atlas,
         reads: &|named| scale::put_right(named, &track, both_ways),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(Along::of(track.coordinate, recordings, paths));
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     Ok(found)
 }
 

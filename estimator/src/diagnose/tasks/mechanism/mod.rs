@@ -7,7 +7,6 @@ pub(crate) mod sensor_zero;
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::{explain, without_known};
 use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
@@ -106,15 +105,13 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
     let evidence = Evidence {
         causes: faults,
         without_known: without_known(!fixed.is_empty() || is_hung, true),
+        atlas: options.atlas,
         reads: &|named| sensor_zero::ask(named, &track),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
     found.delay.guess_s = time_delay::guess_s(&track, &model);
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     let skew_s = sample_offset::skewed_s(&study, &track);
     Ok((found, skew_s))
 }

@@ -2,8 +2,8 @@
 
 use super::held_needle::Sliding;
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
@@ -62,8 +62,6 @@ pub const RIM_SHARE: f64 = 0.05;
 /// The comparison.
 pub struct Shaft {
     pub compared: Compared,
-    /// Variables of the plots of its rows.
-    pub view: View,
     /// Content of the base model, in words.
     pub model: &'static str,
     /// Dry friction of a first fit, N.
@@ -83,6 +81,39 @@ impl Shaft {
             stretch: rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; rows.len()],
         }
+    }
+}
+
+impl Told for Shaft {
+    fn shows(&self, found: &Found<'_>) -> String {
+        match found.candidate.id {
+            coulomb_friction::ID => {
+                "in the hole the force turns round with the direction, whatever the speed".to_owned()
+            }
+            viscous_friction::ID => "in the hole the force follows the speed".to_owned(),
+            hysteresis::ID => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+            backlash::ID => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
+            stribeck::ID => "in the hole the friction falls with speed".to_owned(),
+            local_resistance::ID => {
+                "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
+            }
+            ALONG_THE_SHAFT => {
+                "the friction grows with the length that is in the hole, which no known cause does".to_owned()
+            }
+            friction_change::ID => "the shaft rubs differently from one insertion to the next".to_owned(),
+            other => format!("{other} shows in the force on the shaft"),
+        }
+    }
+
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+        Some(match candidate.id {
+            stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
+            backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
+            hysteresis::ID => {
+                (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend")
+            }
+            _ => return None,
+        })
     }
 }
 
@@ -206,8 +237,9 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state };
-    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
+    let view = super::sheet::view(&rows);
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state, view };
+    Ok(Some(Shaft { compared, model, dry_n, sliding }))
 }
 
 /// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
@@ -291,34 +323,5 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         force_noise: 1e-12,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
         ..Track::of(Coordinate::Linear)
-    }
-}
-
-/// Smallest sizes that matter, with the experiment that would show them.
-pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
-    Some(match candidate.id {
-        stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
-        backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
-        hysteresis::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
-        _ => return None,
-    })
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    match found.candidate.id {
-        coulomb_friction::ID => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
-        viscous_friction::ID => "in the hole the force follows the speed".to_owned(),
-        hysteresis::ID => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
-        backlash::ID => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
-        stribeck::ID => "in the hole the friction falls with speed".to_owned(),
-        local_resistance::ID => {
-            "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
-        }
-        ALONG_THE_SHAFT => {
-            "the friction grows with the length that is in the hole, which no known cause does".to_owned()
-        }
-        friction_change::ID => "the shaft rubs differently from one insertion to the next".to_owned(),
-        other => format!("{other} shows in the force on the shaft"),
     }
 }

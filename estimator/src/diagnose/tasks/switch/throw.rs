@@ -4,14 +4,14 @@
 
 use super::held_knob::Thrown;
 use super::rows::{Place, Row, Seen, direction};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -36,8 +36,6 @@ const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
-    /// Variables of the plots of its rows.
-    pub view: View,
     /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
@@ -187,8 +185,8 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    let compared = Compared { study, channel, unit, floor, along, state };
-    Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
+    let compared = Compared { study, channel, unit, floor, along, state, view };
+    Ok(Push { compared, rows: kept, curves, forces_n: forces, thrown })
 }
 
 /// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
@@ -213,16 +211,7 @@ fn view(rows: &[Row]) -> View {
     ];
     let way = of(&|r| r.side().map_or(0.0, direction));
     let sensor = rows.iter().map(sensor).collect();
-    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
-}
-
-/// Variable that best shows a cause on the travel of the throws.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        viscous_friction::ID => Variable::Velocity,
-        time_delay::ID => Variable::Place,
-        _ => Variable::Time,
-    }
+    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over, best_seen) }
 }
 
 /// Contribution of the chosen causes to the rows.
@@ -310,9 +299,19 @@ impl Push {
         let curve = self.curves.iter().find(|c| c.side == side)?;
         curve.places.first().copied().zip(curve.places.last().copied())
     }
+}
 
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(found: &Found<'_>) -> String {
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        viscous_friction::ID => Variable::Velocity,
+        time_delay::ID => Variable::Place,
+        _ => Variable::Time,
+    }
+}
+
+impl Told for Push {
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
             viscous_friction::ID => {
@@ -331,8 +330,7 @@ impl Push {
         }
     }
 
-    /// Smallest sizes that matter, with the experiment that would show them.
-    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         Some(match (candidate.id, candidate.linear[0].0) {
             (viscous_friction::ID, _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
             (friction_change::ID, "change") => (0.05, "there were few throws; go on for longer"),
