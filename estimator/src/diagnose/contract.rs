@@ -227,7 +227,7 @@ impl NextExperiment {
 }
 
 /// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Experiment {
     /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
     /// `hang-weight`, `carry-let-go`, `carry-still`, `slide-let-go`, `pierce-slow-fast` or `throw-slow-fast`; `docs/diagnosis.md` says what

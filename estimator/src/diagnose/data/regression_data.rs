@@ -268,9 +268,14 @@ impl Track {
     /// True if the motion has one direction: its backward share is no larger than a hand's tremor.
     pub fn goes_one_way(&self) -> bool {
         const TREMBLES: f64 = 0.02;
-        let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
-        let (forward, backward) = (way(1.0), way(-1.0));
+        let [forward, backward] = self.ways();
         forward.min(backward) <= TREMBLES * (forward + backward)
+    }
+
+    /// Ways forward and backward.
+    pub fn ways(&self) -> [f64; 2] {
+        let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+        [way(1.0), way(-1.0)]
     }
 
     /// Indices of the rows along the motion.

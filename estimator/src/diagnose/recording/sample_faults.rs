@@ -54,6 +54,11 @@ pub fn faults(recording: &Recording) -> Faults {
     found
 }
 
+/// Causes of all recordings.
+pub fn causes(recordings: &[Recording]) -> impl Iterator<Item = Cause> {
+    recordings.iter().flat_map(|recording| faults(recording).causes)
+}
+
 /// Leaves out samples near a saturation limit, where the noise is cut on one side: the rest there is a biased sample of
 /// the force.
 fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {

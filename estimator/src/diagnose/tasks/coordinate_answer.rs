@@ -8,8 +8,7 @@ use crate::diagnose::answer::time_series::course;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::data::direction::STANDS;
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
-use crate::diagnose::experiment::proposal::propose;
-use crate::diagnose::experiment::turned_track;
+use crate::diagnose::experiment::proposal::{propose, turned_track};
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
 use crate::diagnose::extension::model::{effects, plain};
 use crate::diagnose::findings::{DelayFindings, Findings};
@@ -60,7 +59,7 @@ pub fn explain(
     };
     let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths.iter().map(PathFit::part)).collect();
     let next = |open: &[_]| {
-        if track.freely.is_some() { turned_track::next(open) } else { propose(track, model, study, open) }
+        if track.freely.is_some() { turned_track(open) } else { propose(track, model, study, open) }
     };
     let mut evidence = Evidence { next: &next, ..evidence };
     if evidence.model.is_empty() {

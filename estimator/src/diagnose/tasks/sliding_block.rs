@@ -345,9 +345,7 @@ fn let_go(found: &mut Named, track: &Track) {
         middle: 0.5 * (at(0.02) + at(0.98)),
         half_range: 0.5 * (at(0.98) - at(0.02)),
         fast: track.quantile(0.95, |r| r.motion.velocity.abs()),
-        across_n: 0.0,
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     });
 }
 

@@ -98,7 +98,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
             )),
         }
     }
-    beside.causes = recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default();
+    beside.causes = sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect();
     let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
     let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
     let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };

@@ -4,7 +4,7 @@ use super::signals::Seen;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
-use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;

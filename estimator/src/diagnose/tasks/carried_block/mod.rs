@@ -53,7 +53,7 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
             "weight and its mass+rigid widths+plain heights"
         }
         .to_owned(),
-        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
+        causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
         atlas: options.atlas,
         ..Evidence::default()
     };
@@ -96,10 +96,10 @@ fn regrasped(
 }
 
 /// Comparisons of net force, grip width and grip height.
-fn look(
-    seen: &[Seen<'_>],
+fn look<'a>(
+    seen: &'a [Seen<'a>],
     world: Option<&World>,
-) -> Result<(Carry, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
+) -> Result<(Carry<'a>, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
     let rules = Rules::of_channel(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
     let carry = net_force::carry(seen, world, rules)?;
     let grasp = grip_width::grasp(seen, world, rules)?;

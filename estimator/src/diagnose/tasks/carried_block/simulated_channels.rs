@@ -6,7 +6,7 @@ use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{added_constraint, force_drift, gravity_tilt, mass_change};
 use std::collections::BTreeSet;
 
-impl Simulated for Carry {
+impl Simulated for Carry<'_> {
     fn base(&self, values: &[f64]) -> Vec<Act> {
         let of = |(number, weight_n): (&usize, &f64)| {
             let found = vec![parameter("weight", *weight_n, 0.0, "N"), parameter("block", *number as f64, 0.0, "1")];

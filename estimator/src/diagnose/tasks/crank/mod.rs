@@ -128,7 +128,6 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
 
 /// Validates the found causes on another recording of the same crank.
 pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
-    let recording = &time_delay::put_back(recording, diagnosis.delay.corrected_s);
     let axis_signs::Looked { signals, circle, rows, .. } =
         axis_signs::Looked::at(recording, &sample_faults::faults(recording).bad)?;
     let mut track = turned(&signals, recording, &circle, rows)?.rows;

@@ -36,8 +36,7 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
     if transmission::is_driven(recordings) {
         return transmission::driven(recordings, options);
     }
-    let ask = |recordings: &[Recording]| mechanism(recordings, options);
-    Ok(super::delay_correction::undo(recordings, ask(recordings)?, &ask))
+    super::delay_correction::corrected(recordings, &|some| mechanism(some, options))
 }
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
@@ -118,8 +117,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
 
 /// Validates the found causes on another recording of the same mechanism.
 pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
-    let recording =
-        &time_delay::motion_apart(&time_delay::put_back(recording, diagnosis.delay.corrected_s), diagnosis.skew_s);
+    let recording = &time_delay::motion_apart(recording, diagnosis.skew_s);
     let along = diagnosis.along.ok_or_else(|| coordinate::none(recording))?;
     let path = along.path_of(recording)?;
     let mut track = track_of(recording, path.as_ref(), diagnosis)?;

@@ -60,17 +60,17 @@ const HOLE_WAVES: u32 = 3;
 pub const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
-pub struct Shaft {
+pub struct Shaft<'a> {
     pub compared: Compared,
     /// Content of the base model, in words.
     pub model: &'static str,
     /// Dry friction of a first fit, N.
     dry_n: f64,
     /// Free-run model of the needle.
-    pub sliding: Sliding,
+    pub sliding: Sliding<'a>,
 }
 
-impl Shaft {
+impl Shaft<'_> {
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
         let rows = rows(needle);
@@ -84,7 +84,7 @@ impl Shaft {
     }
 }
 
-impl Told for Shaft {
+impl Told for Shaft<'_> {
     fn shows(&self, found: &Found<'_>) -> String {
         match found.candidate.id {
             coulomb_friction::ID => {
@@ -205,7 +205,11 @@ fn candidates(
 const SHAFT_RESIDUAL_RATIO: f64 = 4.0;
 
 /// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
-pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Option<Shaft>, EstimateError> {
+pub fn shaft<'a>(
+    needle: &'a Needle,
+    law: Option<&'a MembraneLaw>,
+    rules: Rules,
+) -> Result<Option<Shaft<'a>>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
     if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_HOLE_ROWS {
@@ -235,9 +239,9 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result
     let channel = Channel::new(y, base, asked(&coarse, dry_n), layout, rules);
     let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, dry_n)?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
-    let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let view = super::sheet::view(&rows);
+    let sliding = Sliding { needle, law, rows, track, dry_n: beside_n };
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state, view };
     Ok(Some(Shaft { compared, model, dry_n, sliding }))
 }

@@ -52,7 +52,7 @@ pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
             if law.is_some() { "sheet of the world" } else { "linear sheet" },
             shaft.as_ref().map_or("no hole", |s| s.model)
         ),
-        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
+        causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
         warnings: left_out,
         atlas: options.atlas,
         ..Evidence::default()

@@ -201,13 +201,13 @@ fn candidates(
 }
 
 /// The comparison.
-pub struct Sheet {
+pub struct Sheet<'a> {
     pub compared: Compared,
     /// Free-run model of a needle outside and on the sheet.
-    pub pressed: Pressed,
+    pub pressed: Pressed<'a>,
 }
 
-impl Told for Sheet {
+impl Told for Sheet<'_> {
     fn shows(&self, found: &Found<'_>) -> String {
         match found.candidate.id {
             stiffness_hardening::ID => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
@@ -247,7 +247,7 @@ pub fn best_seen(id: &str) -> Variable {
 }
 
 /// Compares them.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Sheet, EstimateError> {
+pub fn sheet<'a>(needle: &'a Needle, law: Option<&'a MembraneLaw>, rules: Rules) -> Result<Sheet<'a>, EstimateError> {
     let Columns { rows, floor_n, base, candidates } = columns(needle, law);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let y = of(&|r| r.force_n);
@@ -263,7 +263,7 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result
         ..view(&rows)
     };
     let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state, view };
-    Ok(Sheet { compared, pressed: Pressed::new(needle, law, rows) })
+    Ok(Sheet { compared, pressed: Pressed { needle, law, rows } })
 }
 
 /// Weight of a row in the comparison, 1 for white noise. The rows are dealt out, so that whitening does not remove

@@ -5,7 +5,7 @@ use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
-use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;

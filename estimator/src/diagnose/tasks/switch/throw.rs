@@ -8,6 +8,7 @@ use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
@@ -253,7 +254,8 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         let change = Candidate::one(friction_change::ID, Kind::Plant, "change", "N", column);
         found.push(change.at("from recording", (recording + 1) as f64, "1"));
     }
-    sensors(rows, &mut found);
+    found.extend(of_fingers(force_bias::ID, &BIAS, &|finger, axis| of(&|r| r.share(finger, axis))));
+    found.extend(of_fingers(force_drift::ID, &DRIFT, &|finger, axis| of(&|r| r.share(finger, axis) * r.time_s)));
     for k in 1..=3 {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
         let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
@@ -261,26 +263,6 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         found.push(Candidate::term(expression, "N", vec![column]));
     }
     found
-}
-
-/// A bias or a drift of single channels, of a finger, or of all.
-fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
-    const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
-    const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
-    let mut all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], size: &dyn Fn(&Row) -> f64| {
-        let column = |f: usize, axis: usize| rows.iter().map(|r| r.share(f, axis) * size(r)).collect::<Vec<f64>>();
-        for (finger, names) in names.iter().enumerate() {
-            for (axis, (name, unit)) in names.iter().enumerate() {
-                found.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
-            }
-            let both = vec![column(finger, 0), column(finger, 1)];
-            found.push(Candidate::several(id, Kind::Instrument, both, names.to_vec()));
-        }
-        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
-        found.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
-    };
-    all(force_bias::ID, &BIAS, &|_| 1.0);
-    all(force_drift::ID, &DRIFT, &|r| r.time_s);
 }
 
 impl Push {

@@ -40,7 +40,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     };
     let mut beside = Evidence {
         model: "free-fall+impact without loss+sliding without friction".to_owned(),
-        causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
+        causes: sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect(),
         ..Evidence::default()
     };
     if floor.is_some() {

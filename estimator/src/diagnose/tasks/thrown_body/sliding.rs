@@ -3,12 +3,13 @@
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
-use crate::diagnose::free_run::channel::{Forward, columns};
+use crate::diagnose::free_run::channel::{Fit, Forward};
+use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
@@ -153,16 +154,9 @@ impl Forward for Slides {
         self.step_s * longest.saturating_sub(1) as f64
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
-        let columns: Vec<(&[f64], f64)> = columns(study, picks, values).collect();
-        let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| value * column[*i]).sum::<f64>();
-        Ok((window.iter().map(|i| left(i).powi(2)).sum(), window.len() as f64))
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let columns: Vec<(&[f64], f64)> = fit.columns().collect();
+        Ok((window.iter().map(|i| fit.less(*i, &columns).powi(2)).sum(), window.len() as f64))
     }
 }
 

@@ -67,7 +67,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let mut seen = Seen::of(recordings, names);
     let mut beside = Evidence {
         model: "rigid transmission+input without friction".to_owned(),
-        causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
+        causes: sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect(),
         atlas: options.atlas,
         ..Evidence::default()
     };
