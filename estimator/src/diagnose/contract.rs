@@ -177,6 +177,12 @@ pub struct NotExcited {
     pub why: String,
 }
 
+impl NotExcited {
+    pub(crate) fn new(id: &str, why: &str) -> Self {
+        Self { id: id.to_owned(), why: why.to_owned() }
+    }
+}
+
 /// A cause that was looked for and not named.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct PassedOver {
@@ -206,8 +212,22 @@ pub struct NextExperiment {
     pub experiment: Option<Experiment>,
 }
 
+impl NextExperiment {
+    /// Experiment in words alone.
+    pub(crate) fn in_words(motion: &str, separates: Vec<String>, expected_power: f64) -> Self {
+        Self { motion: motion.to_owned(), separates, expected_power, experiment: None }
+    }
+
+    /// The same for the first open question, with all alternatives to its cause.
+    pub(crate) fn of_first(open: &[Alternative], motion: &str, expected_power: f64) -> Option<Self> {
+        let cause = &open.first()?.instead_of;
+        let rivals = open.iter().filter(|a| a.instead_of == *cause).map(|a| a.id.clone());
+        Some(Self::in_words(motion, std::iter::once(cause.clone()).chain(rivals).collect(), expected_power))
+    }
+}
+
 /// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Experiment {
     /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
     /// `hang-weight`, `carry-let-go`, `carry-still`, `slide-let-go`, `pierce-slow-fast` or `throw-slow-fast`; `docs/diagnosis.md` says what

@@ -37,6 +37,7 @@ pub use hypotheses::variable::Variable;
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::baseline_models::named;
+use tasks::delay_correction;
 pub use worlds::{Suspect, Worlds, extended_world, suspects, worlds};
 
 /// Diagnoses one or several recordings of the same object.
@@ -56,10 +57,7 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     match task {
-        Task::Crank => {
-            let ask = |recordings: &[Recording]| tasks::crank::crank(recordings, options);
-            Ok(tasks::delay_correction::undo(recordings, ask(recordings)?, &ask))
-        }
+        Task::Crank => delay_correction::corrected(recordings, &|some| tasks::crank::crank(some, options)),
         Task::Mechanism => tasks::mechanism::one_of_mechanisms(recordings, options),
         _ => pinched(task, recordings, options),
     }
@@ -86,13 +84,9 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Fi
         }
         // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => {
-            let ask = |recordings: &[Recording]| tasks::carried_block::blocks(recordings, options, &faults);
-            ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
+            delay_correction::corrected(recordings, &|some| tasks::carried_block::blocks(some, options, &faults))
         }
-        Task::Needle => {
-            let ask = |recordings: &[Recording]| tasks::needle::needle(recordings, options, &faults);
-            ask(recordings).map(|found| tasks::delay_correction::undo(recordings, found, &ask))
-        }
+        Task::Needle => delay_correction::corrected(recordings, &|some| tasks::needle::needle(some, options, &faults)),
         _ => tasks::switch::switch(recordings, options, &faults),
     }
 }
@@ -114,6 +108,7 @@ pub fn validate(
             recording::grip_axis_signs::upright(recording)
         };
         let recording = upright.as_ref().map_or(recording, |(other, _)| other);
+        let recording = &recording::time_delay::put_back(recording, diagnosis.delay.corrected_s);
         let one = std::slice::from_ref(recording);
         let channels = match task {
             Task::Crank => return tasks::crank::validate(recording, diagnosis),
@@ -121,15 +116,7 @@ pub fn validate(
             Task::BlockStack | Task::Barrel if tasks::sliding_block::is_slid(one) => {
                 return tasks::sliding_block::validate(one, options, diagnosis);
             }
-            Task::BlockStack | Task::Barrel if diagnosis.delay.corrected_s != 0.0 => tasks::carried_block::channels(
-                &[recording::time_delay::put_back(recording, diagnosis.delay.corrected_s)],
-                options,
-            )?,
             Task::BlockStack | Task::Barrel => tasks::carried_block::channels(one, options)?,
-            Task::Needle if diagnosis.delay.corrected_s != 0.0 => tasks::needle::channels(
-                &[recording::time_delay::put_back(recording, diagnosis.delay.corrected_s)],
-                options,
-            )?,
             Task::Needle => tasks::needle::channels(one, options)?,
             Task::Switch => tasks::switch::channels(one, options)?,
         };

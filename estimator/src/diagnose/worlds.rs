@@ -60,8 +60,7 @@ pub fn suspects(
     }
     if found.is_empty() && world.crank.is_none() && world.mechanism.is_none() {
         let mut world = world;
-        block_world::extend(&mut world, diagnosis);
-        switch_world::extend(&mut world, diagnosis);
+        extend(&mut world, diagnosis);
         found.extend(diagnosis.causes.first().map(|c| Suspect {
             id: c.id.clone(),
             world,
@@ -70,6 +69,13 @@ pub fn suspects(
         }));
     }
     Ok(found)
+}
+
+/// Adds the found causes to a world of blocks or of a switch.
+fn extend(world: &mut World, diagnosis: &Findings) {
+    for put in [block_world::put, switch_world::put] {
+        diagnosis.causes.iter().for_each(|cause| put(world, &cause.id, &cause.parameters));
+    }
 }
 
 /// Two worlds: one with the base model's laws at their own best fit, one with the causes found beside them. All else is
@@ -88,8 +94,7 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Findings)
     let mut after = with_laws(&world, &diagnosis.effects);
     after.name = format!("{}, extended", world.name);
     if world.crank.is_none() && world.mechanism.is_none() {
-        block_world::extend(&mut after, diagnosis);
-        switch_world::extend(&mut after, diagnosis);
+        extend(&mut after, diagnosis);
         after = as_found(&after, diagnosis).unwrap_or(after);
     }
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })

@@ -1,10 +1,11 @@
 //! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
+use super::part::Part;
 use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::hypotheses::all::best_seen_against;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::cause;
 use std::collections::BTreeSet;
 
@@ -73,38 +74,17 @@ pub struct Against {
     pub taken: Vec<f64>,
 }
 
-/// Rows of a channel, with the variables of their plots.
-pub(crate) struct View {
-    /// Recording of each row. Empty if all are shown together.
-    pub recording: Vec<usize>,
-    /// Sensor, or sum of sensors, of each row. A candidate cause is shown over all sensors that it may affect.
-    pub sensor: Vec<usize>,
-    /// Variables of the plots, with a value for each row.
-    pub over: Vec<(Variable, Vec<f64>)>,
-    /// Direction of motion in each row, as a sign. Empty if it does not matter.
-    pub way: Vec<f64>,
-    /// True if positions are angles.
-    pub is_angular: bool,
-}
-
-impl View {
-    /// Rows of one sensor, without a direction.
-    pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>) -> Self {
-        let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
-        Self { recording, sensor, over, way: Vec::new(), is_angular: false }
-    }
-}
-
-impl Compared {
-    /// This channel's part of the atlas. `best`: variable that best shows a cause; the first of the view if that is
-    /// missing there.
-    pub(crate) fn atlas(&self, view: &View, best: fn(&str) -> Variable) -> Channel {
+impl Part<'_> {
+    /// This channel's part of the atlas. If the variable that best shows a cause is missing in the view, the first one
+    /// is shown.
+    pub(crate) fn atlas(&self) -> Option<Channel> {
+        let view = self.view?;
         let left = self.study.residual(&[]);
         let against = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
             let acts = |i: usize| candidate.columns.iter().any(|column| column[i] != 0.0);
             let sensors: BTreeSet<usize> = (0..left.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
             let rows: Vec<usize> = (0..left.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
-            let best = best(candidate.id);
+            let best = (view.best)(candidate.id);
             let (variable, values) = view.over.iter().find(|(v, _)| *v == best).or(view.over.first())?;
             Some(Against {
                 id: candidate.id.to_owned(),
@@ -115,18 +95,17 @@ impl Compared {
                 rows,
             })
         };
-        let suspects = strongest(&self.study, &left).into_iter().filter_map(against).collect();
-        let View { recording, way, is_angular, .. } = view;
-        Channel {
+        let suspects = strongest(self.study, &left).into_iter().filter_map(against).collect();
+        Some(Channel {
             name: self.channel,
             unit: self.unit,
-            is_angular: *is_angular,
+            is_angular: view.is_angular,
             noise: self.floor,
-            recording: recording.clone(),
-            way: way.clone(),
+            recording: view.recording.clone(),
+            way: view.way.clone(),
             left,
             suspects,
-        }
+        })
     }
 }
 

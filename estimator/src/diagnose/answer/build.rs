@@ -1,11 +1,13 @@
 //! Builds one answer from the comparisons of its channels and from evidence of other kinds.
 
+use super::atlas::Atlas;
 use super::cause::{Unnamed, rivals};
 use super::part::{Part, Role};
 use super::rejected::{join, passed_over, unsaid};
 use crate::diagnose::contract::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
+use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::selection::rules::OPEN;
 use crate::diagnose::validation::fitted_terms::of_study;
@@ -38,6 +40,8 @@ pub struct Evidence<'a> {
     pub figures: Figures,
     /// Experiment that would settle the open questions.
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
+    /// True if the residual of each channel is shown beside every suspect.
+    pub atlas: bool,
     /// The task's reading of the named causes.
     pub reads: &'a dyn Fn(&mut Named),
 }
@@ -54,6 +58,7 @@ impl Default for Evidence<'_> {
             without_known: Vec::new(),
             figures: Figures::of_nothing(),
             next: &|_| None,
+            atlas: false,
             reads: &|_| (),
         }
     }
@@ -129,7 +134,16 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
         ..Diagnosis::default()
     };
     let kept = parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect();
-    Findings { diagnosis, kept, ..Findings::default() }
+    let atlas = if evidence.atlas { parts.iter().filter_map(Part::atlas).collect() } else { Vec::new() };
+    let simulated: Vec<_> = parts.iter().filter_map(|p| Some((p.study, p.in_world?))).collect();
+    let hypotheses = of_channels(&simulated);
+    Findings {
+        diagnosis,
+        kept,
+        hypotheses,
+        atlas: Atlas { channels: atlas, ..Atlas::default() },
+        ..Findings::default()
+    }
 }
 
 /// Results of the comparisons of all parts.
@@ -148,7 +162,7 @@ fn compare(parts: &[Part<'_>], not_excited: Vec<NotExcited>) -> Compared {
     let mut all = Compared { ranking, alternatives, not_excited, passed, excuses };
     for part in parts {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
-            if let Some(excuse) = (part.excuse)(k) {
+            if let Some(excuse) = part.told.excuse(k) {
                 all.excuses.push(excuse);
             } else if all.ranking.add(part.role, chosen.score, part.cause(k)) {
                 all.alternatives.extend(rivals(part.study, chosen));

@@ -35,10 +35,11 @@ impl Part<'_> {
         let chosen = &self.study.chosen[k];
         let candidate = &self.study.candidates[chosen.candidate];
         let gain = self.in_its_unit(gain(self.study, k, self.floor)).run(self.free_run.rollout(self.study, k));
-        let parameters = (self.states)(k, candidate, parameters(self.study, k));
-        let evidence = match self.shows {
-            Some(shows) => self.shown(&shows(&Found { candidate, parameters: &parameters }), &gain, chosen),
-            None => self.by_law(&gain, chosen),
+        let parameters = self.told.states(k, candidate, parameters(self.study, k));
+        let evidence = if self.role == Role::Channel {
+            self.shown(&self.told.shows(&Found { candidate, parameters: &parameters }), &gain, chosen)
+        } else {
+            self.by_law(&gain, chosen)
         };
         Cause {
             id: candidate.id.to_owned(),

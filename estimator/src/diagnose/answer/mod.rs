@@ -3,6 +3,5 @@ pub(crate) mod build;
 pub(crate) mod cause;
 pub(crate) mod part;
 pub(crate) mod rejected;
-pub(crate) mod residual_table;
 pub(crate) mod resolved_questions;
 pub mod time_series;

@@ -1,28 +1,16 @@
 //! One compared channel as a part of an answer.
 
 use super::cause::Found;
-use super::residual_table::residuals;
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, NotExcited, Residual};
+use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
 use crate::diagnose::free_run::FreeRun;
-use crate::diagnose::free_run::channel::Forward;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
 use crate::segment::SystemState;
 use haptics::law::entries;
-
-/// Sentence on how the residual shows a cause.
-pub type Shows<'a> = &'a dyn Fn(&Found<'_>) -> String;
-/// Parameters of the k-th chosen cause, made from those of its regressors.
-pub type States<'a> = &'a dyn Fn(usize, &Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>;
-/// Usual size of a cause, and the experiment that would show it. `None` if the cause does not belong to the channel.
-pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
-/// Channel and state of a row; `None` for a row of no channel.
-pub type State<'a> = Box<dyn Fn(usize) -> Option<(&'static str, SystemState)> + 'a>;
-/// Warning about the k-th chosen term if it is no cause.
-pub type Excuse<'a> = &'a dyn Fn(usize) -> Option<String>;
 
 /// Role of a channel in the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +23,27 @@ pub enum Role {
     Path,
 }
 
+/// Words of a compared channel, and everything that its task knows of its causes.
+pub trait Told {
+    /// Sentence on how the residual shows a cause. Along a coordinate it is that of the catalogue.
+    fn shows(&self, _found: &Found<'_>) -> String {
+        String::new()
+    }
+    /// Warning about the k-th chosen term if it is no cause.
+    fn excuse(&self, _k: usize) -> Option<String> {
+        None
+    }
+    /// Parameters of the k-th chosen cause, made from those of its regressors.
+    fn states(&self, _k: usize, _candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        found
+    }
+    /// Smallest size of a cause that matters, and the experiment that would show it. `None` if the cause does not belong
+    /// to the channel. Along a coordinate, causes are as large as the noise, and the reasons are those of the catalogue.
+    fn usual(&self, _candidate: &Candidate) -> Option<(f64, &'static str)> {
+        None
+    }
+}
+
 /// One channel, compared.
 pub struct Part<'a> {
     pub role: Role,
@@ -45,29 +54,29 @@ pub struct Part<'a> {
     /// Name of the channel, in words.
     pub channel: &'static str,
     /// Its unit.
-    pub unit: &'a str,
+    pub unit: &'static str,
     /// Noise of its rows: no cause can explain it.
     pub floor: f64,
     /// Noise to which the final residual is compared.
     pub noise: f64,
     /// True for rows that are held out in turn.
     pub along: &'a [bool],
-    pub state: State<'a>,
-    pub excuse: Excuse<'a>,
-    /// `None` for sentences from the catalogue.
-    pub shows: Option<Shows<'a>>,
-    pub states: States<'a>,
-    /// `None` for causes as large as the noise, and the catalogue's reasons.
-    pub usual: Option<Usual<'a>>,
+    /// Channel and state of each row; `None` for a row of no channel.
+    pub state: Vec<Option<(&'static str, SystemState)>>,
+    /// Its rows for the atlas, if that shows them channel by channel.
+    pub view: Option<&'a View>,
+    pub told: &'a dyn Told,
     /// Free-run simulation of the channel, or the reason why it has none.
     pub free_run: FreeRun<'a>,
+    /// Translation of its causes into effects of a world, if one has them.
+    pub in_world: Option<&'a dyn Simulated>,
 }
 
-impl Compared {
-    /// As one of several channels of an answer.
-    pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
-        let Self { study, channel, unit, floor, along, state } = self;
-        Part {
+impl<'a> Part<'a> {
+    /// One of several channels of an answer.
+    pub fn of(compared: &'a Compared, told: &'a dyn Told) -> Self {
+        let Compared { study, channel, unit, floor, along, state, view } = compared;
+        Self {
             role: Role::Channel,
             study,
             terms: Some(study),
@@ -76,25 +85,22 @@ impl Compared {
             floor: *floor,
             noise: *floor,
             along,
-            state: Box::new(|i| Some((*channel, state[i]))),
-            excuse: &|_| None,
-            shows: Some(shows),
-            states,
-            usual: Some(usual),
+            state: state.iter().map(|state| Some((*channel, *state))).collect(),
+            view: Some(view),
+            told,
             free_run: FreeRun::None(AT_ONCE),
+            in_world: None,
         }
     }
-}
 
-impl<'a> Part<'a> {
-    /// Adds the free-run simulation.
-    pub fn running(self, forward: &'a dyn Forward) -> Self {
-        Self { free_run: FreeRun::Channel(forward), ..self }
+    /// Adds the free-run simulation, or the reason why there is none.
+    pub fn running(self, free_run: FreeRun<'a>) -> Self {
+        Self { free_run, ..self }
     }
 
-    /// Marks the channel as static, without a free run, for this reason.
-    pub fn still(self, why: &'static str) -> Self {
-        Self { free_run: FreeRun::None(why), ..self }
+    /// Adds the translation into effects of a world.
+    pub fn in_world(self, simulated: &'a dyn Simulated) -> Self {
+        Self { in_world: Some(simulated), ..self }
     }
 
     /// Evidence of the strongest chosen cause.
@@ -129,7 +135,26 @@ impl<'a> Part<'a> {
     /// Residuals of the channel, state by state.
     pub fn residuals(&self) -> Vec<Residual> {
         let floor = if self.role == Role::Path { self.noise } else { self.floor };
-        residuals(self.study, (self.unit, floor), &self.state)
+        let (before, after) = (self.study.residual(&[]), self.study.residual(&self.study.picks()));
+        let mut found: Vec<((&str, SystemState), [f64; 2], usize)> = Vec::new();
+        for (i, state) in self.state.iter().enumerate() {
+            let Some(state) = *state else { continue };
+            let k = found.iter().position(|(s, ..)| *s == state).unwrap_or_else(|| {
+                found.push((state, [0.0; 2], 0));
+                found.len() - 1
+            });
+            let (_, squares, rows) = &mut found[k];
+            squares[0] += (self.study.layout.weight[i] * before[i]).powi(2);
+            squares[1] += (self.study.layout.weight[i] * after[i]).powi(2);
+            *rows += 1;
+        }
+        let one = |((channel, state), squares, rows): ((&str, SystemState), [f64; 2], usize)| {
+            let [rms_before, rms_after] = squares.map(|s| (s / rows as f64).sqrt());
+            let noise_floor = Some(floor).filter(|floor| *floor > 0.0);
+            let (channel, unit) = (channel.to_owned(), self.unit.to_owned());
+            Residual { channel, unit, state, rows, rms_before, rms_after, noise_floor }
+        };
+        found.into_iter().map(one).collect()
     }
 
     /// Causes of usual size whose effect this recording would hide.
@@ -138,15 +163,16 @@ impl<'a> Part<'a> {
         let picks = self.study.picks();
         let mut best: Vec<(&str, f64, String)> = Vec::new();
         for (k, candidate) in candidates.iter().enumerate().filter(|(_, c)| !self.study.has(c.id)) {
-            let seen = match self.usual {
-                // A cause as large as the noise.
-                None => hidden_by_law(candidate.id)
-                    .map(|why| (system.distinct(k, &picks) * system.rows - candidate.cost * system.rows.ln(), why)),
-                Some(usual) => usual(candidate).zip(solved.as_ref()).map(|((size, why), solved)| {
+            let seen = if self.role == Role::Channel {
+                self.told.usual(candidate).zip(solved.as_ref()).map(|((size, why), solved)| {
                     let first = system.places[k].start;
                     let power = system.distinct(k, &picks) * system.train[(first, first)] * size * size;
                     (power / solved.variance(system.rows), why.to_owned())
-                }),
+                })
+            } else {
+                // A cause as large as the noise.
+                hidden_by_law(candidate.id)
+                    .map(|why| (system.distinct(k, &picks) * system.rows - candidate.cost * system.rows.ln(), why))
             };
             let Some((evidence, why)) = seen else { continue };
             match best.iter_mut().find(|b| b.0 == candidate.id) {
@@ -154,7 +180,7 @@ impl<'a> Part<'a> {
                 None => best.push((candidate.id, evidence, why)),
             }
         }
-        if self.usual.is_none() {
+        if self.role != Role::Channel {
             best.sort_by_key(|(id, ..)| entries().position(|e| e.id == *id));
         }
         let hidden = best.into_iter().filter(|(_, evidence, _)| *evidence < rules.visible);

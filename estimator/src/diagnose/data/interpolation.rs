@@ -58,8 +58,7 @@ pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
         time_s: a.time_s + p * step_s,
         position: a.position + ease * (b.position - a.position) + bend,
         velocity: q * a.velocity + p * b.velocity,
-        direction: 0.0,
-        open: 0.0,
+        ..Fine::default()
     }
 }
 

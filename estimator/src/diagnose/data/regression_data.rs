@@ -9,9 +9,10 @@ use haptics::law::{Coordinate, Effect, Motion};
 pub type Model = Vec<Effect>;
 
 /// Kind of a row's force.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Place {
     /// Along the motion, while the object is held.
+    #[default]
     Along,
     /// Horizontal, while nothing is touched.
     FreeX,
@@ -106,8 +107,8 @@ impl Span {
     }
 }
 
-/// One force with its motion.
-#[derive(Clone, Copy, Debug)]
+/// One force with its motion; by default one of zero velocity, without a force.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Row {
     /// Index of the recording.
     pub recording: usize,
@@ -160,49 +161,11 @@ impl Row {
 }
 
 #[cfg(test)]
-impl Row {
-    /// Motion of zero velocity, without a force.
-    pub fn at_rest() -> Self {
-        Self {
-            recording: 0,
-            stretch: 0,
-            place: Place::Along,
-            motion: Motion::default(),
-            angle_rad: 0.0,
-            along: Vec2::zeros(),
-            force: Vec2::zeros(),
-            force_rate: Vec2::zeros(),
-            y: 0.0,
-            span: Span::default(),
-            open: 0.0,
-        }
-    }
-}
-
-#[cfg(test)]
 impl Track {
     /// A track of these rows, 10 ms apart, for a linear motion.
     pub fn of_rows(rows: Vec<Row>) -> Self {
-        Self {
-            rows,
-            fine: Vec::new(),
-            period_s: 0.01,
-            raw_period_s: 0.01,
-            coordinate: Coordinate::Linear,
-            radius_m: None,
-            planar: false,
-            velocity_noise: 0.0,
-            position_noise: 0.0,
-            force_noise: 1e-3,
-            noise_is_measured: false,
-            span_s: 1.0,
-            hung: Vec::new(),
-            bearing: Bearing::default(),
-            slope: None,
-            extra: Vec::new(),
-            freely: None,
-            zero: Zero::Open,
-        }
+        let periods = Self { period_s: 0.01, raw_period_s: 0.01, ..Self::of(Coordinate::Linear) };
+        Self { rows, force_noise: 1e-3, span_s: 1.0, ..periods }
     }
 }
 
@@ -264,6 +227,30 @@ pub struct Freely {
 }
 
 impl Track {
+    /// No rows yet, of one coordinate, whose noise is zero.
+    pub fn of(coordinate: Coordinate) -> Self {
+        Self {
+            rows: Vec::new(),
+            fine: Vec::new(),
+            period_s: 0.0,
+            raw_period_s: 0.0,
+            coordinate,
+            radius_m: (coordinate == Coordinate::Angular).then_some(1.0),
+            planar: false,
+            velocity_noise: 0.0,
+            position_noise: 0.0,
+            force_noise: 0.0,
+            noise_is_measured: false,
+            span_s: 0.0,
+            hung: Vec::new(),
+            bearing: Bearing::default(),
+            slope: None,
+            extra: Vec::new(),
+            freely: None,
+            zero: Zero::Open,
+        }
+    }
+
     /// Slow channels common to all recordings: name, unit, and the value at each row less the mean.
     pub fn extras(&self) -> Vec<(String, String, Vec<f64>)> {
         let Some(first) = self.extra.first() else { return Vec::new() };
@@ -281,9 +268,14 @@ impl Track {
     /// True if the motion has one direction: its backward share is no larger than a hand's tremor.
     pub fn goes_one_way(&self) -> bool {
         const TREMBLES: f64 = 0.02;
-        let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
-        let (forward, backward) = (way(1.0), way(-1.0));
+        let [forward, backward] = self.ways();
         forward.min(backward) <= TREMBLES * (forward + backward)
+    }
+
+    /// Ways forward and backward.
+    pub fn ways(&self) -> [f64; 2] {
+        let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+        [way(1.0), way(-1.0)]
     }
 
     /// Indices of the rows along the motion.

@@ -113,7 +113,7 @@ mod tests {
                 normal_force_n: 1.0 + 0.2 * k as f64,
                 up_along: 0.01 * k as f64,
             },
-            ..Row::at_rest()
+            ..Row::default()
         };
         let mut rows: Vec<Row> = (0..30).map(row).collect();
         rows[7].span.len = 0;

@@ -317,7 +317,7 @@ mod tests {
 
     fn row(stretch: usize, share: f64, way_um: f64) -> Row {
         let place = Place::Stuck { share, side: share.signum(), noise: 0.02, scale: 1e3 };
-        Row { stretch, place, y: 1e-3 * way_um, ..Row::at_rest() }
+        Row { stretch, place, y: 1e-3 * way_um, ..Row::default() }
     }
 
     #[test]

@@ -3,5 +3,4 @@ pub(crate) mod predicted_rows;
 pub(crate) mod proposal;
 pub(crate) mod separation;
 pub(crate) mod strokes;
-pub(crate) mod turned_track;
 pub(crate) mod waypoints;

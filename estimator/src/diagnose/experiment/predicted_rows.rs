@@ -4,7 +4,7 @@ use super::motions::Excitation;
 use super::strokes::Course;
 use crate::diagnose::contract::Experiment;
 use crate::diagnose::data::direction::blur;
-use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Span, Track};
+use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
 use haptics::Vec2;
 use haptics::law::Motion;
@@ -30,7 +30,7 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
             normal_force_n: if track.planar { asked.across_n * course.at(t).1 } else { 0.0 },
             up_along: if track.planar { along.y } else { 0.0 },
         };
-        row(motion, angle_rad, along)
+        Row { motion, angle_rad, along, ..Row::default() }
     });
     let mut imagined = Track {
         rows: rows.collect(),
@@ -62,22 +62,6 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
     imagined
 }
 
-fn row(motion: Motion, angle_rad: f64, along: Vec2) -> Row {
-    Row {
-        recording: 0,
-        stretch: 0,
-        place: Place::Along,
-        motion,
-        angle_rad,
-        along,
-        force: Vec2::zeros(),
-        force_rate: Vec2::zeros(),
-        y: 0.0,
-        span: Span::default(),
-        open: 0.0,
-    }
-}
-
 fn add_free(track: &mut Track, free_s: f64) {
     let count = (free_s / track.period_s) as usize;
     for (k, (axis, place)) in [(Vec2::x(), Place::FreeX), (Vec2::y(), Place::FreeY)].into_iter().enumerate() {
@@ -86,7 +70,7 @@ fn add_free(track: &mut Track, free_s: f64) {
             let period_s = track.period_s;
             track.rows.extend((0..count).map(|i| {
                 let motion = Motion { time_s: start_s + i as f64 * period_s, ..Motion::default() };
-                Row { stretch: 1 + 2 * k + end, place, ..row(motion, 0.0, axis) }
+                Row { stretch: 1 + 2 * k + end, place, motion, along: axis, ..Row::default() }
             }));
         }
     }

@@ -6,7 +6,7 @@ use super::predicted_rows::imagine;
 use super::separation::{Imagined, separation};
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::{Model, Track};
-use crate::diagnose::hypotheses::{eccentric_mass, gravity_tilt};
+use crate::diagnose::hypotheses::{eccentric_mass, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -58,6 +58,33 @@ pub fn propose(track: &Track, model: &Model, study: &ChannelFit, open: &[Alterna
     best.map(|(_, next)| next)
 }
 
+/// Recording to make: its experiment and its words, and its predicted rows in each channel, with what was found there.
+pub(crate) type Asked<'a> = (Experiment, String, Vec<(Imagined, &'a ChannelFit)>);
+
+/// The shortest of several recordings that is likely to settle the open questions, or the one that settles most. `None`
+/// if none settles any. `asked`: the recording with this many movements.
+pub(crate) fn shortest<'a>(
+    open: &[Alternative],
+    counts: [usize; 3],
+    asked: &dyn Fn(usize) -> Option<Asked<'a>>,
+) -> Option<NextExperiment> {
+    let mut best: Option<NextExperiment> = None;
+    for count in counts {
+        let (experiment, motion, channels) = asked(count)?;
+        let seen = |pair| channels.iter().find_map(|(rows, study)| separation(rows, study, pair));
+        let pairs = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str()));
+        let (told, evidence): (Vec<_>, Vec<f64>) = pairs.filter_map(|pair| Some((pair, seen(pair)?))).unzip();
+        let power = SURE_BY_MOTION * power(evidence.into_iter().reduce(f64::min)?);
+        if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
+            best = Some(proposal(motion, &told, power, experiment));
+        }
+        if best.as_ref().is_some_and(|b| b.expected_power > LIKELY) {
+            break;
+        }
+    }
+    best
+}
+
 fn proposal(motion: String, pairs: &[(&str, &str)], power: f64, experiment: Experiment) -> NextExperiment {
     let mut separates: Vec<String> = Vec::new();
     for id in pairs.iter().flat_map(|(found, other)| [*found, *other]) {
@@ -82,8 +109,7 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
         half_range: if track.planar { half.min(TURN_RAD) } else { half },
         fast: track.quantile(0.95, |r| r.motion.velocity.abs()) / scale,
         across_n: if track.planar { track.quantile(0.7, |r| r.motion.normal_force_n.abs()) } else { 0.0 },
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     }
 }
 
@@ -139,4 +165,17 @@ pub(crate) fn power(lambda: f64) -> f64 {
     let lambda = lambda.clamp(0.0, SETTLED_EVIDENCE);
     let sure = (0.5 * lambda - SETTLED) / lambda.max(1e-9).sqrt();
     Normal::new(0.0, 1.0).map_or(0.0, |n| n.cdf(sure))
+}
+
+/// Probability that turning a slope round settles the question: neither answer may be true.
+const SETTLES: f64 = 0.85;
+
+/// Next experiment of a free motion in words: it cannot be driven.
+pub(crate) fn turned_track(open: &[Alternative]) -> Option<NextExperiment> {
+    let pair = [gravity_tilt::ID, friction_asymmetry::ID];
+    let asks = |a: &&Alternative| pair.contains(&a.id.as_str()) && pair.contains(&a.instead_of.as_str());
+    open.iter().find(asks)?;
+    let motion = "turn the track end for end, release it again as before, and count the coordinate along the thing, not along the room: a \
+                  slope then pulls the other way, friction stays";
+    Some(NextExperiment::in_words(motion, pair.map(str::to_owned).to_vec(), SETTLES))
 }

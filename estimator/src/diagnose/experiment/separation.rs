@@ -2,10 +2,8 @@
 
 use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::data::row_means::column;
+use crate::diagnose::hypotheses::all::coarse_candidates;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::grid::Grid;
-use crate::diagnose::hypotheses::library::{Dictionary, dry_of};
-use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::noise_model::Whitening;
 use nalgebra::{DMatrix, DVector};
@@ -26,20 +24,8 @@ impl Imagined {
     pub fn along(track: &Track, model: &Model, study: &ChannelFit) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-        let dry = dry_of(track, &predicted);
         let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
-        let grid = Grid::coarse(track);
-        let candidates = Dictionary {
-            track,
-            predicted: &predicted,
-            resisting: &predicted,
-            dry: &dry,
-            fixed: &[],
-            without: &taken,
-            grid: &grid,
-            columns: &Columns::default(),
-        }
-        .candidates();
+        let candidates = coarse_candidates(track, &predicted, &[], &taken);
         let variance = variance(study).unwrap_or(1.0);
         Self {
             base,

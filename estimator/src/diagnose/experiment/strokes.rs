@@ -8,6 +8,12 @@ pub(crate) const PEAK: f64 = 1.875;
 /// Shortest duration of a back-and-forth movement, s.
 const SHORTEST_STROKE_S: f64 = 0.25;
 
+/// Minimum jerk, as a share of the way.
+pub(crate) fn smooth(u: f64) -> f64 {
+    let u = u.clamp(0.0, 1.0);
+    u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+}
+
 /// Position and push across, in units of the experiment, at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
@@ -35,8 +41,7 @@ impl Course {
     pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
         let next = self.knots.partition_point(|k| k.0 <= time_s).clamp(1, self.knots.len() - 1);
         let ((t0, p0, a0), (t1, p1, a1)) = (self.knots[next - 1], self.knots[next]);
-        let x = ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
-        let smooth = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+        let smooth = smooth((time_s - t0) / (t1 - t0));
         (p0 + (p1 - p0) * smooth, a0 + (a1 - a0) * smooth)
     }
 }

@@ -1,6 +1,6 @@
 //! Motions of needles and switches: from one turning point to the next, smooth between them.
 
-use super::strokes::PEAK;
+use super::strokes::{PEAK, smooth};
 use crate::diagnose::contract::Experiment;
 
 /// Ids of the motions.
@@ -19,12 +19,6 @@ const PACES: [f64; 3] = [0.15, 1.0, 0.4];
 const PRESS_S: f64 = 0.35;
 const RELEASE_S: f64 = 0.4;
 const ALONE_S: f64 = 0.25;
-
-/// Minimum jerk, as a share of the way.
-fn smooth(u: f64) -> f64 {
-    let u = u.clamp(0.0, 1.0);
-    u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
-}
 
 /// Turning points: time, s, and place.
 #[derive(Clone, Debug)]

@@ -13,13 +13,6 @@ use haptics::world::{Cable, Content, World};
 const OF_THE_NET_FORCE: [&str; 6] =
     [inertia::ID, mass_change::ID, gravity_tilt::ID, added_constraint::ID, viscous_friction::ID, friction_change::ID];
 
-/// Adds the found causes to a world.
-pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
-    for cause in &diagnosis.causes {
-        put(world, &cause.id, &cause.parameters);
-    }
-}
-
 /// The world with the causes found in other channels and with the hypothesis on what acts on the blocks.
 pub fn with_acts(world: &World, diagnosis: &Diagnosis, acts: &[Act]) -> World {
     let mut world = world.clone();
@@ -32,7 +25,8 @@ pub fn with_acts(world: &World, diagnosis: &Diagnosis, acts: &[Act]) -> World {
     world
 }
 
-fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
+/// Adds an effect to a world.
+pub fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
     let value = |name: &str| parameters.iter().find(|p| p.name == name).map(|p| p.value);
     let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
     match id {

@@ -70,11 +70,15 @@ pub(crate) fn hypotheses(track: &Track, model: &Model, study: &ChannelFit) -> Ve
 /// Translation of a channel's causes into effects of a world.
 pub(crate) trait Simulated {
     /// Estimates of the base model itself: weights.
-    fn base(&self, values: &[f64]) -> Vec<Act>;
+    fn base(&self, _values: &[f64]) -> Vec<Act> {
+        Vec::new()
+    }
     /// A cause with its parameters for a world; `None` if the world has no such effect.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act>;
     /// True if a fault begins only when something is held.
-    fn is_late(&self, candidate: &Candidate) -> bool;
+    fn is_late(&self, _candidate: &Candidate) -> bool {
+        false
+    }
     /// The fault in the axes of the sensors.
     fn fault(&self, fault: SensorFault) -> SensorFault {
         fault

@@ -132,7 +132,7 @@ mod tests {
         ];
         let at = |time_s: f64| Motion { time_s, direction: 1.0, normal_force_n: -5.0, ..Motion::default() };
         let total = |laws: &[Effect], time_s: f64| laws.iter().map(|e| e.force(&at(time_s))).sum::<f64>();
-        let track = Track::of_rows(vec![Row::at_rest()]);
+        let track = Track::of_rows(vec![Row::default()]);
         let of = |model: &[Effect], candidate: &Candidate, values: &[f64], searched: &[f64]| {
             let dry = &DryFriction::of(model);
             laws_of(&Found { candidate, values, searched, track: &track, weight_n: 0.0, dry })

@@ -1,7 +1,7 @@
 //! Causes found on a switch, and rival causes, as effects in a world.
 
 use super::hypothetical_worlds::Act;
-use crate::diagnose::contract::{CauseParameter, Diagnosis};
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::{
     added_constraint, coulomb_friction, friction_asymmetry, local_resistance, pad_compliance, return_spring,
     viscous_friction,
@@ -13,13 +13,6 @@ use haptics::world::{Switch, World};
 /// Number of linear parts of a local resistance in a world's curve.
 const LINEAR_PARTS: usize = 8;
 
-/// Adds the found causes to a world.
-pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
-    for cause in &diagnosis.causes {
-        put(world, &cause.id, &cause.parameters);
-    }
-}
-
 /// The world with these effects on its switch.
 pub fn with_acts(world: &World, acts: &[Act]) -> World {
     let mut world = world.clone();
@@ -29,7 +22,8 @@ pub fn with_acts(world: &World, acts: &[Act]) -> World {
     world
 }
 
-fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
+/// Adds an effect to a world.
+pub fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
     let Some(switch) = &mut world.switch else { return };
     let value = |name: &str| parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
     match id {

@@ -1,15 +1,14 @@
 //! Laws along one coordinate, over the locked blocks.
 
-use super::integrate::{Moment, Side as Driven, run};
-use super::windows::{Compared, Errors, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, told};
+use super::integrate::{Side as Driven, follow, over};
+use super::windows::{Compared, Errors, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, told, windows};
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Use;
-use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
-use std::ops::Range;
+use haptics::law::{Coordinate, Effect, Kind, Memories, drive_forces, inertia};
 
 /// Largest deviation of the laws from the regressors, as a share of the cause's effect.
 const FAITHFUL: f64 = 0.5;
@@ -36,13 +35,13 @@ pub fn rollout(track: &Track, model: &Model, study: &ChannelFit, k: usize) -> Re
     }
     let driven = inertia(&without.effects) > 0.0 && inertia(&with.effects) > 0.0 && !track.planar;
     let sides = [&without, &with].map(|side| (side, memories(track, &side.effects)));
-    let errors = |window: Range<usize>| {
-        [0, 1].map(|k| {
-            let (side, starts) = &sides[k];
-            over(track, side, window.clone(), &starts[window.start], driven)
+    let errors = |window: &Vec<usize>| {
+        sides.each_ref().map(|(Side { effects, drive, .. }, starts)| {
+            let row = |i: usize| (track.rows[i].motion, drive[i]);
+            over(window, &row, Driven { effects, memory: starts[window[0]], acts: &mut |_, _| 0.0, driven })
         })
     };
-    let windows: Vec<[Errors; 2]> = windows(track, study).into_iter().map(errors).collect();
+    let windows: Vec<[Errors; 2]> = locked(track, study).iter().map(errors).collect();
     let unit = match (driven, track.coordinate) {
         (true, Coordinate::Linear) => "m",
         (true, Coordinate::Angular) => "rad",
@@ -70,13 +69,13 @@ fn side(track: &Track, model: &Model, study: &ChannelFit, picks: &[usize]) -> Op
 /// True if the laws agree with the force of the regressors.
 fn faithful(track: &Track, study: &ChannelFit, side: &Side, other: &Side) -> bool {
     let (mut off, mut worth) = (0.0, 0.0);
-    for stretch in stretches(track) {
-        let motions: Vec<Motion> = track.rows[stretch.clone()].iter().map(|r| r.motion).collect();
-        let needed = match track.freely {
-            Some(_) => law_forces::needed(track, &side.effects)[stretch.clone()].to_vec(),
-            None => drive_forces(&side.effects, &motions),
+    let of_all = track.freely.map(|_| law_forces::needed(track, &side.effects));
+    for rows in segments(track) {
+        let needed = match &of_all {
+            Some(needed) => rows.iter().map(|i| needed[*i]).collect(),
+            None => drive_forces(&side.effects, &rows.iter().map(|i| track.rows[*i].motion).collect::<Vec<_>>()),
         };
-        for (i, needed) in stretch.zip(needed) {
+        for (i, needed) in rows.into_iter().zip(needed) {
             if study.layout.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
                 off += (side.drive[i] - side.left[i] - needed).powi(2);
                 worth += (side.left[i] - other.left[i]).powi(2);
@@ -87,38 +86,16 @@ fn faithful(track: &Track, study: &ChannelFit, side: &Side, other: &Side) -> boo
 }
 
 /// Rows along the motion that follow each other.
-fn stretches(track: &Track) -> Vec<Range<usize>> {
-    let mut found: Vec<Range<usize>> = Vec::new();
-    for i in track.along() {
-        match found.last_mut() {
-            Some(last) if last.end == i && track.follows(i) => last.end = i + 1,
-            _ => found.push(i..i + 1),
-        }
-    }
-    found
+fn segments(track: &Track) -> Vec<Vec<usize>> {
+    windows(&track.along().collect::<Vec<usize>>(), [1, usize::MAX], |_, i| track.follows(i))
 }
 
-/// Segments of the locked blocks.
-fn windows(track: &Track, study: &ChannelFit) -> Vec<Range<usize>> {
+/// Windows within the locked blocks.
+fn locked(track: &Track, study: &ChannelFit) -> Vec<Vec<usize>> {
     let rows = (ROLLOUT_WINDOW_S / track.period_s).round().max(4.0) as usize;
-    let mut found = Vec::new();
-    for stretch in stretches(track) {
-        let mut start = stretch.start;
-        while start < stretch.end {
-            let block = study.system.uses[start];
-            let Use::Locked(_) = block else {
-                start += 1;
-                continue;
-            };
-            let until = (start + rows).min(stretch.end);
-            let end = (start..until).find(|i| study.system.uses[*i] != block).unwrap_or(until);
-            if 2 * (end - start) >= rows {
-                found.push(start..end);
-            }
-            start = end.max(start + 1);
-        }
-    }
-    found
+    let uses = &study.system.uses;
+    let order: Vec<usize> = track.along().filter(|i| matches!(uses[*i], Use::Locked(_))).collect();
+    windows(&order, [rows.div_ceil(2), rows], |a, b| a + 1 == b && track.follows(b) && uses[a] == uses[b])
 }
 
 /// Memory of the laws at every row, after the measured motion.
@@ -127,22 +104,11 @@ fn memories(track: &Track, effects: &[Effect]) -> Vec<Memories> {
     (0..track.rows.len())
         .map(|i| {
             if track.follows(i) && track.rows[i].place == Place::Along {
-                let (before, now) = (&track.rows[i - 1].motion, &track.rows[i].motion);
-                let step_s = (now.time_s - before.time_s).max(1e-9);
-                let velocity = (now.position - before.position) / step_s;
-                advance(effects, &Motion { velocity, ..*now }, &mut memory, step_s);
+                follow(effects, [&track.rows[i - 1].motion, &track.rows[i].motion], &mut memory);
             } else {
                 memory = Memories::default();
             }
             memory
         })
         .collect()
-}
-
-/// Sum of the squared errors over a window, and their number.
-fn over(track: &Track, side: &Side, window: Range<usize>, start: &Memories, driven: bool) -> Errors {
-    let moment = |i: usize| Moment { motion: track.rows[i].motion, drive: side.drive[i], beside: [0.0; 2] };
-    let moments: Vec<Moment> = window.map(moment).collect();
-    let nothing = &mut |_: &Motion, _: [f64; 2]| 0.0;
-    run(&moments, Driven { effects: &side.effects, memory: *start, acts: nothing, driven })
 }

@@ -2,8 +2,9 @@
 //! no window is left that took part in nothing. Each window is left out of the fit in turn; its rows took part in the
 //! choice.
 
-use super::windows::{Compared, Errors, ROLLOUT_WINDOW_S, told};
+use super::windows::{Compared, Errors, ROLLOUT_WINDOW_S, told, windows};
 use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Most windows, taken evenly from the whole recording; more add no information.
@@ -25,19 +26,35 @@ pub trait Forward {
     fn window_s(&self) -> f64 {
         ROLLOUT_WINDOW_S
     }
-    /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
-    /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
-    fn errors(&self, study: &ChannelFit, window: &[usize], picks: &[usize], values: &[f64]) -> Result<Errors, String>;
+    /// Sum of squared errors over a window, and their number. The error is the reason why the laws of the candidates
+    /// cannot be simulated.
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String>;
 }
 
-/// Columns of the model and of the candidates with their values.
-pub fn columns<'a>(
-    study: &'a ChannelFit,
-    picks: &'a [usize],
-    values: &'a [f64],
-) -> impl Iterator<Item = (&'a [f64], f64)> {
-    let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|column| column.as_slice());
-    study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
+/// Candidates of a channel with the values of a fit. `values`: of the model's regressors, then of the candidates' ones.
+pub struct Fit<'a> {
+    pub study: &'a ChannelFit,
+    pub picks: &'a [usize],
+    pub values: &'a [f64],
+}
+
+impl<'a> Fit<'a> {
+    /// Each candidate with its own values.
+    pub fn causes(&self) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
+        self.study.with_values(self.picks, self.values)
+    }
+
+    /// Regressors of the model and of the candidates, with their values.
+    pub fn columns(&self) -> impl Iterator<Item = (&'a [f64], f64)> {
+        let Self { study, picks, values } = *self;
+        let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|column| column.as_slice());
+        study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
+    }
+
+    /// Measured quantity less the contribution of these regressors in a row.
+    pub fn less(&self, row: usize, columns: &[(&[f64], f64)]) -> f64 {
+        self.study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
+    }
 }
 
 /// Windows of consecutive rows: `order` has them by time, `same` is true if two belong together.
@@ -51,12 +68,7 @@ pub fn consecutive(
         same(a, b) && (0.0..CONSECUTIVE_PERIODS * period_s).contains(&(time_s(b) - time_s(a))) && a != b
     };
     let most = ((ROLLOUT_WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW_ROWS) + 1;
-    order
-        .chunk_by(|a, b| goes_on(*a, *b))
-        .flat_map(|run| run.chunks(most))
-        .filter(|w| w.len() >= LEAST_WINDOW_ROWS)
-        .map(<[usize]>::to_vec)
-        .collect()
+    windows(order, [LEAST_WINDOW_ROWS, most], goes_on)
 }
 
 /// The rollout without and with the k-th of the chosen causes, all others in, over the windows in which it acts.
@@ -73,9 +85,55 @@ pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Ro
         let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
         // A value that only this window determines is unknown without it.
         let (Some(without), Some(with)) = solved else { continue };
-        let errors = |picks: &[usize], values: &[f64]| channel.errors(study, window, picks, values);
+        let errors = |picks: &[usize], values: &[f64]| channel.errors(&Fit { study, picks, values }, window);
         compared.push([errors(&rest, &without)?, errors(&picks, &with)?]);
     }
     let (of, unit) = channel.of();
     told(&Compared { of, unit, window_s: channel.window_s(), in_turn: true }, &compared)
+}
+
+/// Compliant pads under a measured force, whose damping delays the displacement after the force: a channel of positions,
+/// with the rate of the position among the regressors of its model.
+pub struct Pads {
+    time_s: Vec<f64>,
+    stretch: Vec<usize>,
+    period_s: f64,
+    /// Index of the rate among the model's regressors.
+    rate: usize,
+}
+
+impl Pads {
+    pub fn new(time_s: &[f64], stretch: &[usize], period_s: f64, rate: usize) -> Self {
+        Self { time_s: time_s.to_vec(), stretch: stretch.to_vec(), period_s, rate }
+    }
+}
+
+impl Forward for Pads {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Position, "m")
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        let all: Vec<usize> = (0..self.time_s.len()).collect();
+        consecutive(&all, &|i| self.time_s[i], self.period_s, &|a, b| self.stretch[a] == self.stretch[b])
+    }
+
+    /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is
+    /// noise, and none.
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let lag_s = (-fit.values[self.rate]).max(0.0);
+        let beside = fit.columns().enumerate().filter(|(k, _)| *k != self.rate);
+        let given: Vec<(&[f64], f64)> = beside.map(|(_, column)| column).collect();
+        let measured = &fit.study.y;
+        let mut place = measured[window[0]];
+        let (mut sum, mut count) = (0.0, 0.0);
+        for pair in window.windows(2) {
+            let step_s = (self.time_s[pair[1]] - self.time_s[pair[0]]).max(1e-9);
+            let given = given.iter().map(|(column, value)| value * column[pair[1]]).sum::<f64>();
+            place = (given + lag_s / step_s * place) / (1.0 + lag_s / step_s);
+            sum += (place - measured[pair[1]]).powi(2);
+            count += 1.0;
+        }
+        Ok((sum, count))
+    }
 }

@@ -1,5 +1,6 @@
 //! One window, stepped.
 
+use super::windows::Errors;
 use haptics::device::HandImpedance;
 use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
 
@@ -35,19 +36,31 @@ pub struct Side<'a> {
     pub driven: bool,
 }
 
+/// Follows the measured motion from one row to the next.
+pub fn follow(effects: &[Effect], [before, now]: [&Motion; 2], memory: &mut Memories) {
+    let step_s = (now.time_s - before.time_s).max(1e-9);
+    let velocity = (now.position - before.position) / step_s;
+    advance(effects, &Motion { velocity, ..*now }, memory, step_s);
+}
+
 /// Memory of the laws after a measured motion.
 pub fn remembered(effects: &[Effect], past: &[Motion]) -> Memories {
     let mut memory = Memories::default();
-    for pair in past.windows(2) {
-        let step_s = (pair[1].time_s - pair[0].time_s).max(1e-9);
-        let velocity = (pair[1].position - pair[0].position) / step_s;
-        advance(effects, &Motion { velocity, ..pair[1] }, &mut memory, step_s);
-    }
+    past.windows(2).for_each(|pair| follow(effects, [&pair[0], &pair[1]], &mut memory));
     memory
 }
 
+/// Errors over a window of rows. `row`: measured motion and driving force of a row.
+pub fn over(window: &[usize], row: &dyn Fn(usize) -> (Motion, f64), side: Side<'_>) -> Errors {
+    let moment = |i: &usize| {
+        let (motion, drive) = row(*i);
+        Moment { motion, drive, ..Moment::default() }
+    };
+    run(&window.iter().map(moment).collect::<Vec<Moment>>(), side)
+}
+
 /// Sum of squared errors over a window, and their number: of the position, or of the force of the hand.
-pub fn run(moments: &[Moment], side: Side<'_>) -> (f64, f64) {
+pub fn run(moments: &[Moment], side: Side<'_>) -> Errors {
     let Side { effects, mut memory, acts, driven } = side;
     let Some(Moment { motion: first, .. }) = moments.first() else { return (0.0, 0.0) };
     let (mut position, mut velocity) = (first.position, first.velocity);

@@ -40,6 +40,13 @@ pub struct Compared<'a> {
 /// Sum of the squared errors over a window, and their number.
 pub type Errors = (f64, f64);
 
+/// Windows of at most `most` rows of which each goes on from the one before, but none with fewer than `least`. `order`
+/// has the rows by time.
+pub fn windows(order: &[usize], [least, most]: [usize; 2], goes_on: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let runs = order.chunk_by(|a, b| goes_on(*a, *b)).flat_map(|run| run.chunks(most));
+    runs.filter(|window| window.len() >= least).map(<[usize]>::to_vec).collect()
+}
+
 /// Rollout of the errors without and with a cause, window by window.
 pub fn told(what: &Compared<'_>, windows: &[[Errors; 2]]) -> Result<Rollout, String> {
     if windows.len() < LEAST_WINDOWS {

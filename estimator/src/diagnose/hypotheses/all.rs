@@ -7,13 +7,13 @@ use super::fingertip_slip::FingertipSlip;
 use super::force_cross_axis::ForceCrossAxis;
 use super::force_gain::ForceGain;
 use super::force_saturation::ForceSaturation;
-use super::free_motion::goes_both_ways;
 use super::grid::{Grid, Near, Ranges};
 use super::hypothesis::Hypothesis;
 use super::joint_offset::JointOffset;
 use super::length_scale::LengthScale;
 use super::library::Dictionary;
 use super::pad_compliance::PadCompliance;
+use super::regressor_cache::Columns;
 use super::relations::{Form, Relation};
 use super::sensor_fault::SensorFault;
 use super::stiffness_hardening::StiffnessHardening;
@@ -21,7 +21,7 @@ use super::time_delay::TimeDelay;
 use super::variable::Variable;
 use super::velocity_loss::VelocityLoss;
 use crate::diagnose::contract::CauseParameter;
-use crate::diagnose::data::regression_data::Track;
+use crate::diagnose::data::regression_data::{Row, Track};
 use haptics::law::{
     AddedConstraint, Backlash, CoulombFriction, EccentricMass, ForceBias, ForceDrift, FrictionAsymmetry,
     FrictionChange, GravityTilt, Hysteresis, Inertia, LoadFriction, LocalResistance, MassChange, PositionRipple,
@@ -146,13 +146,30 @@ impl Grid {
     }
 }
 
+/// All candidates of the coarse grid on a track with this predicted force, all of which may resist. `fixed`, `without`:
+/// as in the [`Dictionary`].
+pub(crate) fn coarse_candidates(
+    track: &Track,
+    predicted: &[f64],
+    fixed: &[Vec<f64>],
+    without: &[&str],
+) -> Vec<Candidate> {
+    // Dry friction at each row if it slid in the positive direction.
+    let slid = |(r, f): (&Row, &f64)| {
+        if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }
+    };
+    let dry: Vec<f64> = track.rows.iter().zip(predicted).map(slid).collect();
+    let (grid, columns) = (&Grid::coarse(track), &Columns::default());
+    Dictionary { track, predicted, resisting: predicted, dry: &dry, fixed, without, grid, columns }.candidates()
+}
+
 impl Dictionary<'_> {
     /// All candidates.
     pub fn candidates(&self) -> Vec<Candidate> {
         let mut all: Vec<Candidate> = ALL.iter().flat_map(|hypothesis| hypothesis.candidates(self)).collect();
         all.retain(|c| !self.without.contains(&c.id));
         if self.track.freely.is_some() {
-            let both_ways = goes_both_ways(self.track);
+            let both_ways = !self.track.goes_one_way();
             all.retain(|c| can_show(c.id, both_ways));
         }
         all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));

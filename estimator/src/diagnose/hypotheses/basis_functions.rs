@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use crate::diagnose::data::regression_data::{Place, Row, Track};
-use haptics::law::{Coordinate, Kind};
+use haptics::law::Coordinate;
 
 /// Waves round a turn, or over the range.
 const COORDINATE_WAVES: u32 = 6;
@@ -22,8 +22,7 @@ pub fn slow_waves(time_s: &[f64], count: u32, unit: &'static str) -> impl Iterat
     let span_s = time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
     (1..=count).map(move |k| {
         let wave = time_s.iter().map(|t| (std::f64::consts::PI * f64::from(k) * t / span_s).cos()).collect();
-        let expression = Some(format!("cos({k} pi t/T)"));
-        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", unit, wave) }
+        Candidate::term(format!("cos({k} pi t/T)"), unit, vec![wave])
     })
 }
 
@@ -54,30 +53,29 @@ pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
         for (n, waves) in (1..).zip(&waves) {
             let times = |wave: &Vec<f64>| wave.iter().zip(&factor).map(|(w, f)| w * f).collect();
             let columns = waves.iter().map(times).collect();
-            all.push(term(format!("{name} cos({n} {turns}q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
+            let unit = if *name == "Fn" { "1" } else { force };
+            all.push(Candidate::term(format!("{name} cos({n} {turns}q + phi)"), unit, columns));
         }
     }
     for share in [0.2, 0.5, 0.8] {
         let bend = share * fast;
         let hinge = |r: &Row| (r.motion.velocity.abs() - bend).max(0.0) / fast * r.motion.direction;
-        all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)], force));
+        all.push(Candidate::term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), force, vec![column(track, &hinge)]));
     }
     for k in 1..=slow {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.motion.time_s / track.span_s.max(1e-9)).cos();
-        all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)], force));
+        all.push(Candidate::term(format!("cos({k} pi t/T)"), force, vec![column(track, &wave)]));
     }
     for (name, unit, values) in track.extras() {
         let rows = track.rows.iter().enumerate();
         let column = rows.map(|(i, r)| if r.place == Place::Along { values[i] } else { 0.0 }).collect();
-        all.push(term(name.clone(), vec![column], force).with((name, unit)));
+        all.push(Candidate::term(name.clone(), force, vec![column]).with((name, unit)));
     }
     if track.planar {
-        all.push(term(
-            "Fn^2 sgn(v)".to_owned(),
-            vec![column(track, &|r| r.motion.normal_force_n.powi(2) * r.motion.direction)],
-            "1/N",
-        ));
-        all.push(term("Fn^2".to_owned(), vec![column(track, &|r| r.motion.normal_force_n.powi(2))], "1/N"));
+        let square = |r: &Row| r.motion.normal_force_n.powi(2);
+        let turned = column(track, &|r| square(r) * r.motion.direction);
+        all.push(Candidate::term("Fn^2 sgn(v)".to_owned(), "1/N", vec![turned]));
+        all.push(Candidate::term("Fn^2".to_owned(), "1/N", vec![column(track, &square)]));
     }
     all
 }
@@ -88,9 +86,4 @@ fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
     let mean = |row: &Row| track.mean(row, &|m| of(&Row { motion: *m, angle_rad: m.position, ..*row }));
     let value = |row: &Row| if track.freely.is_some() { mean(row) } else { of(row) };
     track.rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()
-}
-
-fn term(expression: String, columns: Vec<Vec<f64>>, unit: &'static str) -> Candidate {
-    let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
-    Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
 }

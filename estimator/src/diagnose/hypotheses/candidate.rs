@@ -1,5 +1,6 @@
 //! Candidate terms: effects that a cause would have on the residual.
 
+use crate::diagnose::contract::{CauseParameter, parameter};
 use haptics::law::Kind;
 use std::sync::Arc;
 
@@ -154,11 +155,23 @@ impl Candidate {
         }
     }
 
+    /// A generic term: regressors without a physical law, in this unit.
+    pub fn term(expression: String, unit: &'static str, columns: Vec<Vec<f64>>) -> Self {
+        let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
+        Self { expression: Some(expression), ..Self::several("other", Kind::Plant, columns, linear) }
+    }
+
     /// Adds one more searched value.
     pub fn at(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.searched.push(Searched { name, value, unit });
         self.cost += 1.0;
         self
+    }
+
+    /// All its parameters with these values of its regressors, as for a world.
+    pub fn parameters(&self, values: &[f64]) -> Vec<CauseParameter> {
+        let linear = self.linear.iter().zip(values).map(|((name, unit), value)| parameter(name, *value, 0.0, unit));
+        linear.chain(self.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit))).collect()
     }
 
     /// The searched value of this name.

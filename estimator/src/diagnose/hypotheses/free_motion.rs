@@ -1,21 +1,6 @@
 use crate::diagnose::data::regression_data::{Freely, Track};
 use haptics::law::{EccentricMass, Effect, Inertia, Law as _};
 
-/// Share of backward travel up to which a motion counts as one-way.
-pub(crate) const ONE_WAY: f64 = 0.02;
-
-/// Ways forward and backward.
-pub(crate) fn ways(track: &Track) -> [f64; 2] {
-    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
-    [way(1.0), way(-1.0)]
-}
-
-/// True if the motion has both directions.
-pub(crate) fn goes_both_ways(track: &Track) -> bool {
-    let [forward, backward] = ways(track);
-    forward.min(backward) > ONE_WAY * (forward + backward)
-}
-
 /// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as
 /// one law.
 pub(crate) fn whole(track: &Track, laws: Vec<Effect>) -> Vec<Effect> {

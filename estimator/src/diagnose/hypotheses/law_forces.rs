@@ -2,11 +2,16 @@ use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::data::row_means::column;
 use haptics::law::{Effect, Memory};
 
-/// Force that the laws need along every row, each law a mean over the row. Memory is cleared at every segment.
+/// Force that the laws need along every row; in a free motion each law is a mean over the row. Memory is cleared at every
+/// segment.
 pub fn needed(track: &Track, effects: &[Effect]) -> Vec<f64> {
     let mut sum = vec![0.0; track.rows.len()];
     for effect in effects {
-        let own = if effect.remembers() { remembered(track, effect) } else { column(track, effect) };
+        let own = match track.freely {
+            _ if effect.remembers() => remembered(track, effect),
+            Some(_) => column(track, effect),
+            None => track.rows.iter().map(|row| effect.force(&row.motion)).collect(),
+        };
         sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
     }
     sum

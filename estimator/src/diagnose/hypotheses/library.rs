@@ -150,9 +150,3 @@ impl Dictionary<'_> {
             .collect()
     }
 }
-
-/// Dry friction at each row if it slid in the positive direction, from the resisting force alone.
-pub fn dry_of(track: &Track, resisting: &[f64]) -> Vec<f64> {
-    let rows = track.rows.iter().zip(resisting);
-    rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()
-}

@@ -109,7 +109,7 @@ mod tests {
 
     fn track(load_n: f64) -> Track {
         let motion = Motion { velocity: 0.2, direction: 1.0, normal_force_n: load_n, ..Motion::default() };
-        Track::of_rows(vec![Row { motion, ..Row::at_rest() }; 3])
+        Track::of_rows(vec![Row { motion, ..Row::default() }; 3])
     }
 
     #[test]
@@ -130,7 +130,7 @@ mod tests {
         // The direction reverses in the middle of a row.
         let point = |k: usize| Fine { position: 0.01, direction: if k < 3 { 1.0 } else { -0.5 }, ..Fine::default() };
         let span = Span { start: 0, len: 4, weighing: Weighing::Even };
-        let rows = vec![Row { span, ..Row::at_rest() }];
+        let rows = vec![Row { span, ..Row::default() }];
         let track = Track { fine: (0..4).map(point).collect(), period_s: 0.04, ..Track::of_rows(rows) };
         let columns = Columns::default();
         let of =

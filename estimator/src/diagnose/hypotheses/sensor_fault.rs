@@ -2,6 +2,7 @@
 
 use super::candidate::Candidate;
 use haptics::Vec2;
+use haptics::law::Kind;
 
 /// Fault of the force sensors of both fingers, which is no part of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,6 +26,30 @@ pub struct SensorFault {
     pub gain_error: f64,
     /// Delay of the force after the motion, s.
     pub delay_s: f64,
+}
+
+/// Names and units of a bias and of a drift of each finger along each axis.
+pub(crate) const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
+pub(crate) const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
+
+/// A fault of single channels of two fingers, of both channels of a finger, or of all. `column`: its regressor for a
+/// finger (first) and an axis (second).
+pub(crate) fn of_fingers(
+    id: &'static str,
+    names: &[[(&'static str, &'static str); 2]; 2],
+    column: &dyn Fn(usize, usize) -> Vec<f64>,
+) -> Vec<Candidate> {
+    let mut made = Vec::new();
+    for (finger, names) in names.iter().enumerate() {
+        for (axis, (name, unit)) in names.iter().enumerate() {
+            made.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
+        }
+        let both = vec![column(finger, 0), column(finger, 1)];
+        made.push(Candidate::several(id, Kind::Instrument, both, names.to_vec()));
+    }
+    let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
+    made.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
+    made
 }
 
 /// Fingers whose sensor a parameter is of, and the parameter's name without their number.

@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_peak_that_is_gone_through_within_a_row_is_open_and_a_wide_one_is_not() {
         let row = |i: u32| {
-            let mut row = Row::at_rest();
+            let mut row = Row::default();
             row.motion.velocity = 0.01 * f64::from(i) - 0.5;
             row.motion.acceleration = 1.0;
             row

@@ -1,8 +1,28 @@
 //! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
 //! step.
 
+use crate::identify::linear::least_squares_values;
+
 /// Step of the tried delays, s, or one sample if that is longer.
-pub(crate) const STEP_S: f64 = 2e-3;
+const STEP_S: f64 = 2e-3;
+
+/// The same search in whole samples, about a step apart. `left`: as for [`look`], with the forces of this many samples
+/// later.
+pub fn look_by_samples(sample_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64, f64)>) -> Option<Late> {
+    let step = (STEP_S / sample_s.max(1e-9)).round().max(1.0);
+    let late = look(step * sample_s, demands, &|by| left(by * step as isize));
+    late.filter(|late| late.error_s.is_finite())
+}
+
+/// Residual power per row of a plain fit, and number of rows; `None` with too few rows.
+pub fn left_of_fit(mut columns: Vec<Vec<f64>>, y: &[f64]) -> Option<(f64, f64)> {
+    columns.retain(|column| column.iter().any(|v| *v != 0.0));
+    if y.len() <= 2 * columns.len() {
+        return None;
+    }
+    let rms = least_squares_values(&columns, y, None).ok()?.rms;
+    Some((rms * rms, y.len() as f64))
+}
 
 /// Result of the search for a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]

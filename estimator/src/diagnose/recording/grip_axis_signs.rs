@@ -48,7 +48,7 @@ pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
     let Some(Found { axes, why }) = found else {
         return rate.map(|rate| (straight.into_owned(), sample_faults::against_motion(rate)));
     };
-    let cause = Cause { evidence: why, ..sample_faults::mirrored(&axes.join(" and "), 1.0) };
+    let cause = sample_faults::wrong_sign(&axes.join(" and "), why);
     let rates: Vec<String> =
         axes.iter().filter_map(|name| Some(format!("v{}_m_s", name.strip_suffix("_m")?))).collect();
     let names: Vec<&str> = axes.iter().chain(&rates).map(String::as_str).collect();

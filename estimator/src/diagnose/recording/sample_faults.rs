@@ -1,7 +1,7 @@
 //! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples,
 //! mirrored axes.
 
-use crate::diagnose::contract::{Cause, CauseParameter, Gain};
+use crate::diagnose::contract::{Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::hypotheses::{axis_sign, channel_fault, force_saturation, length_scale};
 use crate::log;
 use crate::signal::noise::white_noise;
@@ -54,6 +54,11 @@ pub fn faults(recording: &Recording) -> Faults {
     found
 }
 
+/// Causes of all recordings.
+pub fn causes(recordings: &[Recording]) -> impl Iterator<Item = Cause> {
+    recordings.iter().flat_map(|recording| faults(recording).causes)
+}
+
 /// Leaves out samples near a saturation limit, where the noise is cut on one side: the rest there is a biased sample of
 /// the force.
 fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {
@@ -84,12 +89,7 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
             .copied()
             .unwrap_or(sample as f64)
     };
-    let number = |name: &str, value: f64, unit: &str| CauseParameter {
-        name: name.to_owned(),
-        value,
-        std_error: 0.0,
-        unit: unit.to_owned(),
-    };
+    let number = |name: &str, value: f64, unit: &str| parameter(name, value, 0.0, unit);
     let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
     let parameters = match (id, first, channel) {
         (force_saturation::ID, Some(span), Some(channel)) => {
@@ -102,6 +102,11 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
         }
         _ => Vec::new(),
     };
+    certain(id, parameters, warning.text.clone())
+}
+
+/// A fault of a sensor that is certain.
+fn certain(id: &str, parameters: Vec<CauseParameter>, evidence: String) -> Cause {
     Cause {
         id: id.to_owned(),
         kind: Kind::Instrument,
@@ -109,30 +114,23 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
         p_value: 0.0,
         posterior: 1.0,
         gain: Gain::default(),
-        evidence: warning.text.clone(),
+        evidence,
     }
 }
 
 /// A mirrored or swapped axis, as a cause.
 pub fn mirrored(which: &str, better: f64) -> Cause {
     let how = if which.contains("with") { "swapped" } else { "mirrored" };
-    Cause {
-        id: axis_sign::ID.to_owned(),
-        kind: Kind::Instrument,
-        parameters: vec![CauseParameter {
-            name: format!("which: {which}"),
-            value: -1.0,
-            std_error: 0.0,
-            unit: "1".to_owned(),
-        }],
-        p_value: 0.0,
-        posterior: 1.0,
-        gain: Gain::default(),
-        evidence: format!(
-            "with {which} {how} the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
-            100.0 * better
-        ),
-    }
+    let evidence = format!(
+        "with {which} {how} the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
+        100.0 * better
+    );
+    wrong_sign(which, evidence)
+}
+
+/// An axis with a wrong sign, as a cause with this evidence.
+pub fn wrong_sign(which: &str, evidence: String) -> Cause {
+    certain(axis_sign::ID, vec![parameter(&format!("which: {which}"), -1.0, 0.0, "1")], evidence)
 }
 
 /// Reaction forces on the hand, as a cause: they take work from the person who moves the mechanism, all the way.
@@ -142,7 +140,7 @@ pub fn backwards(which: &str) -> Cause {
     let evidence = format!(
         "{which} {act} against the motion all the way: {they} on the hand and not on what it moves, and {taken} taken with the other sign"
     );
-    Cause { evidence, ..mirrored(which, 1.0) }
+    wrong_sign(which, evidence)
 }
 
 /// A force along a coordinate with the wrong sign, as a cause.
@@ -150,13 +148,12 @@ pub fn driving(which: &str) -> Cause {
     let evidence = format!(
         "as recorded {which} has mass and friction of the wrong sign: it would pull back what speeds up and drive what it should hold back"
     );
-    Cause { evidence, ..mirrored(which, 1.0) }
+    wrong_sign(which, evidence)
 }
 
 /// A rate that contradicts the differences of its own position, as a cause.
 pub fn against_motion(which: &str) -> Cause {
-    let evidence = format!("{which} goes against what the recorded places do; it is taken with the other sign");
-    Cause { evidence, ..mirrored(which, 1.0) }
+    wrong_sign(which, format!("{which} goes against what the recorded places do; it is taken with the other sign"))
 }
 
 /// Standard errors, and least relative error, from which a known length shows a wrong scale.
@@ -167,11 +164,5 @@ const LEAST_SCALE: f64 = 2e-3;
 pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
     let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
     let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);
-    let parameter = CauseParameter { name: "epsilon".to_owned(), value: epsilon, std_error, unit: "1".to_owned() };
-    off.then(|| Cause {
-        id: length_scale::ID.to_owned(),
-        parameters: vec![parameter],
-        evidence,
-        ..mirrored(known, 1.0)
-    })
+    off.then(|| certain(length_scale::ID, vec![parameter("epsilon", epsilon, std_error, "1")], evidence))
 }

@@ -3,6 +3,7 @@ use super::normal_equations::{Solved, System};
 use super::rules::Rules;
 use super::stepwise::{SelectedTerm, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::segment::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
@@ -19,6 +20,32 @@ pub struct Compared {
     pub along: Vec<bool>,
     /// The state of every row.
     pub state: Vec<SystemState>,
+    /// Its rows for plots.
+    pub view: View,
+}
+
+/// Rows of a channel, with the variables of their plots.
+pub struct View {
+    /// Recording of each row. Empty if all are shown together.
+    pub recording: Vec<usize>,
+    /// Sensor, or sum of sensors, of each row. A candidate cause is shown over all sensors that it may affect.
+    pub sensor: Vec<usize>,
+    /// Variables of the plots, with a value for each row.
+    pub over: Vec<(Variable, Vec<f64>)>,
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
+    pub way: Vec<f64>,
+    /// True if positions are angles.
+    pub is_angular: bool,
+    /// Variable that best shows a cause.
+    pub best: fn(&str) -> Variable,
+}
+
+impl View {
+    /// Rows of one sensor, without a direction.
+    pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>, best: fn(&str) -> Variable) -> Self {
+        let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
+        Self { recording, sensor, over, way: Vec::new(), is_angular: false, best }
+    }
 }
 
 /// Result of one comparison of causes, from which texts and figures are made.

@@ -1,13 +1,14 @@
 //! Answer of a motion along one coordinate, and of the paths beside it.
 
+use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::atlas::Atlas;
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::part::{Part, Role};
+use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::answer::time_series::course;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
 use crate::diagnose::data::direction::STANDS;
-use crate::diagnose::data::regression_data::{Model, Place, Track};
-use crate::diagnose::experiment::proposal::propose;
-use crate::diagnose::experiment::turned_track;
+use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
+use crate::diagnose::experiment::proposal::{propose, turned_track};
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
 use crate::diagnose::extension::model::{effects, plain};
 use crate::diagnose::findings::{DelayFindings, Findings};
@@ -40,11 +41,7 @@ pub fn explain(
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let picks = study.picks();
     let (end, end_train) = rms(study, &picks, &along);
-    let states = |k: usize, c: &Candidate, mut found: Vec<CauseParameter>| {
-        widen(c.id, &mut found, track);
-        of_hardening_spring(track, study, k).unwrap_or(found)
-    };
-    let excuse = |k: usize| skew(study, k, track).map(apart);
+    let coordinate = Coordinate { track, study };
     let force = Part {
         role: Role::Coordinate,
         study,
@@ -54,32 +51,52 @@ pub fn explain(
         floor: if track.noise_is_measured { track.force_noise } else { end_train.min(end) },
         noise: track.force_noise,
         along: &along,
-        state: Box::new(|i| state(track, i)),
-        excuse: &excuse,
-        shows: None,
-        states: &states,
-        usual: None,
+        state: track.rows.iter().map(|row| state(track, row)).collect(),
+        view: None,
+        told: &coordinate,
         free_run: FreeRun::Coordinate(track, model),
+        in_world: None,
     };
     let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths.iter().map(PathFit::part)).collect();
     let next = |open: &[_]| {
-        if track.freely.is_some() { turned_track::next(open) } else { propose(track, model, study, open) }
+        if track.freely.is_some() { turned_track(open) } else { propose(track, model, study, open) }
     };
     let mut evidence = Evidence { next: &next, ..evidence };
     if evidence.model.is_empty() {
         evidence.model = model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+");
     }
     evidence.not_excited.extend(without_reversals(track));
+    let atlas = if evidence.atlas { atlas::atlas(track, study) } else { Atlas::default() };
     Findings {
         plain: plain(track, model, study),
         effects: effects(track, model, study),
         course: course(track, study),
+        atlas,
         per_inertia: track.freely.is_some_and(|free| !free.is_known),
         delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
         hypotheses: hypotheses(track, model, study),
         ..answer(&parts, evidence)
     }
 }
+
+/// Force along a coordinate.
+struct Coordinate<'a> {
+    track: &'a Track,
+    study: &'a ChannelFit,
+}
+
+impl Told for Coordinate<'_> {
+    fn excuse(&self, k: usize) -> Option<String> {
+        skew(self.study, k, self.track).map(apart)
+    }
+
+    fn states(&self, k: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        widen(candidate.id, &mut found, self.track);
+        of_hardening_spring(self.track, self.study, k).unwrap_or(found)
+    }
+}
+
+impl Told for PathFit {}
 
 impl PathFit {
     fn part(&self) -> Part<'_> {
@@ -92,19 +109,17 @@ impl PathFit {
             floor: 0.0,
             noise: white_noise(&self.study.y),
             along: &[],
-            state: Box::new(|_| Some(("distance from the circle", SystemState::Turning))),
-            excuse: &|_| None,
-            shows: None,
-            states: &|_, _, found| found,
-            usual: None,
+            state: vec![Some(("distance from the circle", SystemState::Turning)); self.study.y.len()],
+            view: None,
+            told: self,
             free_run: FreeRun::None(AT_ONCE),
+            in_world: None,
         }
     }
 }
 
 /// Channel and state of a row.
-fn state(track: &Track, i: usize) -> Option<(&'static str, SystemState)> {
-    let row = &track.rows[i];
+fn state(track: &Track, row: &Row) -> Option<(&'static str, SystemState)> {
     match row.place {
         // A free motion has no measured force.
         Place::Along if track.freely.is_some() => Some(("force that the motion needs", SystemState::FreeMotion)),
@@ -122,10 +137,7 @@ fn without_reversals(track: &Track) -> impl Iterator<Item = NotExcited> {
     // Along one coordinate, friction by direction then equals dry friction.
     let by_direction = (!track.planar).then_some(friction_asymmetry::ID);
     let hidden = [backlash::ID, hysteresis::ID].into_iter().chain(by_direction).filter(|_| track.goes_one_way());
-    hidden.map(|id| NotExcited {
-        id: id.to_owned(),
-        why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
-    })
+    hidden.map(|id| NotExcited::new(id, "no reversal in the recording; move to and fro, also in short strokes"))
 }
 
 /// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
@@ -138,6 +150,5 @@ pub fn without_known(weight: bool, length: bool) -> Vec<NotExcited> {
             "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
         ),
     ];
-    let unknown = hidden.into_iter().filter(|(_, known, _)| !known);
-    unknown.map(|(id, _, why)| NotExcited { id: id.to_owned(), why: why.to_owned() }).collect()
+    hidden.into_iter().filter(|(_, known, _)| !known).map(|(id, _, why)| NotExcited::new(id, why)).collect()
 }

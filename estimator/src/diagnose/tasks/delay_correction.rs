@@ -1,6 +1,6 @@
 //! Correction of a time delay: the forces are shifted back and the diagnosis is repeated.
 
-use crate::diagnose::contract::{Baseline, Cause, CauseParameter, Gain, Verdict};
+use crate::diagnose::contract::{Baseline, Cause, Gain, Verdict, parameter};
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
@@ -14,15 +14,15 @@ pub(crate) const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
 pub(crate) const DELAY_ROUNDS: usize = 5;
 
-/// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
-pub fn undo(
+/// The diagnosis `ask`, repeated with the force shifted back while a large delay is found, and then completed.
+pub fn corrected(
     recordings: &[Recording],
-    first: Findings,
     ask: &dyn Fn(&[Recording]) -> Result<Findings, EstimateError>,
-) -> Findings {
+) -> Result<Findings, EstimateError> {
+    let first = ask(recordings)?;
     let named_s = delay_s(&first);
     let guess_s = first.delay.guess_s.filter(|tau| tau.abs() > LINEAR_S);
-    let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
+    let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return Ok(first) };
     // Whole samples only: an interpolated force is a mean, with less noise than the others.
     let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
     let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
@@ -30,11 +30,11 @@ pub fn undo(
     for _ in 0..DELAY_ROUNDS {
         let back_s = whole(late_s);
         if back_s == 0.0 {
-            return first;
+            return Ok(first);
         }
         let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
         // If the repetition fails, the first answer remains.
-        let Ok(now) = ask(&back) else { return first };
+        let Ok(now) = ask(&back) else { return Ok(first) };
         late_s = back_s + now.delay.rest_s.map_or(0.0, |[more, _]| more);
         found = Some(now);
         if whole(late_s) == back_s {
@@ -45,10 +45,11 @@ pub fn undo(
     let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
     let sure =
         |found: &Findings| found.delay.rest_s.is_none_or(|[_, error]| late_s.abs() > UNNAMED_DELAY_STD_ERRORS * error);
-    match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
+    let found = found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found)));
+    Ok(match found {
         Some(found) => with_delay(found, &first, late_s, whole(late_s)),
         None => first,
-    }
+    })
 }
 
 /// The figures by which a delay is judged.
@@ -113,11 +114,10 @@ pub(crate) fn with_delay(mut found: Findings, first: &Findings, late_s: f64, bac
 /// A delay that the first answer did not name, as a cause.
 pub(crate) fn unnamed_before(first: &Findings, late_s: f64) -> Cause {
     let before = told(first);
-    let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
     Cause {
         id: ID.to_owned(),
         kind: Kind::Instrument,
-        parameters: vec![parameter],
+        parameters: vec![parameter("tau", late_s, 0.0, "s")],
         p_value: 0.0,
         posterior: 1.0,
         gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },

@@ -1,6 +1,7 @@
 //! Force along one coordinate: its residual, and the causes that explain it.
 
 use crate::diagnose::data::direction::{STICKING_ROWS_TOGETHER, blur, blurred};
+use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::data::stick_phases::Load;
@@ -23,7 +24,7 @@ use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
 use crate::estimate::EstimateError;
-use crate::identify::linear::{least_squares, least_squares_values};
+use crate::identify::linear::least_squares_values;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
 
@@ -218,13 +219,11 @@ pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), Estima
 
 /// The same for rows whose directions are already blurred.
 pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), EstimateError> {
-    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
-    columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
-    let along: Vec<f64> =
-        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
-    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-    let fit = least_squares_values(&columns, &y, Some(&along))?;
-    let resisting: f64 = (0..y.len())
+    let plain = PlainFit::of(track, &Model::new());
+    let mut columns = plain.laws(model);
+    columns.extend(plain.laws(&[Effect::new(&CoulombFriction, &[1.0])]));
+    let fit = plain.fit(&columns)?;
+    let resisting: f64 = (0..track.rows.len())
         .map(|i| {
             let parts =
                 model.iter().enumerate().filter(|(_, e)| is_resisting(e)).map(|(k, _)| fit.values[k] * columns[k][i]);
@@ -243,20 +242,16 @@ const SURELY_NEGATIVE: f64 = 6.0;
 pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
     let mut track = track.clone();
     blur(&mut track);
-    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(&track, effect)).collect();
+    let plain = PlainFit::of(&track, &Model::new());
+    let mut columns = plain.laws(model);
     // Effects that may be confused with inertia: a spring, gravity, a constant pull.
     let beside: [&dyn Fn(&Row) -> f64; 4] =
         [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
     let turns = track.coordinate == haptics::law::Coordinate::Angular;
-    for of in &beside[..if turns { 4 } else { 2 }] {
-        columns.push(track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect());
-    }
-    let along: Vec<f64> =
-        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
-    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-    let fit = least_squares(&columns, &y, Some(&along))?;
+    columns.extend(beside[..if turns { 4 } else { 2 }].iter().map(|of| plain.rows(of)));
+    let fit = plain.fit_with_errors(&columns)?;
     let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
-    let friction: f64 = (0..y.len())
+    let friction: f64 = (0..track.rows.len())
         .map(|i| {
             let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
             resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction

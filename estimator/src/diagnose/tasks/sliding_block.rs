@@ -11,7 +11,7 @@ use super::mechanism::rows;
 use super::one_coordinate;
 use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{
-    Alternative, Cause, CauseParameter, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
+    Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
@@ -90,7 +90,7 @@ pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Re
         if weight_n.is_none() {
             let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
             let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
-            named.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+            named.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
         }
     };
     let causes = faults.iter().cloned().chain(of_samples).collect();
@@ -322,7 +322,7 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
         return;
     }
     let separates = std::iter::once(own).chain(others.iter().map(|id| (*id).to_owned())).collect();
-    found.next = Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
+    found.next = Some(NextExperiment::in_words(motion, separates, 0.9));
 }
 
 /// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
@@ -345,9 +345,7 @@ fn let_go(found: &mut Named, track: &Track) {
         middle: 0.5 * (at(0.02) + at(0.98)),
         half_range: 0.5 * (at(0.98) - at(0.02)),
         fast: track.quantile(0.95, |r| r.motion.velocity.abs()),
-        across_n: 0.0,
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     });
 }
 
@@ -368,12 +366,7 @@ fn scales(found: &mut Named, ratio: f64, error: f64) {
     found.causes.push(Cause {
         id: force_gain::ID.to_owned(),
         kind: Kind::Instrument,
-        parameters: vec![CauseParameter {
-            name: "g - 1".to_owned(),
-            value: ratio - 1.0,
-            std_error: error,
-            unit: "1".to_owned(),
-        }],
+        parameters: vec![parameter("g - 1", ratio - 1.0, error, "1")],
         p_value: held_out_gain::chi_square_tail((off / error).powi(2), 1.0),
         posterior: 0.5,
         gain: Gain::default().run(Err(AT_ONCE.to_owned())),
@@ -388,11 +381,7 @@ fn scales(found: &mut Named, ratio: f64, error: f64) {
         posterior: 0.5,
         why: why.to_owned(),
     });
-    found.next.get_or_insert_with(|| NextExperiment {
-        motion: "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone"
-            .to_owned(),
-        separates: vec![force_gain::ID.to_owned(), length_scale::ID.to_owned()],
-        expected_power: 0.95,
-        experiment: None,
-    });
+    let motion = "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone";
+    let separates = [force_gain::ID, length_scale::ID].map(str::to_owned).to_vec();
+    found.next.get_or_insert_with(|| NextExperiment::in_words(motion, separates, 0.95));
 }

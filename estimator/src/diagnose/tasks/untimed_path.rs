@@ -2,11 +2,12 @@
 //! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use crate::constraint::detect_in;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
-use crate::diagnose::contract::{CauseParameter, NotExcited};
+use crate::diagnose::answer::part::{Part, Told};
+use crate::diagnose::contract::NotExcited;
 use crate::diagnose::findings::Findings;
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::NO_CLOCK;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -19,7 +20,7 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::{ConstraintKind, EstimateError};
@@ -43,10 +44,26 @@ struct Units {
     place: &'static str,
     per_place: &'static str,
     per_cube: &'static str,
+    is_angular: bool,
 }
 
-static ROUND: Units = Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³" };
-static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³" };
+static ROUND: Units =
+    Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³", is_angular: true };
+static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³", is_angular: false };
+
+/// The force along the path.
+struct AlongPath {
+    compared: Compared,
+    /// Course of the force, in words.
+    falls: String,
+}
+
+/// Two estimates of one force.
+struct Second {
+    compared: Compared,
+    /// Name of the second one.
+    which: String,
+}
 
 /// One part of the path of a recording.
 #[derive(Clone, Debug)]
@@ -67,13 +84,6 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
 }
 
-/// Causes that depend on speed or time.
-fn without_a_clock() -> impl Iterator<Item = NotExcited> {
-    [inertia::ID, viscous_friction::ID, time_delay::ID]
-        .into_iter()
-        .map(|id| NotExcited { id: id.to_owned(), why: "there is no clock; give a t_s column or rate_hz".to_owned() })
-}
-
 /// Diagnoses paths of one mechanism.
 pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     let (mut rows, mut kinds) = (Vec::new(), Vec::new());
@@ -89,7 +99,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
             )),
         }
     }
-    beside.causes = recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default();
+    beside.causes = sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect();
     let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
     let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
     let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };
@@ -97,12 +107,15 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
     ));
-    beside.not_excited.extend(without_a_clock());
+    // Causes that depend on speed or time.
+    let timed = [inertia::ID, viscous_friction::ID, time_delay::ID];
+    let why = "there is no clock; give a t_s column or rate_hz";
+    beside.not_excited.extend(timed.map(|id| NotExcited::new(id, why)));
     let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {
-        let why = "no force was recorded: a path alone shows its shape".to_owned();
-        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+        let why = "no force was recorded: a path alone shows its shape";
+        beside.not_excited.push(NotExcited::new(coulomb_friction::ID, why));
         return Ok(answer(&[], beside));
     }
     if drives_backwards(&rows) {
@@ -113,28 +126,19 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
         }
         beside.causes.push(sample_faults::backwards("fx, fy and fz"));
     }
-    let (along, falls) = along(&rows, units)?;
-    let second = second(&rows)?;
-    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
-    let (of_place, of_second) = (|f: &Found<'_>| shows(f, &falls), |f: &Found<'_>| differs(f, recordings));
-    let mut parts = vec![along.part(&of_place, &plain, &|_| None).still(NO_CLOCK)];
-    parts.extend(second.as_ref().map(|second| second.part(&of_second, &plain, &|_| None).still(NO_CLOCK)));
-    let mut found = answer(&parts, beside);
-    if options.atlas {
-        let is_angular = turns >= slides && turns > 0;
-        let way = View { is_angular, ..view(&rows) };
-        let both = View { is_angular, ..view_of_both(&rows) };
-        found.atlas.channels = vec![along.atlas(&way, |_| Variable::Place)];
-        found.atlas.channels.extend(second.iter().map(|second| second.atlas(&both, best_of_both)));
-    }
-    Ok(found)
+    let along = along(&rows, units)?;
+    let names = recordings.first().and_then(second_names);
+    let second = second(&rows, units, names)?;
+    let mut parts = vec![Part::of(&along.compared, &along).running(FreeRun::None(NO_CLOCK))];
+    parts.extend(second.as_ref().map(|second| Part::of(&second.compared, second).running(FreeRun::None(NO_CLOCK))));
+    Ok(answer(&parts, Evidence { atlas: options.atlas, ..beside }))
 }
 
 /// Variables of the plots of the force along the path.
 fn view(rows: &[Row]) -> View {
     let over = vec![(Variable::Place, rows.iter().map(|r| r.place).collect())];
     let way = rows.iter().map(|r| r.direction).collect();
-    View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+    View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over, |_| Variable::Place) }
 }
 
 /// Variables of the plots of two forces: the rows of all three axes follow each other.
@@ -148,15 +152,7 @@ fn view_of_both(rows: &[Row]) -> View {
         (Variable::Across, each(&across)),
     ];
     let sensor = (0..3).flat_map(|axis| rows.iter().map(move |_| axis)).collect();
-    View { sensor, ..View::of((0..3).flat_map(|_| rows.iter().map(|r| r.recording)).collect(), over) }
-}
-
-fn best_of_both(id: &str) -> Variable {
-    match id {
-        force_gain::ID => Variable::Force,
-        force_cross_axis::ID => Variable::Across,
-        _ => Variable::Place,
-    }
+    View { sensor, ..View::of((0..3).flat_map(|_| rows.iter().map(|r| r.recording)).collect(), over, best_seen) }
 }
 
 /// A door does not drive the person who opens it: a force that takes work all the way is the reaction on the hand.
@@ -215,7 +211,7 @@ fn second_names(recording: &Recording) -> Option<[String; 3]> {
 }
 
 /// Comparison of the force along the path over position. The base model is the dry friction of one direction.
-fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateError> {
+fn along(rows: &[Row], units: &Units) -> Result<AlongPath, EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let (low, high) =
         rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
@@ -244,8 +240,7 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
     }
     candidates.extend((1..=4).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
-        let expression = Some(format!("cos({n} pi s/S)"));
-        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+        Candidate::term(format!("cos({n} pi s/S)"), "", vec![wave])
     }));
     let n = rows.len();
     let y = of(&|r| r.force);
@@ -260,20 +255,24 @@ fn along(rows: &[Row], units: &Units) -> Result<(Compared, String), EstimateErro
     let layout = Layout::of(rows.iter().map(|r| r.recording).collect(), &vec![true; n], 1.0);
     let floor = white_noise(&y);
     let study = Channel::new(y, base, candidates, layout, Rules::of_observations()).fit()?;
-    Ok((compared(study, "force along the way", units.force, floor), falls))
+    let view = View { is_angular: units.is_angular, ..view(rows) };
+    Ok(AlongPath { compared: compared(study, ("force along the way", units.force), floor, view), falls })
 }
 
-/// Sentence on how the residual shows a cause.
-fn shows(found: &Found<'_>, falls: &str) -> String {
-    match found.candidate.id {
-        local_resistance::ID => format!("the force goes with the place: a resistance that is passed ({falls})"),
-        return_spring::ID => format!("the force changes evenly with the place ({falls})"),
-        other => format!("{other} shows in the force along the way"),
+impl Told for AlongPath {
+    fn shows(&self, found: &Found<'_>) -> String {
+        match found.candidate.id {
+            local_resistance::ID => {
+                format!("the force goes with the place: a resistance that is passed ({})", self.falls)
+            }
+            return_spring::ID => format!("the force changes evenly with the place ({})", self.falls),
+            other => format!("{other} shows in the force along the way"),
+        }
     }
 }
 
 /// Comparison of two estimates of one force: a constant, a factor or a rotation between them.
-fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
+fn second(rows: &[Row], units: &Units, names: Option<[String; 3]>) -> Result<Option<Second>, EstimateError> {
     if rows.iter().any(|r| r.second_n.is_none()) {
         return Ok(None);
     }
@@ -308,28 +307,40 @@ fn second(rows: &[Row]) -> Result<Option<Compared>, EstimateError> {
     let stretch: Vec<usize> = (0..3 * n).map(|i| 1000 * (i / n) + rows[i % n].recording).collect();
     let layout = Layout::of(stretch, &vec![true; 3 * n], 1.0);
     let study = Channel::new(y, Vec::new(), candidates, layout, Rules::of_observations()).fit()?;
-    Ok(Some(compared(study, "difference of the two forces", "N", floor)))
+    let which =
+        names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
+    let view = View { is_angular: units.is_angular, ..view_of_both(rows) };
+    Ok(Some(Second { compared: compared(study, ("difference of the two forces", "N"), floor, view), which }))
+}
+
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        force_gain::ID => Variable::Force,
+        force_cross_axis::ID => Variable::Across,
+        _ => Variable::Place,
+    }
+}
+
+impl Told for Second {
+    fn shows(&self, found: &Found<'_>) -> String {
+        let which = &self.which;
+        let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            force_bias::ID => format!(
+                "the force by {which} lies ({:.1}, {:.1}, {:.1}) N beside the measured one, whatever that is",
+                value(0),
+                value(1),
+                value(2)
+            ),
+            force_gain::ID => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
+            other => format!("{other} between the force by {which} and the measured one"),
+        }
+    }
 }
 
 /// The channel of a fit over all parts of the path.
-fn compared(study: ChannelFit, channel: &'static str, unit: &'static str, floor: f64) -> Compared {
+fn compared(study: ChannelFit, (channel, unit): (&'static str, &'static str), floor: f64, view: View) -> Compared {
     let (along, state) = (vec![true; study.y.len()], vec![SystemState::Turning; study.y.len()]);
-    Compared { study, channel, unit, floor, along, state }
-}
-
-fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {
-    let names = recordings.first().and_then(second_names);
-    let which =
-        names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
-    let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
-    match found.candidate.id {
-        force_bias::ID => format!(
-            "the force by {which} lies ({:.1}, {:.1}, {:.1}) N beside the measured one, whatever that is",
-            value(0),
-            value(1),
-            value(2)
-        ),
-        force_gain::ID => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
-        other => format!("{other} between the force by {which} and the measured one"),
-    }
+    Compared { study, channel, unit, floor, along, state, view }
 }

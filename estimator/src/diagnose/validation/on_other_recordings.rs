@@ -5,13 +5,11 @@ use crate::diagnose::contract::Validation;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::data::row_means::column;
-use crate::diagnose::hypotheses::grid::Grid;
+use crate::diagnose::hypotheses::all::coarse_candidates;
 use crate::diagnose::hypotheses::law_forces::needed;
-use crate::diagnose::hypotheses::library::{Dictionary, dry_of};
-use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::selection::held_out_gain::DRAWS;
 use crate::diagnose::selection::held_out_gain::bootstrap;
-use haptics::law::{Effect, Kind, Memories};
+use haptics::law::{Effect, Kind};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.
 const BOOTSTRAP_BLOCKS: usize = 32;
@@ -42,27 +40,6 @@ pub fn compared(before: &[f64], after: &[f64], weight: &[f64]) -> Validation {
     }
 }
 
-/// Force of the laws along every row, with their memory, which is cleared at every segment.
-fn predicted(track: &Track, effects: &[Effect]) -> Vec<f64> {
-    let rows = &track.rows;
-    let mut memories = Memories::default();
-    (0..rows.len())
-        .map(|i| {
-            if track.follows(i) {
-                let step_s = rows[i].motion.time_s - rows[i - 1].motion.time_s;
-                for (k, effect) in effects.iter().enumerate().filter(|(_, e)| e.remembers()) {
-                    if let Some(memory) = memories.get_mut(k) {
-                        effect.law().advance(&rows[i].motion, &effect.values, memory, step_s);
-                    }
-                }
-            } else {
-                memories = Memories::default();
-            }
-            effects.iter().enumerate().map(|(k, e)| e.force_with(&rows[i].motion, memories.get(k))).sum()
-        })
-        .collect()
-}
-
 /// Contribution of the found sensor faults to the rows; `None` without any. `known`: forces that are completely known.
 fn faults(
     track: &Track,
@@ -73,21 +50,15 @@ fn faults(
 ) -> Option<Vec<f64>> {
     let mut of_sensors = kept.iter().filter(|k| k.kind == Kind::Instrument).peekable();
     of_sensors.peek()?;
-    let grid = Grid::coarse(track);
     let fixed: Vec<Vec<f64>> = known.iter().map(|e| column(track, e)).collect();
-    let (resisting, dry) = (predicted, &dry_of(track, predicted));
-    let columns = &Columns::default();
-    let dictionary =
-        Dictionary { track, predicted, resisting, dry, fixed: &fixed, without: &[], grid: &grid, columns }.candidates();
-    effect(of_sensors, &dictionary, left_out)
+    effect(of_sensors, &coarse_candidates(track, predicted, &fixed, &[]), left_out)
 }
 
 /// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count
 /// little.
 pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &[Effect], kept: &[Kept]) -> Validation {
     blur(track);
-    let of: &dyn Fn(&Track, &[Effect]) -> Vec<f64> = if track.freely.is_some() { &needed } else { &predicted };
-    let (without, mut with) = (of(track, before), of(track, after));
+    let (without, mut with) = (needed(track, before), needed(track, after));
     let mut left_out = Vec::new();
     let sensed = faults(track, &with, known, kept, &mut left_out);
     with.iter_mut().zip(sensed.into_iter().flatten()).for_each(|(w, s)| *w += s);

@@ -1,8 +1,17 @@
 //! Channels with a cause in them, with one that is there only where it is fitted, and with one that has no name.
 
+/// A channel without words.
+struct NoWords;
+
+impl Told for NoWords {}
+
+use crate::diagnose::Variable;
 use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::part::Part;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::View;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::held_out_gain::{gain, holds_out};
 use crate::diagnose::selection::layout::Layout;
@@ -97,8 +106,9 @@ fn what_has_no_name_has_a_gain_and_a_size() {
     let strange = Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) };
     let study = compared(y, vec![strange]);
     let (along, state) = (vec![true; ROWS], vec![SystemState::Turning; ROWS]);
-    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, state };
-    let part = compared.part(&|_| String::new(), &|_, _, found| found, &|_| None);
+    let view = View::of(Vec::new(), Vec::new(), |_| Variable::Place);
+    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, state, view };
+    let part = Part::of(&compared, &NoWords);
     let found = answer(&[part], Evidence::default());
     let [cause] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
     assert!(cause.gain.share_of_explainable > 0.5 && cause.gain.unit.as_deref() == Some("N"), "{cause:?}");

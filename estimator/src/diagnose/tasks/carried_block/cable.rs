@@ -169,14 +169,14 @@ fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64>
 
 /// Standard errors of stiffness, anchor and length of a found cable, with the uncertainty of its searched values.
 /// `None` if they cannot be computed.
-pub fn errors(rows: &Rows<'_>, study: &ChannelFit, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
+pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     const STEP_M: f64 = 1e-4;
     let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == added_constraint::ID)?;
     let cable = &study.candidates[pick];
     let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
     let at = [value(0), value(1), value(2)];
-    let tied = number_of(&cable.columns[0]);
+    let tied = rows.touched(&cable.columns[0]);
     let stiffness = study.chosen.iter().scan(study.base.len(), |first, c| {
         let own = (*first, c.candidate);
         *first += study.candidates[c.candidate].columns.len();

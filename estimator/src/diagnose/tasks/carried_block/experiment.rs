@@ -87,7 +87,7 @@ fn unexplained(effect: &[f64], beside: &[Vec<f64>]) -> f64 {
 }
 
 /// Recording that would settle the first open question of this channel, if there is one.
-pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option<NextExperiment> {
+pub fn propose(open: &[Alternative], carry: &Carry<'_>, seen: &[Seen<'_>]) -> Option<NextExperiment> {
     let first = open.first()?;
     let study = &carry.compared.study;
     let solved = study.solved.as_ref()?;
@@ -161,8 +161,7 @@ fn asked(id: &str, seconds: f64, free_s: f64, seen: &[Seen<'_>]) -> Experiment {
         half_range: 0.5 * lifted.max(4e-3),
         fast: percentile(&mut speeds, 0.95).max(LIFT_M_S),
         across_n: grip,
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     }
 }
 

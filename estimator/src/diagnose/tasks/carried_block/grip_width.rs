@@ -1,16 +1,16 @@
 //! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
 
 use super::signals::Seen;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
-use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -31,8 +31,6 @@ const USUAL_SCALE: f64 = 0.02;
 /// The comparison with the data for its texts.
 pub struct Grasp {
     pub compared: Compared,
-    /// The rows as the atlas looks at them.
-    pub view: View,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
     /// Compliance of a pad at zero force in the model, m/N.
@@ -42,6 +40,7 @@ pub struct Grasp {
 }
 
 /// Rows of all recordings.
+#[derive(Default)]
 struct Rows {
     recording: Vec<usize>,
     number: Vec<usize>,
@@ -49,21 +48,14 @@ struct Rows {
     width_m: Vec<f64>,
     grip_n: Vec<f64>,
     rate_m_s: Vec<f64>,
+    /// Middle of the tips, x and y.
+    place_m: [Vec<f64>; 2],
     state: Vec<SystemState>,
     stretch: Vec<usize>,
 }
 
 fn rows(seen: &[Seen<'_>]) -> Rows {
-    let mut rows = Rows {
-        recording: Vec::new(),
-        number: Vec::new(),
-        time_s: Vec::new(),
-        width_m: Vec::new(),
-        grip_n: Vec::new(),
-        rate_m_s: Vec::new(),
-        state: Vec::new(),
-        stretch: Vec::new(),
-    };
+    let mut rows = Rows::default();
     let mut owner = Vec::new();
     for (k, one) in seen.iter().enumerate() {
         for number in 1..=one.count {
@@ -74,6 +66,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
                 rows.width_m.push(one.blocks.width[i]);
                 rows.grip_n.push(one.blocks.grip[i]);
                 rows.rate_m_s.push(one.blocks.width_rate[i]);
+                rows.place_m.iter_mut().zip(&one.place).for_each(|(all, own)| all.push(own[i]));
                 rows.state.push(one.state(i));
                 owner.push((k, number));
             }
@@ -114,7 +107,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
         let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
         candidates.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", column));
     }
-    candidates.extend(generic(seen, &rows));
+    candidates.extend(generic(&rows));
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let means = (1..=blocks)
         .map(|k| {
@@ -129,14 +122,10 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
     let (channel, state) = ("distance of the tips", rows.state);
-    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state };
-    let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
-    Ok(Some(Grasp { compared, view, means, modelled, pads }))
-}
-
-/// Variable that best shows a cause in the grip width.
-pub fn best_seen(id: &str) -> Variable {
-    if id == length_scale::ID { Variable::Width } else { Variable::Grip }
+    let over = vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
+    let view = View::of(rows.recording, over, best_seen);
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
+    Ok(Some(Grasp { compared, means, modelled, pads }))
 }
 
 fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
@@ -170,25 +159,10 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
 }
 
 /// Generic terms of the residual: waves over time, and positions.
-fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
-    let term = |expression: String, column: Vec<f64>| Candidate {
-        expression: Some(expression),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-    };
-    let mut found: Vec<Candidate> = slow_waves(&rows.time_s, 4, "").collect();
-    let mut places = [Vec::new(), Vec::new()];
-    for one in seen {
-        for number in 1..=one.count {
-            for i in one.gripped(number) {
-                places[0].push(one.place[0][i]);
-                places[1].push(one.place[1][i]);
-            }
-        }
-    }
-    let [x, y] = places;
-    found.push(term("x".to_owned(), x));
-    found.push(term("y".to_owned(), y));
-    found
+fn generic(rows: &Rows) -> Vec<Candidate> {
+    let places = [("x", &rows.place_m[0]), ("y", &rows.place_m[1])];
+    let of_places = places.map(|(axis, place)| Candidate::term(axis.to_owned(), "", vec![place.clone()]));
+    slow_waves(&rows.time_s, 4, "").chain(of_places).collect()
 }
 
 impl Grasp {
@@ -197,8 +171,20 @@ impl Grasp {
         self.compared.study.has(id)
     }
 
-    /// For the answer.
-    pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
+    fn first_give(&self) -> f64 {
+        let found = self.compared.study.found();
+        found.iter().find(|(c, _)| c.id == pad_compliance::ID).map_or(self.modelled, |(_, values)| values[0])
+    }
+}
+
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    if id == length_scale::ID { Variable::Width } else { Variable::Grip }
+}
+
+impl Told for Grasp {
+    fn states(&self, _: usize, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
         match candidate.id {
             stiffness_hardening::ID => {
@@ -220,14 +206,7 @@ impl Grasp {
         }
     }
 
-    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
-    fn first_give(&self) -> f64 {
-        let found = self.compared.study.found();
-        found.iter().find(|(c, _)| c.id == pad_compliance::ID).map_or(self.modelled, |(_, values)| values[0])
-    }
-
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(&self, found: &Found<'_>) -> String {
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
             pad_compliance::ID => {
@@ -255,8 +234,7 @@ impl Grasp {
         }
     }
 
-    /// Sizes that could just matter.
-    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
             pad_compliance::ID => Some((
                 USUAL_GIVE,

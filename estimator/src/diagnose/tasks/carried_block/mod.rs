@@ -23,12 +23,10 @@ pub(crate) mod tests;
 pub(crate) mod time_delay;
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Part;
-use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Final, NextExperiment, NotExcited};
-use crate::diagnose::extension::hypothetical_worlds::of_channels;
+use crate::diagnose::contract::{Alternative, Cause, Final, NextExperiment, NotExcited};
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
-use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::{
     added_constraint, fingertip_slip, force_bias, force_cross_axis, force_drift, force_gain, friction_change,
     gravity_tilt, length_scale, mass_change, pad_compliance,
@@ -55,7 +53,8 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
             "weight and its mass+rigid widths+plain heights"
         }
         .to_owned(),
-        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
+        causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
+        atlas: options.atlas,
         ..Evidence::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
@@ -63,32 +62,11 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
         regrasped(ground, &seen, world, scaled || carry.has(force_cross_axis::ID), &mut beside);
     }
     unseen(&seen, &mut beside.not_excited);
-    let carry_states = |_: usize, c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
-    let carry_usual = |c: &Candidate| carry.usual(c);
-    let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let grasp_states =
-        |_: usize, c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
-    let ground_states =
-        |_: usize, c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
-    let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> =
-        vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
-    parts.extend(
-        grasp
-            .as_ref()
-            .map(|g| g.compared.part(&grasp_shows, &grasp_states, &grip_width::Grasp::usual).running(&g.pads)),
-    );
-    parts.extend(
-        ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground_states, &standing_height::Ground::usual)),
-    );
+    let mut parts = vec![Part::of(&carry.compared, &carry).running(FreeRun::Channel(&carry.airborne)).in_world(&carry)];
+    parts.extend(grasp.as_ref().map(|grasp| Part::of(&grasp.compared, grasp).running(FreeRun::Channel(&grasp.pads))));
+    parts.extend(ground.as_ref().map(|ground| Part::of(&ground.compared, ground)));
     let asked = |open: &[Alternative]| experiment::propose(open, &carry, &seen).or_else(|| next(open));
     let mut found = answer(&parts, Evidence { next: &asked, ..beside });
-    if options.atlas {
-        let Carry { compared, view, .. } = &carry;
-        found.atlas.channels.push(compared.atlas(view, net_force::best_seen));
-        found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, grip_width::best_seen)));
-        found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, standing_height::best_seen)));
-    }
     // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
         let figures = force.figures();
@@ -97,7 +75,6 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
         found.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
-    found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)
 }
 
@@ -119,10 +96,10 @@ fn regrasped(
 }
 
 /// Comparisons of net force, grip width and grip height.
-fn look(
-    seen: &[Seen<'_>],
+fn look<'a>(
+    seen: &'a [Seen<'a>],
     world: Option<&World>,
-) -> Result<(Carry, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
+) -> Result<(Carry<'a>, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
     let rules = Rules::of_channel(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
     let carry = net_force::carry(seen, world, rules)?;
     let grasp = grip_width::grasp(seen, world, rules)?;
@@ -145,7 +122,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
 
 /// Causes that no recording of this kind shows.
 fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
-    let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let mut add = |id: &str, why: &str| found.push(NotExcited::new(id, why));
     let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
     if !knows("weight_N") && !knows("mass_kg") {
         add(force_gain::ID, "no weight is known; state one in the sidecar");
@@ -175,7 +152,5 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
             0.7,
         )
     };
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power, experiment: None })
+    NextExperiment::of_first(open, motion, power)
 }

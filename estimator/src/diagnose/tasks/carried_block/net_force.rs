@@ -7,8 +7,8 @@ use super::net_force_candidates::{generic, instrument, plant};
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use super::time_delay::late;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -18,7 +18,7 @@ use crate::diagnose::hypotheses::{
 };
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
@@ -28,7 +28,7 @@ use crate::segment::SystemState;
 use haptics::world::{Cable, World};
 
 /// The comparison with the data for its texts.
-pub struct Carry {
+pub struct Carry<'a> {
     /// Delay of the forces after the motion, if it is significant.
     pub late: Option<Late>,
     /// Its floor is the noise of a sum of two fingers.
@@ -37,18 +37,14 @@ pub struct Carry {
     longest_s: f64,
     /// Standard errors of a cable's stiffness, anchor and length.
     cable_errors: Option<[f64; 4]>,
-    /// Number of the block of each row; 0 if none is held.
-    numbers: Vec<usize>,
     /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
     pub weighed: Vec<usize>,
-    /// The rows as the atlas looks at them.
-    pub view: View,
     /// Free-run simulation of carried blocks.
-    pub airborne: Airborne,
+    pub airborne: Airborne<'a>,
 }
 
 /// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
-pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Carry, EstimateError> {
+pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> Result<Carry<'a>, EstimateError> {
     const LEAST_CARRY_ROWS: usize = 30;
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
@@ -71,7 +67,6 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<C
     // A row of one finger has the noise of one sensor.
     let weight: Vec<f64> =
         rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
-    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let plant = plant(&rows);
     // The search for a cable precedes the comparison.
     let cables = cables(&rows, &y, &base, &weight);
@@ -79,23 +74,20 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<C
     candidates.extend(instrument(&rows, &known, &given));
     candidates.extend(cables);
     candidates.extend(generic(&rows));
-    let layout = Layout::of(rows.stretch.clone(), &testable, period_s).weighted(weight);
+    let layout = Layout::of(rows.stretch.clone(), &testable, rows.period_s()).weighted(weight);
     let study = beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?;
     let floor = floor(&rows, &study);
-    let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
-    let numbers: Vec<usize> = rows.all.iter().map(of).collect();
-    let cable_errors = errors(&rows, &study, &|column| touched(&numbers, column));
+    let cable_errors = errors(&rows, &study);
     let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
     let of_carried = |c: &bool| if *c { SystemState::HoldAboveGround } else { SystemState::FreeMotion };
     let state = along.iter().map(of_carried).collect();
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
-    let view = view(&rows);
     let late = late(&rows, &known);
-    let airborne = Airborne::of(&rows, &rows.stretch, world, &known);
-    let compared = Compared { study, channel, unit: "N", floor, along, state };
+    let compared = Compared { study, channel, unit: "N", floor, along, state, view: view(&rows) };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
-    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
+    let airborne = Airborne::of(rows, world, known);
+    Ok(Carry { late, compared, longest_s, cable_errors, weighed, airborne })
 }
 
 /// Share of a cable's evidence below which another cause may only be misfit of the cable. Its law is a linear spring
@@ -133,37 +125,16 @@ fn view(rows: &Rows<'_>) -> View {
         Place::Free { finger, axis } => 2 + 2 * finger + axis,
     };
     let own = |of: &dyn Fn(&Seen<'_>, &Row, usize) -> f64| rows.carried(|one, row, _, axis| of(one, row, axis));
-    View {
-        recording: rows.all.iter().map(|r| r.recording).collect(),
-        sensor: rows.all.iter().map(sensor).collect(),
-        over: vec![
-            (Variable::Time, rows.column(|r| r.time_s)),
-            (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
-            (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
-            (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
-            (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
-            (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
-        ],
-        way: Vec::new(),
-        is_angular: false,
-    }
-}
-
-/// Variable that best shows a cause in the net force.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        inertia::ID => Variable::Acceleration,
-        viscous_friction::ID => Variable::Velocity,
-        added_constraint::ID => Variable::Place,
-        force_cross_axis::ID => Variable::Grip,
-        force_gain::ID | gravity_tilt::ID => Variable::Lift,
-        _ => Variable::Time,
-    }
-}
-
-/// Number of the block on which a regressor acts.
-fn touched(numbers: &[usize], column: &[f64]) -> usize {
-    column.iter().position(|v| *v != 0.0).map_or(0, |i| numbers[i])
+    let over = vec![
+        (Variable::Time, rows.column(|r| r.time_s)),
+        (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
+        (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
+        (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
+        (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
+        (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
+    ];
+    let recording = rows.all.iter().map(|r| r.recording).collect();
+    View { sensor: rows.all.iter().map(sensor).collect(), ..View::of(recording, over, best_seen) }
 }
 
 /// Force needed to carry a weight along an axis, N, with its inertia (weight over gravity).
@@ -224,7 +195,7 @@ fn floor(rows: &Rows<'_>, study: &ChannelFit) -> f64 {
     mean(true).map_or_else(|| mean(false).unwrap_or(0.0), |one| std::f64::consts::SQRT_2 * one)
 }
 
-impl Carry {
+impl Carry<'_> {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.compared.study.has(id)
@@ -244,12 +215,13 @@ impl Carry {
         found
     }
 
-    /// Parameters for the answer: the block of a change of weight or of a cable, and a cable's standard errors.
-    pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    /// The same parameters with the block of a change of weight or of a cable, and with a cable's standard errors.
+    pub fn of_blocks(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let column = &candidate.columns[0];
-        let number = touched(&self.numbers, column);
+        let rows = &self.airborne.rows;
+        let number = rows.touched(column);
         // Without a block, the cause concerns all blocks.
-        let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
+        let alone = || (0..column.len()).all(|i| column[i] == 0.0 || rows.all[i].number() == number);
         if [mass_change::ID, added_constraint::ID].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
         }
@@ -260,9 +232,26 @@ impl Carry {
         }
         found
     }
+}
 
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(found: &Found<'_>) -> String {
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        inertia::ID => Variable::Acceleration,
+        viscous_friction::ID => Variable::Velocity,
+        added_constraint::ID => Variable::Place,
+        force_cross_axis::ID => Variable::Grip,
+        force_gain::ID | gravity_tilt::ID => Variable::Lift,
+        _ => Variable::Time,
+    }
+}
+
+impl Told for Carry<'_> {
+    fn states(&self, _: usize, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        self.of_blocks(candidate, found)
+    }
+
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
         match found.candidate.id {
             inertia::ID => {
@@ -297,8 +286,7 @@ impl Carry {
         }
     }
 
-    /// Smallest sizes that matter, with the experiment that would show them.
-    pub fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         // One hundredth of a newton over the longest carry.
         let slow = 0.01 / self.longest_s.max(1.0);
         Some(match candidate.id {

@@ -3,6 +3,7 @@
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::{
     force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change, viscous_friction,
 };
@@ -77,30 +78,14 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
 
 /// Least motion along an axis, m, from which a block counts as moved.
 const MOVED_M: f64 = 1e-3;
-const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
-const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
 
 /// Faults that the force sensors may have. `known`: weights that are known, N; `given`: the forces by them.
 pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
-    let mut found = Vec::new();
-    let all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], of: &dyn Fn(&Row) -> f64| {
-        let column = |finger: usize, axis: usize| rows.column(|r| Rows::share(r, finger, axis) * of(r));
-        let mut made = Vec::new();
-        // One channel alone, both of one finger, or everything.
-        for finger in [0, 1] {
-            for axis in [0, 1] {
-                let (name, unit) = names[finger][axis];
-                made.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
-            }
-            let both = vec![column(finger, 0), column(finger, 1)];
-            made.push(Candidate::several(id, Kind::Instrument, both, names[finger].to_vec()));
-        }
-        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
-        made.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
-        made
+    let of = |finger: usize, axis: usize, size: &dyn Fn(&Row) -> f64| {
+        rows.column(|r| Rows::share(r, finger, axis) * size(r))
     };
-    found.extend(all(force_bias::ID, &BIAS, &|_| 1.0));
-    found.extend(all(force_drift::ID, &DRIFT, &|r| r.time_s));
+    let mut found = of_fingers(force_bias::ID, &BIAS, &|finger, axis| of(finger, axis, &|_| 1.0));
+    found.extend(of_fingers(force_drift::ID, &DRIFT, &|finger, axis| of(finger, axis, &|r| r.time_s)));
     // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that
     // changes.
     let loaded_s = |r: &Row| {
@@ -111,7 +96,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
         (0..rows.seen.len()).map(|k| rows.all.iter().find(|r| r.recording == k).map_or(0.0, loaded_s)).collect();
     for (finger, axis) in [(0, 1), (1, 1), (0, 0), (1, 0)] {
         let (name, unit) = DRIFT[finger][axis];
-        let column = rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
+        let column = of(finger, axis, &|r| (r.time_s - since[r.recording]).max(0.0));
         found.push(Candidate::one(force_drift::ID, Kind::Instrument, name, unit, column));
     }
     // Effect on the carried rows of one finger's force along the other axis, of which only the sum is compared.
@@ -149,10 +134,7 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
     for (axis, name) in [(1, "lift"), (0, "side force")] {
         let mut term = |expression: &str, of: &dyn Fn(&Seen<'_>, &Row) -> f64| {
             let column = rows.carried(|one, row, _, a| if a == axis { of(one, row) } else { 0.0 });
-            found.push(Candidate {
-                expression: Some(format!("{expression} ({name})")),
-                ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-            });
+            found.push(Candidate::term(format!("{expression} ({name})"), "", vec![column]));
         };
         for k in 1..=4 {
             term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());

@@ -59,11 +59,9 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             heldout_rms_after: error,
             share_of_explainable: share,
             interval: [1.0 - (2.0 * error / way).powi(2), 1.0],
-            no_share: None,
-            in_turn: false,
             unit: Some("m".to_owned()),
-            rollout: None,
             no_rollout: Some(AT_ONCE.to_owned()),
+            ..Gain::default()
         },
         evidence: format!(
             "{} was put down {:.2} mm ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \

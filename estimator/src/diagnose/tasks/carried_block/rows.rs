@@ -21,6 +21,13 @@ pub struct Row {
     pub place: Place,
 }
 
+impl Row {
+    /// Number of the block that is carried; 0 if none is.
+    pub fn number(&self) -> usize {
+        if let Place::Carried { number, .. } = self.place { number } else { 0 }
+    }
+}
+
 /// All rows with their recordings.
 pub struct Rows<'a> {
     pub seen: &'a [Seen<'a>],
@@ -54,6 +61,16 @@ impl<'a> Rows<'a> {
         let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording;
         let stretch = segments(&time, period_s, other);
         Self { seen, all: rows, stretch }
+    }
+
+    /// Time between independent rows, s.
+    pub fn period_s(&self) -> f64 {
+        self.seen.iter().map(|s| s.period_s).fold(0.0, f64::max)
+    }
+
+    /// Number of the block on which a regressor acts.
+    pub fn touched(&self, column: &[f64]) -> usize {
+        column.iter().position(|v| *v != 0.0).map_or(0, |i| self.all[i].number())
     }
 
     pub fn column(&self, of: impl Fn(&Row) -> f64) -> Vec<f64> {

@@ -2,15 +2,15 @@
 
 use super::grasp_slip::{slips, ways};
 use super::signals::Seen;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -55,8 +55,6 @@ pub struct Stand {
 /// The comparison with the data for its texts.
 pub struct Ground {
     pub compared: Compared,
-    /// The rows as the atlas looks at them.
-    pub view: View,
     pub stands: Vec<Stand>,
     rows: Rows,
     /// Each slip's time, s, its distance, m, and the standard error of the distance with the time free, m.
@@ -123,17 +121,13 @@ pub fn ground(
     let study = Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?;
     let ways = ways(&rows, &stands, &model, &study);
     let channel = "height of the grip over the ground";
-    let compared =
-        Compared { study, channel, unit: "m", floor: floor_m, along, state: vec![SystemState::HoldOnGround; n] };
-    let view = View {
-        recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
-        // Each rest has a height of its own.
-        sensor: rows.stand.clone(),
-        over: vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())],
-        way: Vec::new(),
-        is_angular: false,
-    };
-    Ok(Some(Ground { compared, view, stands, rows, ways }))
+    let over = vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())];
+    let recording = rows.stand.iter().map(|s| stands[*s].recording).collect();
+    // Each rest has a height of its own.
+    let view = View { sensor: rows.stand.clone(), ..View::of(recording, over, best_seen) };
+    let state = vec![SystemState::HoldOnGround; n];
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
+    Ok(Some(Ground { compared, stands, rows, ways }))
 }
 
 /// Order in which rows are held out together: each held-out block takes rows from all rests. The effect of a slip needs
@@ -145,11 +139,6 @@ fn spread(along: &[bool]) -> Vec<f64> {
         Some(*count)
     });
     before.enumerate().map(|(i, count)| ((count % blocks) * along.len() + i) as f64).collect()
-}
-
-/// Variable that best shows a cause in the grip height.
-pub fn best_seen(id: &str) -> Variable {
-    if id == pad_compliance::ID { Variable::Lift } else { Variable::Time }
 }
 
 fn add(
@@ -208,8 +197,38 @@ impl Ground {
         self.stands.iter().find(|s| (s.from_s - self.rows.half_s..=self.rows.time_s[s.end - 1]).contains(&time_s))
     }
 
-    /// Parameters for the answer.
-    pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    /// Mean height of a rest without the slip found in it and without the compression under its load, m, and its
+    /// standard error.
+    pub fn level(&self, stand: &Stand) -> (f64, f64) {
+        let picks = self.compared.study.picks();
+        let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };
+        let mut give = vec![0.0; self.rows.stand.len()];
+        // All but the heights of the rests.
+        let columns: Vec<&Vec<f64>> = self
+            .compared
+            .study
+            .base
+            .iter()
+            .skip(self.stands.len())
+            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns).map(|column| &**column))
+            .collect();
+        for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
+            give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
+        }
+        let n = (stand.end - stand.first) as f64;
+        let mean = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]).sum::<f64>() / n;
+        let scatter = (stand.first..stand.end).map(|i| (self.rows.height_m[i] - give[i] - mean).powi(2)).sum::<f64>();
+        (mean, (scatter / (n - 1.0).max(1.0) / n).sqrt())
+    }
+}
+
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    if id == pad_compliance::ID { Variable::Lift } else { Variable::Time }
+}
+
+impl Told for Ground {
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             fingertip_slip::ID => {
                 let at = candidate.searched.iter().find(|s| s.name == "t0").map(|s| s.value);
@@ -227,8 +246,7 @@ impl Ground {
         }
     }
 
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(&self, found: &Found<'_>) -> String {
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         if found.candidate.id == pad_compliance::ID {
             return "the grip sinks and rises with the load while a held block stands".to_owned();
@@ -254,8 +272,7 @@ impl Ground {
         )
     }
 
-    /// Sizes that could just matter.
-    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
             fingertip_slip::ID => {
                 Some((LEAST_M, "blocks were not held on the ground for long enough to see the fingers move on"))
@@ -265,29 +282,5 @@ impl Ground {
             }
             _ => None,
         }
-    }
-
-    /// Mean height of a rest without the slip found in it and without the compression under its load, m, and its
-    /// standard error.
-    pub fn level(&self, stand: &Stand) -> (f64, f64) {
-        let picks = self.compared.study.picks();
-        let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };
-        let mut give = vec![0.0; self.rows.stand.len()];
-        // All but the heights of the rests.
-        let columns: Vec<&Vec<f64>> = self
-            .compared
-            .study
-            .base
-            .iter()
-            .skip(self.stands.len())
-            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns).map(|column| &**column))
-            .collect();
-        for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
-            give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
-        }
-        let n = (stand.end - stand.first) as f64;
-        let mean = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]).sum::<f64>() / n;
-        let scatter = (stand.first..stand.end).map(|i| (self.rows.height_m[i] - give[i] - mean).powi(2)).sum::<f64>();
-        (mean, (scatter / (n - 1.0).max(1.0) / n).sqrt())
     }
 }

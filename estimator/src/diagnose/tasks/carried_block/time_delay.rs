@@ -2,9 +2,7 @@
 //! explain most.
 
 use super::rows::{Place, Row, Rows};
-use crate::diagnose::recording::delay_scan::STEP_S;
-use crate::diagnose::recording::delay_scan::{Demands, Late, look};
-use crate::identify::linear::least_squares_values;
+use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 
 /// Limits of a delay: beyond the longest one a hand is already at another movement.
 const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };
@@ -14,9 +12,7 @@ const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, li
 pub fn late(rows: &Rows<'_>, known: &[Option<f64>]) -> Option<Late> {
     let carried: Vec<&Row> = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { .. })).collect();
     let sample_s = rows.seen.iter().map(|s| s.sample_s).fold(0.0, f64::max);
-    let step = (STEP_S / sample_s.max(1e-9)).round().max(1.0);
-    let late = look(step * sample_s, &DEMANDS, &|by| left(rows, &carried, known, by * step as isize));
-    late.filter(|late| late.error_s.is_finite())
+    look_by_samples(sample_s, &DEMANDS, &|by| left(rows, &carried, known, by))
 }
 
 /// Residual power per row, and number of rows, with the forces of this many samples later.
@@ -43,10 +39,5 @@ fn left(rows: &Rows<'_>, carried: &[&Row], known: &[Option<f64>], by: isize) -> 
         }
         y.push(rows.force_n(row) - given);
     }
-    columns.retain(|column| column.iter().any(|v| *v != 0.0));
-    if y.len() <= 2 * columns.len() {
-        return None;
-    }
-    let rms = least_squares_values(&columns, &y, None).ok()?.rms;
-    Some((rms * rms, y.len() as f64))
+    left_of_fit(columns, &y)
 }

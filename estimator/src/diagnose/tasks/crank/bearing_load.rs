@@ -2,10 +2,9 @@
 //! handle. The recording decides between the two models.
 
 use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
-use crate::diagnose::data::row_means::column;
 use crate::estimate::EstimateError;
-use crate::identify::linear::{Values, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
@@ -57,7 +56,8 @@ fn one_way(
 
 /// Residual RMS of the model with friction of every kind and a mass, N. `free` adds gravity of any direction.
 fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64, EstimateError> {
-    let look = Look::at(track, fixed);
+    let track = &prepared(track);
+    let look = PlainFit::of(track, fixed);
     let has = |law: &dyn Law| model.iter().chain(fixed).any(|e| e.law().id() == law.id());
     let others = [&CoulombFriction as &'static dyn Law, &Inertia].into_iter().filter(|law| !has(*law));
     let laws: Vec<Effect> = model.iter().copied().chain(others.map(|law| Effect::new(law, &[1.0]))).collect();
@@ -81,7 +81,8 @@ pub(crate) fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
 
 /// Residual RMS of the model with friction and possible disturbances, and the weight that the model alone estimates, N.
 fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), EstimateError> {
-    let look = Look::at(track, fixed);
+    let track = &prepared(track);
+    let look = PlainFit::of(track, fixed);
     let is_weight = |e: &Effect| e.law().id() == Weight.id();
     let coulomb = Effect::new(&CoulombFriction, &[1.0]);
     let weighed: Vec<Effect> = model.iter().copied().chain([coulomb]).collect();
@@ -102,41 +103,12 @@ pub(crate) fn known_n(fixed: &Model) -> f64 {
     fixed.iter().filter(|e| e.law().id() == Weight.id()).map(|e| e.values[0]).sum()
 }
 
-/// Rows for a plain fit: blurred directions, loads without bias, forces without the known ones.
-struct Look {
-    track: Track,
-    y: Vec<f64>,
-    weight: Vec<f64>,
-}
-
-impl Look {
-    fn at(track: &Track, fixed: &Model) -> Self {
-        let mut track = track.clone();
-        blur(&mut track);
-        without_bias(&mut track);
-        let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(&track, effect)).collect();
-        let y = track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
-        let weight = weights(&track);
-        Self { track, y, weight }
-    }
-
-    fn laws(&self, laws: &[Effect]) -> Vec<Vec<f64>> {
-        laws.iter().map(|effect| column(&self.track, effect)).collect()
-    }
-
-    /// Regressor over the rows along the motion, 0 in all others.
-    fn rows(&self, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
-        self.track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
-    }
-
-    fn fit(&self, columns: &[Vec<f64>]) -> Result<Values, EstimateError> {
-        least_squares_values(columns, &self.y, Some(&self.weight))
-    }
-}
-
-/// Weight of a row in the sum of squares: the fourth power of its direction estimate.
-pub(crate) fn weights(track: &Track) -> Vec<f64> {
-    track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect()
+/// The rows with blurred directions, and loads without bias.
+fn prepared(track: &Track) -> Track {
+    let mut track = track.clone();
+    blur(&mut track);
+    without_bias(&mut track);
+    track
 }
 
 /// Removes the sensor bias, seen in free rows, from the load. A bias across the motion looks like a weight.

@@ -1,7 +1,8 @@
 //! Weight on a crank's bearing, compared with other hidden causes.
 
-use super::bearing_load::{known_n, put, weights};
+use super::bearing_load::{known_n, put};
 use crate::diagnose::answer::cause::unexplained;
+use crate::diagnose::data::plain_fit::weights;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};

@@ -12,7 +12,6 @@ pub(crate) mod rows;
 use super::baseline_models::plain_crank;
 use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::regression_data::Model;
@@ -73,13 +72,11 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         causes: scale.into_iter().chain(faults).collect(),
         remarks: on_bearing.into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
+        atlas: options.atlas,
         reads: &|named| name_joint(named, link),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &paths, evidence);
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     found.delay.guess_s = time_delay::guess_s(&track, &model);
     Ok(found)
 }
@@ -131,7 +128,6 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
 
 /// Validates the found causes on another recording of the same crank.
 pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
-    let recording = &time_delay::put_back(recording, diagnosis.delay.corrected_s);
     let axis_signs::Looked { signals, circle, rows, .. } =
         axis_signs::Looked::at(recording, &sample_faults::faults(recording).bad)?;
     let mut track = turned(&signals, recording, &circle, rows)?.rows;

@@ -73,6 +73,12 @@ impl Arm {
     }
 }
 
+/// Angle of a vector, rad, within half a turn of `near`.
+pub fn unwrapped(vector: Vec2, near: f64) -> f64 {
+    let wrapped = vector.y.atan2(vector.x);
+    wrapped + ((near - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
 /// The circle, and the causes found that distort it.
 pub struct Geometry {
     pub arm: Arm,

@@ -1,11 +1,10 @@
 //! Unexplained residual of a crank's path, and arcs that are too short to determine their circle.
 
-use super::path::{Arm, Path};
+use super::path::{Arm, Path, unwrapped};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
-use haptics::law::Kind;
 
 /// Generic waves round a turn, and slow ones over the recording.
 const PATH_WAVES: u32 = 4;
@@ -22,18 +21,14 @@ const UNSURE: f64 = 0.05;
 fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     let angle = |i: usize| outward[i].y.atan2(outward[i].x);
     let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
-    let term = |expression: String, columns: Vec<Vec<f64>>| {
-        let linear = columns.iter().map(|_| ("amplitude", "m")).collect();
-        Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
-    };
     let waves = (2..=PATH_WAVES).map(|n| {
         let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
-        term(format!("cos({n} theta + phi) of the path"), vec![wave(f64::cos), wave(f64::sin)])
+        Candidate::term(format!("cos({n} theta + phi) of the path"), "m", vec![wave(f64::cos), wave(f64::sin)])
     });
     let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
     let slow = (1..=SLOW_PATH_WAVES).map(|k| {
         let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
-        term(format!("cos({k} pi t/T) of the path"), vec![column(&wave)])
+        Candidate::term(format!("cos({k} pi t/T) of the path"), "m", vec![column(&wave)])
     });
     waves.chain(slow).collect()
 }
@@ -55,9 +50,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let solved = study.solved.as_ref()?;
     let mut before = 0.0_f64;
     let angles = path.points.iter().map(|point| {
-        let arm = arm.arm(point.index, point.position);
-        let wrapped = arm.y.atan2(arm.x);
-        before = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        before = unwrapped(arm.arm(point.index, point.position), before);
         before
     });
     let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], a| [l.min(a), h.max(a)]);

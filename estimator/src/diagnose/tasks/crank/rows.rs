@@ -1,11 +1,11 @@
 //! Rows of a crank's recording: positions and forces of the fingers or tool that hold the handle.
 
 use super::contact_phases::held_and_free;
-use super::path::{Arm, Path, PathPoint};
+use super::path::{Arm, Path, PathPoint, unwrapped};
 use crate::diagnose::data::interpolation;
 use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, offsets};
 use crate::diagnose::data::known_weight::Hung;
-use crate::diagnose::data::regression_data::{Bearing, Fine, Place, Row, Span, Track, Zero};
+use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
@@ -210,7 +210,6 @@ impl Signals {
         Ok(Track {
             period_s: self.period_s,
             raw_period_s: self.raw_period_s,
-            coordinate: Coordinate::Linear,
             radius_m: Some(arm.radius_m),
             planar: true,
             velocity_noise: mean_square(&noise, 0),
@@ -219,13 +218,10 @@ impl Signals {
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             hung: vec![Hung::on_crank(recording)],
-            bearing: Bearing::default(),
             slope,
-            extra: Vec::new(),
-            zero: Zero::Open,
-            freely: None,
             rows,
             fine,
+            ..Track::of(Coordinate::Linear)
         })
     }
 
@@ -252,30 +248,26 @@ impl Signals {
             .enumerate()
             .map(|(k, i)| {
                 let (outward, along) = directions[k];
-                let wrapped = outward.y.atan2(outward.x);
-                let angle = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-                before = angle;
+                before = unwrapped(outward, before);
+                let angle = before;
                 let force = self.force[i];
                 Row {
-                    recording: 0,
                     stretch,
-                    place: Place::Along,
                     motion: Motion {
                         time_s: self.time_s[i],
                         position: arm.radius_m * angle,
                         velocity: speed[k],
                         acceleration: acceleration[k],
-                        direction: 0.0,
                         normal_force_n: force.dot(&outward),
                         up_along: up * along.y,
+                        ..Motion::default()
                     },
                     angle_rad: angle,
                     along,
                     force,
                     force_rate: Vec2::new(rate_x[k], rate_y[k]),
                     y: force.dot(&along),
-                    span: Span::default(),
-                    open: 0.0,
+                    ..Row::default()
                 }
             })
             .collect();
@@ -297,16 +289,14 @@ impl Signals {
                 let at = raw.between(i * self.every, offset);
                 let outward = arm.arm(i, at.position).normalize();
                 let along = Vec2::new(-outward.y, outward.x);
-                let wrapped = outward.y.atan2(outward.x);
                 let near = if fine.last().is_some_and(|f| f.stretch == number) { angle } else { row.angle_rad };
-                angle = wrapped + ((near - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+                angle = unwrapped(outward, near);
                 let point = Fine {
                     stretch: number,
                     time_s: at.time_s,
                     position: arm.radius_m * angle,
                     velocity: at.velocity.dot(&along),
-                    direction: 0.0,
-                    open: 0.0,
+                    ..Fine::default()
                 };
                 // Recorded positions, because interpolated ones have less noise.
                 places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
@@ -331,17 +321,13 @@ impl Signals {
         for (k, range) in stretches(&self.free).into_iter().enumerate() {
             for (a, place) in [Place::FreeX, Place::FreeY].into_iter().enumerate() {
                 rows.extend(range.clone().map(|i| Row {
-                    recording: 0,
                     stretch: first_stretch + 2 * k + a,
                     place,
                     motion: Motion { time_s: self.time_s[i], ..Motion::default() },
-                    angle_rad: 0.0,
                     along: if a == 0 { Vec2::x() } else { Vec2::y() },
                     force: self.force[i],
-                    force_rate: Vec2::zeros(),
                     y: self.force[i][a],
-                    span: Span::default(),
-                    open: 0.0,
+                    ..Row::default()
                 }));
             }
         }

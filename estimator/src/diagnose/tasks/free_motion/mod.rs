@@ -12,14 +12,12 @@ pub(crate) mod scale;
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::explain;
 use super::one_coordinate;
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::data::covariates;
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
-use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -83,19 +81,16 @@ pub(crate) fn diagnose(
         }
     }
     options.progress.tell(0.8)?;
-    let both_ways = goes_both_ways(&track);
     let evidence = Evidence {
         model: scale::model_name(&model),
         causes: faults,
         warnings: scale::sentence(&track, scale).into_iter().collect(),
-        reads: &|named| scale::put_right(named, &track, both_ways),
+        atlas: options.atlas,
+        reads: &|named| scale::put_right(named, &track),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(Along::of(track.coordinate, recordings, paths));
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     Ok(found)
 }
 
@@ -143,7 +138,7 @@ pub(crate) fn gravity(track: &Track, first: &Recording) -> Model {
 /// True if the motion swings back and forth under gravity.
 fn swings(track: &Track) -> bool {
     let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
-    let [forward, backward] = ways(track);
+    let [forward, backward] = track.ways();
     let acceleration = along(&|r| r.motion.acceleration);
     let mean = |of: &dyn Fn(f64) -> f64| along(&|r| track.mean(r, &|m| of(m.position)));
     let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; acceleration.len()]];

@@ -6,7 +6,7 @@
 //! between the rows and averaged with the same weights.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
-use crate::diagnose::data::regression_data::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing, Zero};
+use crate::diagnose::data::regression_data::{Fine, Freely, Row, Span, Track, Weighing};
 use crate::diagnose::tasks::mechanism::rows::{LEAST_BLOCKS, SHORTEST_S};
 use crate::estimate::EstimateError;
 use crate::identify::mechanism;
@@ -15,7 +15,7 @@ use crate::signal::derive::{Derivatives, even_period, interpolate_cubic, savitzk
 use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
 use crate::signal::pieces::pieces as uninterrupted;
 use haptics::Vec2;
-use haptics::law::{Coordinate, Motion};
+use haptics::law::Motion;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::ops::Range;
@@ -231,7 +231,7 @@ impl Made {
         let first_fine = self.fine.len();
         for i in (1..n).step_by(skip) {
             let (time_s, position, velocity) = (piece.time_s[i], smooth.value[i], rate[i]);
-            let point = Fine { stretch, time_s, position, velocity, direction: 0.0, open: 0.0 };
+            let point = Fine { stretch, time_s, position, velocity, ..Fine::default() };
             if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == stretch) {
                 self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
             }
@@ -268,19 +268,8 @@ impl Made {
             acceleration,
             ..Motion::default()
         };
-        self.rows.push(Row {
-            recording: 0,
-            stretch,
-            place: Place::Along,
-            motion,
-            angle_rad: motion.position,
-            along: Vec2::x(),
-            force: Vec2::zeros(),
-            force_rate: Vec2::zeros(),
-            y: 0.0,
-            span,
-            open: 0.0,
-        });
+        let along = Vec2::x();
+        self.rows.push(Row { stretch, motion, angle_rad: motion.position, along, span, ..Row::default() });
     }
 
     fn track(self, raw: &Raw, plan: &Plan, gravity_m_s2: f64) -> Track {
@@ -300,20 +289,12 @@ impl Made {
             fine,
             period_s: plan.period_s * plan.block as f64,
             raw_period_s: plan.period_s,
-            coordinate: raw.coordinate,
-            radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
-            planar: false,
             velocity_noise,
             position_noise,
             force_noise: plan.acceleration_noise.max(1e-12),
-            noise_is_measured: false,
             span_s,
-            hung: Vec::new(),
-            bearing: Bearing::default(),
-            slope: None,
-            extra: Vec::new(),
-            zero: Zero::Open,
             freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),
+            ..Track::of(raw.coordinate)
         }
     }
 }

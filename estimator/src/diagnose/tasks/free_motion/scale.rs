@@ -13,7 +13,7 @@ use haptics::law::Coordinate;
 const HIDDEN: [&str; 2] = [force_gain::ID, force_bias::ID];
 
 /// Adapts texts that were written for a driven motion.
-pub fn put_right(found: &mut Named, track: &Track, both_ways: bool) {
+pub fn put_right(found: &mut Named, track: &Track) {
     let Some(free) = track.freely else { return };
     let angular = track.coordinate == Coordinate::Angular;
     for parameter in found.causes.iter_mut().flat_map(|c| &mut c.parameters) {
@@ -30,17 +30,12 @@ pub fn put_right(found: &mut Named, track: &Track, both_ways: bool) {
             if angular { "release it from farther away, or from both sides" } else { "let it go faster, or both ways" }
         );
     }
-    found.not_excited.extend(HIDDEN.map(|id| NotExcited {
-        id: id.to_owned(),
-        why: "the recording has no force column, so there is no force sensor whose gain or bias could show".to_owned(),
-    }));
-    if !both_ways {
-        found.not_excited.extend(with_both_ways().map(|id| NotExcited {
-            id: id.to_owned(),
-            why: "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
-                  go the other way, too"
-                .to_owned(),
-        }));
+    let why = "the recording has no force column, so there is no force sensor whose gain or bias could show";
+    found.not_excited.extend(HIDDEN.map(|id| NotExcited::new(id, why)));
+    if track.goes_one_way() {
+        let why = "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
+                   go the other way, too";
+        found.not_excited.extend(with_both_ways().map(|id| NotExcited::new(id, why)));
     }
 }
 

@@ -7,7 +7,6 @@ pub(crate) mod sensor_zero;
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::{explain, without_known};
 use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
-use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::contract::Validation;
 use crate::diagnose::data::regression_data::Model;
@@ -37,8 +36,7 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
     if transmission::is_driven(recordings) {
         return transmission::driven(recordings, options);
     }
-    let ask = |recordings: &[Recording]| mechanism(recordings, options);
-    Ok(super::delay_correction::undo(recordings, ask(recordings)?, &ask))
+    super::delay_correction::corrected(recordings, &|some| mechanism(some, options))
 }
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
@@ -106,23 +104,20 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
     let evidence = Evidence {
         causes: faults,
         without_known: without_known(!fixed.is_empty() || is_hung, true),
+        atlas: options.atlas,
         reads: &|named| sensor_zero::ask(named, &track),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
     found.delay.guess_s = time_delay::guess_s(&track, &model);
-    if options.atlas {
-        found.atlas = atlas::atlas(&track, &study);
-    }
     let skew_s = sample_offset::skewed_s(&study, &track);
     Ok((found, skew_s))
 }
 
 /// Validates the found causes on another recording of the same mechanism.
 pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validation, EstimateError> {
-    let recording =
-        &time_delay::motion_apart(&time_delay::put_back(recording, diagnosis.delay.corrected_s), diagnosis.skew_s);
+    let recording = &time_delay::motion_apart(recording, diagnosis.skew_s);
     let along = diagnosis.along.ok_or_else(|| coordinate::none(recording))?;
     let path = along.path_of(recording)?;
     let mut track = track_of(recording, path.as_ref(), diagnosis)?;

@@ -5,7 +5,7 @@
 //! two blocks. The mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between, calmed_line};
-use crate::diagnose::data::regression_data::{Bearing, Fine, Place, Row, Span, Track, Weighing, Zero};
+use crate::diagnose::data::regression_data::{Fine, Row, Span, Track, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism;
@@ -13,7 +13,7 @@ use crate::identify::mechanism::Raw;
 use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
 use crate::signal::pieces::pieces;
 use haptics::Vec2;
-use haptics::law::{Coordinate, Motion};
+use haptics::law::Motion;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
@@ -148,9 +148,7 @@ impl Made {
             };
             let y = hat(force);
             self.rows.push(Row {
-                recording: 0,
                 stretch: number,
-                place: Place::Along,
                 motion,
                 angle_rad: motion.position,
                 along: Vec2::x(),
@@ -158,7 +156,7 @@ impl Made {
                 force_rate: Vec2::new((mean(force, middle) - mean(force, before)) / half_s, 0.0),
                 y,
                 span: Span { start, len: end - start, weighing: Weighing::Hat },
-                open: 0.0,
+                ..Row::default()
             });
         }
     }
@@ -177,8 +175,7 @@ impl Made {
                 time_s: raw.time_s[i],
                 position: raw.position[i],
                 velocity: calm[k],
-                direction: 0.0,
-                open: 0.0,
+                ..Fine::default()
             };
             if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
                 self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
@@ -210,20 +207,11 @@ impl Made {
             fine,
             period_s: self.period_s * self.block as f64,
             raw_period_s: self.period_s,
-            coordinate: raw.coordinate,
-            radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
-            planar: false,
             velocity_noise: worst(0),
             position_noise: (averaged(self.block) * worst(2)).hypot(worst(3)),
             force_noise: (averaged(self.block) * worst(1)).max(1e-12),
-            noise_is_measured: false,
             span_s,
-            hung: Vec::new(),
-            bearing: Bearing::default(),
-            slope: None,
-            extra: Vec::new(),
-            freely: None,
-            zero: Zero::Open,
+            ..Track::of(raw.coordinate)
         }
     }
 }

@@ -59,12 +59,8 @@ pub fn ask(found: &mut Named, track: &Track) {
             why: "along a line a slope is the same constant force, and the sensor reads nothing of it where nobody holds on".to_owned(),
         });
         let motion = "turn the track round and move along it again: what a slope pulls changes its sign";
-        found.next.get_or_insert_with(|| NextExperiment {
-            motion: motion.to_owned(),
-            separates: vec![friction_asymmetry::ID.to_owned(), gravity_tilt::ID.to_owned()],
-            expected_power: SURE_HUNG,
-            experiment: None,
-        });
+        let separates = [friction_asymmetry::ID, gravity_tilt::ID].map(str::to_owned).to_vec();
+        found.next.get_or_insert_with(|| NextExperiment::in_words(motion, separates, SURE_HUNG));
         return;
     }
     let constant =

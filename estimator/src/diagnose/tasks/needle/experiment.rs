@@ -6,8 +6,7 @@ use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
 use super::sheet;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::Span;
-use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
-use crate::diagnose::experiment::separation::separation;
+use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
 use crate::segment::threshold::percentile;
@@ -27,38 +26,16 @@ const WORDS: &str = "push in slowly, draw back before the sheet gives way, push 
 pub fn propose(
     open: &[Alternative],
     (needle, law): (&Needle, Option<&MembraneLaw>),
-    (sheet, shaft): (&Compared, Option<&Shaft>),
+    (sheet, shaft): (&Compared, Option<&Shaft<'_>>),
 ) -> Option<NextExperiment> {
-    let mut best: Option<NextExperiment> = None;
-    for count in INSERTIONS {
+    proposal::shortest(open, INSERTIONS, &|count| {
         let (asked, motion) = asked(needle, count)?;
         let imagined = imagine(needle, &motion, asked.free_s);
-        let on_sheet = sheet::columns(&imagined, law).imagined();
-        let on_shaft = shaft.map(|s| (s, s.imagined(&imagined, law)));
-        let seen = |a: &Alternative| {
-            let pair = (a.instead_of.as_str(), a.id.as_str());
-            separation(&on_sheet, &sheet.study, pair)
-                .or_else(|| on_shaft.as_ref().and_then(|(s, rows)| separation(rows, &s.compared.study, pair)))
-        };
-        let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, seen(a)?))).collect();
-        let least = told.iter().map(|t| t.1).reduce(f64::min)?;
-        let power = SURE_BY_MOTION * power(least);
-        if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
-            let mut separates: Vec<String> = Vec::new();
-            for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
-                if !separates.contains(id) {
-                    separates.push(id.clone());
-                }
-            }
-            let places = if count == 1 { "" } else { "; the same at other places" };
-            let motion = format!("{WORDS}{places}");
-            best = Some(NextExperiment { motion, separates, expected_power: power, experiment: Some(asked) });
-        }
-        if best.as_ref().is_some_and(|b| b.expected_power > LIKELY) {
-            break;
-        }
-    }
-    best
+        let mut channels = vec![(sheet::columns(&imagined, law).imagined(), &sheet.study)];
+        channels.extend(shaft.map(|s| (s.imagined(&imagined, law), &s.compared.study)));
+        let places = if count == 1 { "" } else { "; the same at other places" };
+        Some((asked, format!("{WORDS}{places}"), channels))
+    })
 }
 
 /// As deep as the sheet was pressed before the puncture, and at least as fast as before.
@@ -73,9 +50,7 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
         middle: deep_m + HALF_STROKE_M,
         half_range: HALF_STROKE_M,
         fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(NEEDLE_SPEEDS_M_S.0, NEEDLE_SPEEDS_M_S.1),
-        across_n: 0.0,
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     };
     let one_s = Insertions::of(&asked)?.duration_s();
     asked.seconds = (count as f64 - 0.5) * one_s;

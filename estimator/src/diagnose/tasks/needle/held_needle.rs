@@ -6,40 +6,18 @@ use super::sheet::{Law, first_push_n, own_n};
 use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::extension::model::without_friction;
-use crate::diagnose::free_run::channel::{Forward, consecutive};
-use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
-use crate::diagnose::free_run::windows::NO_LAW;
+use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
+use crate::diagnose::free_run::integrate::{Side, over, remembered};
+use crate::diagnose::free_run::windows::{Errors, NO_LAW};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::coulomb_friction;
-use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Effect, Inertia, Kind, Memories, Motion};
 
-/// Parts common to both simulations: the world's law, and the indices of the model's regressors.
-struct Model {
-    law: Option<MembraneLaw>,
-    period_s: f64,
-    /// Number of regressors for the held weight, and true if the needle's mass is a regressor.
-    holds: usize,
-    two_fingered: bool,
-}
-
-impl Model {
-    fn new(needle: &Needle, law: Option<&MembraneLaw>) -> Self {
-        let (holds, two_fingered) = (needle.holds, needle.two_fingered);
-        Self { law: law.copied(), period_s: needle.period_s, holds, two_fingered }
-    }
-
-    /// A negative mass is noise of a zero one.
-    fn inertia(&self, mass: usize, values: &[f64]) -> Vec<Effect> {
-        let kg = if self.two_fingered { values[mass].max(0.0) } else { 0.0 };
-        vec![Effect::new(&Inertia, &[kg])]
-    }
-}
-
-/// Measured force less the contribution of these regressors in a row, N.
-fn drive(study: &ChannelFit, row: usize, columns: &[(&[f64], f64)]) -> f64 {
-    study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
+/// Inertia of a needle whose mass is the regressor of this number, if it is one. A negative mass is noise of a zero one.
+fn inertia(needle: &Needle, mass: usize, values: &[f64]) -> Vec<Effect> {
+    let kg = if needle.two_fingered { values[mass].max(0.0) } else { 0.0 };
+    vec![Effect::new(&Inertia, &[kg])]
 }
 
 /// Regressors of candidates with their coefficients.
@@ -47,23 +25,16 @@ fn faults<'a>(of: impl Iterator<Item = (&'a Candidate, &'a [f64])>) -> impl Iter
     of.flat_map(|(candidate, own)| candidate.columns.iter().map(|c| c.as_slice()).zip(own.iter().copied()))
 }
 
-fn motion(row: &Row) -> Motion {
-    Motion { time_s: row.time_s, position: row.depth_m, velocity: row.rate_m_s, ..Motion::default() }
-}
-
 /// Simulation of a needle outside of a sheet, and on one that is not pierced yet.
-pub struct Pressed {
-    model: Model,
-    stiffness_n_m: f64,
+pub struct Pressed<'a> {
+    pub needle: &'a Needle,
+    /// The sheet of the world.
+    pub law: Option<&'a MembraneLaw>,
     /// Rows in the order of the comparison.
-    rows: Vec<Row>,
+    pub rows: Vec<Row>,
 }
 
-impl Pressed {
-    pub fn new(needle: &Needle, law: Option<&MembraneLaw>, rows: Vec<Row>) -> Self {
-        Self { model: Model::new(needle, law), stiffness_n_m: needle.stiffness_n_m, rows }
-    }
-
+impl Pressed<'_> {
     /// Deepest indentation of the sheet so far at the place of a row, m.
     fn deepest_m(&self, at: &Row) -> f64 {
         let here = |r: &&Row| r.recording == at.recording && r.push == at.push && r.time_s <= at.time_s;
@@ -72,7 +43,7 @@ impl Pressed {
     }
 }
 
-impl Forward for Pressed {
+impl Forward for Pressed<'_> {
     fn of(&self) -> (RolloutOf, &str) {
         (RolloutOf::Force, "N")
     }
@@ -85,28 +56,23 @@ impl Forward for Pressed {
             let Row { recording, hold, push, phase, .. } = self.rows[i];
             (recording, hold, push, phase == Phase::Empty)
         };
-        consecutive(&order, &|i| self.rows[i].time_s, self.model.period_s, &|a, b| of(a) == of(b))
+        consecutive(&order, &|i| self.rows[i].time_s, self.needle.period_s, &|a, b| of(a) == of(b))
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
-        let Model { law, holds, .. } = &self.model;
-        let law = law.as_ref();
-        let elastic = |x: f64| first_push_n(self.stiffness_n_m, law, x);
-        let laws: Vec<(Law, f64)> =
-            study.with_values(picks, values).filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
-        let of_motion = [Some(*holds), self.model.two_fingered.then_some(holds + 1)];
-        let constant = study.base.iter().enumerate().filter(|(k, _)| !of_motion.contains(&Some(*k)));
-        let mut beside: Vec<(&[f64], f64)> = constant.map(|(k, column)| (column.as_slice(), values[k])).collect();
-        beside.extend(faults(study.with_values(picks, values).filter(|(c, _)| Law::of(c).is_none())));
-        let moment =
-            |i: &usize| Moment { motion: motion(&self.rows[*i]), drive: drive(study, *i, &beside), beside: [0.0; 2] };
-        let moments: Vec<Moment> = window.iter().map(moment).collect();
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let Self { needle, law, .. } = *self;
+        let holds = needle.holds;
+        let elastic = |x: f64| first_push_n(needle.stiffness_n_m, law, x);
+        let laws: Vec<(Law, f64)> = fit.causes().filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
+        let of_motion = [Some(holds), needle.two_fingered.then_some(holds + 1)];
+        let of_model = fit.columns().take(fit.study.base.len()).enumerate();
+        let constant = of_model.filter(|(k, _)| !of_motion.contains(&Some(*k))).map(|(_, column)| column);
+        let of_faults = faults(fit.causes().filter(|(c, _)| Law::of(c).is_none()));
+        let beside: Vec<(&[f64], f64)> = constant.chain(of_faults).collect();
+        let row = |i: usize| {
+            let Row { time_s, depth_m: position, rate_m_s: velocity, .. } = self.rows[i];
+            (Motion { time_s, position, velocity, ..Motion::default() }, fit.less(i, &beside))
+        };
         let first = self.rows[window[0]];
         // Empty fingers touch no sheet and carry only their own mass.
         let is_held = first.phase != Phase::Empty;
@@ -120,27 +86,25 @@ impl Forward for Pressed {
             deepest_m = deepest_m.max(depth_m);
             let row = Row { depth_m, rate_m_s, phase, deepest_m, ..first };
             let more = laws.iter().map(|(law, value)| value * law.unit_n(&row, &elastic)).sum::<f64>();
-            values[*holds] * own_n(law, &row) + more
+            fit.values[holds] * own_n(law, &row) + more
         };
-        let effects = if is_held { self.model.inertia(holds + 1, values) } else { Vec::new() };
-        Ok(run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: false }))
+        let effects = if is_held { inertia(needle, holds + 1, fit.values) } else { Vec::new() };
+        Ok(over(window, &row, Side { effects: &effects, memory: Memories::default(), acts, driven: false }))
     }
 }
 
 /// A needle in its hole.
-pub struct Sliding {
-    model: Model,
-    rows: Vec<Row>,
-    track: Track,
+pub struct Sliding<'a> {
+    pub needle: &'a Needle,
+    /// The hole of the world.
+    pub law: Option<&'a MembraneLaw>,
+    pub rows: Vec<Row>,
+    pub track: Track,
     /// Dry friction to which shares refer, N.
-    dry_n: f64,
+    pub dry_n: f64,
 }
 
-impl Sliding {
-    pub fn new(needle: &Needle, law: Option<&MembraneLaw>, (rows, track): (&[Row], Track), dry_n: f64) -> Self {
-        Self { model: Model::new(needle, law), rows: rows.to_vec(), track, dry_n }
-    }
-
+impl Sliding<'_> {
     /// Rows of the same hole up to the first of a window.
     fn past(&self, first: usize) -> std::ops::RangeInclusive<usize> {
         let of = |i: usize| (self.rows[i].recording, self.rows[i].push);
@@ -149,7 +113,7 @@ impl Sliding {
     }
 }
 
-impl Forward for Sliding {
+impl Forward for Sliding<'_> {
     fn of(&self) -> (RolloutOf, &str) {
         (RolloutOf::Force, "N")
     }
@@ -157,20 +121,13 @@ impl Forward for Sliding {
     fn windows(&self) -> Vec<Vec<usize>> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
         let of = |i: usize| (self.rows[i].stretch, self.rows[i].push);
-        consecutive(&all, &|i| self.rows[i].time_s, self.model.period_s, &|a, b| of(a) == of(b))
+        consecutive(&all, &|i| self.rows[i].time_s, self.needle.period_s, &|a, b| of(a) == of(b))
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
         let no_law = || NO_LAW.to_owned();
-        let mass = self.model.holds;
-        let mut plant: Vec<(&Candidate, &[f64])> =
-            study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
+        let (mass, values) = (self.needle.holds, fit.values);
+        let mut plant: Vec<(&Candidate, &[f64])> = fit.causes().filter(|(c, _)| c.kind == Kind::Plant).collect();
         // Friction that bends before it slides is subtracted from the dry friction, which must come first.
         plant.sort_by_key(|(c, _)| c.id != coulomb_friction::ID);
         // A hole that differs from one insertion to the next is no change in time.
@@ -178,25 +135,19 @@ impl Forward for Sliding {
             return Err(no_law());
         }
         let (candidates, own): (Vec<&Candidate>, Vec<&[f64]>) = plant.into_iter().unzip();
-        let effects = self.model.inertia(mass, values);
+        let effects = inertia(self.needle, mass, values);
         let effects =
             without_friction(&self.track, effects, self.dry_n, &candidates, &own.concat()).ok_or_else(no_law)?;
-        let mut beside: Vec<(&[f64], f64)> =
-            study.base[..self.model.holds].iter().map(Vec::as_slice).zip(values.iter().copied()).collect();
-        beside.extend(faults(study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Instrument)));
-        let moment = |i: &usize| Moment {
-            motion: self.track.rows[*i].motion,
-            drive: drive(study, *i, &beside),
-            beside: [0.0; 2],
-        };
-        let moments: Vec<Moment> = window.iter().map(moment).collect();
+        let of_faults = faults(fit.causes().filter(|(c, _)| c.kind == Kind::Instrument));
+        let beside: Vec<(&[f64], f64)> = fit.columns().take(mass).chain(of_faults).collect();
+        let row = |i: usize| (self.track.rows[i].motion, fit.less(i, &beside));
         let past = self.past(window[0]);
         let before: Vec<Motion> = past.clone().map(|i| self.track.rows[i].motion).collect();
         // A world's hole: as stiff as the sheet, and slightly stiffer, as in the regressors.
-        let first = mass + usize::from(self.model.two_fingered);
-        let of_world = self.model.law.map(|law| {
-            let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..law };
-            [rim(&law), rim(&stiffer)]
+        let first = mass + usize::from(self.needle.two_fingered);
+        let of_world = self.law.map(|law| {
+            let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..*law };
+            [rim(law), rim(&stiffer)]
         });
         let mut histories = [MembraneHistory::default(); 2];
         let mut held = |motion: &Motion| -> [f64; 2] {
@@ -206,12 +157,13 @@ impl Forward for Sliding {
         for motion in &before {
             held(motion);
         }
-        let worlds = self.model.law.map(|_| [values[first], values[first + 1], values[first + 2]]);
+        let worlds = self.law.map(|_| [values[first], values[first + 1], values[first + 2]]);
         let acts = &mut |motion: &Motion, _: [f64; 2]| {
             let Some([stiffer, factor, drag]) = worlds else { return 0.0 };
             let [own, other] = held(motion);
             stiffer * (other - own) + factor * own + drag * motion.velocity
         };
-        Ok(run(&moments, Side { effects: &effects, memory: remembered(&effects, &before), acts, driven: false }))
+        let memory = remembered(&effects, &before);
+        Ok(over(window, &row, Side { effects: &effects, memory, acts, driven: false }))
     }
 }

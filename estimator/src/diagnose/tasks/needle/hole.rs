@@ -2,11 +2,11 @@
 
 use super::held_needle::Sliding;
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data;
-use crate::diagnose::data::regression_data::{Bearing, Track, Zero};
+use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::basis_functions::generic_of;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -60,19 +60,17 @@ const HOLE_WAVES: u32 = 3;
 pub const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
-pub struct Shaft {
+pub struct Shaft<'a> {
     pub compared: Compared,
-    /// Variables of the plots of its rows.
-    pub view: View,
     /// Content of the base model, in words.
     pub model: &'static str,
     /// Dry friction of a first fit, N.
     dry_n: f64,
     /// Free-run model of the needle.
-    pub sliding: Sliding,
+    pub sliding: Sliding<'a>,
 }
 
-impl Shaft {
+impl Shaft<'_> {
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
         let rows = rows(needle);
@@ -83,6 +81,39 @@ impl Shaft {
             stretch: rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; rows.len()],
         }
+    }
+}
+
+impl Told for Shaft<'_> {
+    fn shows(&self, found: &Found<'_>) -> String {
+        match found.candidate.id {
+            coulomb_friction::ID => {
+                "in the hole the force turns round with the direction, whatever the speed".to_owned()
+            }
+            viscous_friction::ID => "in the hole the force follows the speed".to_owned(),
+            hysteresis::ID => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+            backlash::ID => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
+            stribeck::ID => "in the hole the friction falls with speed".to_owned(),
+            local_resistance::ID => {
+                "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
+            }
+            ALONG_THE_SHAFT => {
+                "the friction grows with the length that is in the hole, which no known cause does".to_owned()
+            }
+            friction_change::ID => "the shaft rubs differently from one insertion to the next".to_owned(),
+            other => format!("{other} shows in the force on the shaft"),
+        }
+    }
+
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+        Some(match candidate.id {
+            stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
+            backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
+            hysteresis::ID => {
+                (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend")
+            }
+            _ => return None,
+        })
     }
 }
 
@@ -174,7 +205,11 @@ fn candidates(
 const SHAFT_RESIDUAL_RATIO: f64 = 4.0;
 
 /// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
-pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Option<Shaft>, EstimateError> {
+pub fn shaft<'a>(
+    needle: &'a Needle,
+    law: Option<&'a MembraneLaw>,
+    rules: Rules,
+) -> Result<Option<Shaft<'a>>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
     if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_HOLE_ROWS {
@@ -204,10 +239,11 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result
     let channel = Channel::new(y, base, asked(&coarse, dry_n), layout, rules);
     let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, dry_n)?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
-    let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state };
-    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
+    let view = super::sheet::view(&rows);
+    let sliding = Sliding { needle, law, rows, track, dry_n: beside_n };
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state, view };
+    Ok(Some(Shaft { compared, model, dry_n, sliding }))
 }
 
 /// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
@@ -266,9 +302,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     let along = rows
         .iter()
         .map(|r| regression_data::Row {
-            recording: 0,
             stretch: r.stretch,
-            place: regression_data::Place::Along,
             motion: Motion {
                 time_s: r.time_s - start_s,
                 position: r.depth_m,
@@ -279,10 +313,9 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
             angle_rad: r.depth_m,
             along: Vec2::x(),
             force: Vec2::new(r.force_n, 0.0),
-            force_rate: Vec2::zeros(),
             y: r.force_n,
             span: r.span,
-            open: 0.0,
+            ..regression_data::Row::default()
         })
         .collect();
     Track {
@@ -290,48 +323,9 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         fine: needle.fine.iter().map(|p| regression_data::Fine { time_s: p.time_s - start_s, ..*p }).collect(),
         period_s: needle.period_s,
         raw_period_s: needle.period_s,
-        coordinate: Coordinate::Linear,
-        radius_m: None,
-        planar: false,
         velocity_noise: if needle.fine.is_empty() { needle.rate_noise_m_s } else { needle.slope_noise_m_s },
-        position_noise: 0.0,
         force_noise: 1e-12,
-        noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
-        hung: Vec::new(),
-        bearing: Bearing::default(),
-        slope: None,
-        extra: Vec::new(),
-        freely: None,
-        zero: Zero::Open,
-    }
-}
-
-/// Smallest sizes that matter, with the experiment that would show them.
-pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
-    Some(match candidate.id {
-        stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
-        backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
-        hysteresis::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
-        _ => return None,
-    })
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    match found.candidate.id {
-        coulomb_friction::ID => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
-        viscous_friction::ID => "in the hole the force follows the speed".to_owned(),
-        hysteresis::ID => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
-        backlash::ID => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
-        stribeck::ID => "in the hole the friction falls with speed".to_owned(),
-        local_resistance::ID => {
-            "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
-        }
-        ALONG_THE_SHAFT => {
-            "the friction grows with the length that is in the hole, which no known cause does".to_owned()
-        }
-        friction_change::ID => "the shaft rubs differently from one insertion to the next".to_owned(),
-        other => format!("{other} shows in the force on the shaft"),
+        ..Track::of(Coordinate::Linear)
     }
 }

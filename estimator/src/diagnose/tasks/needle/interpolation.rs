@@ -34,8 +34,7 @@ impl Between {
                     time_s: time_s[i] - time_s[0],
                     position: depth.value[i] - surface_m,
                     velocity: depth.slope[i],
-                    direction: 0.0,
-                    open: 0.0,
+                    ..Fine::default()
                 });
             }
         }

@@ -16,12 +16,11 @@ pub(crate) mod tests;
 pub(crate) mod time_delay;
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Part;
-use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, NextExperiment, NotExcited, parameter};
+use crate::diagnose::contract::{Alternative, Cause, Gain, NextExperiment, NotExcited, parameter};
 use crate::diagnose::findings::{DelayFindings, Findings};
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{coulomb_friction, force_bias, friction_change, viscous_friction};
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
@@ -33,6 +32,7 @@ use crate::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Needle, Puncture};
+use simulated_channels::InWorld;
 
 /// Scatter of puncture forces (χ² less its degrees of freedom) from which they are not of one sheet.
 const UNEVEN: f64 = 25.0;
@@ -44,7 +44,7 @@ pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let rules = Rules::of_channel(seen.period_s);
-    let sheet::Sheet { compared: sheet, view, pressed } = sheet::sheet(&seen, law, rules)?;
+    let sheet = sheet::sheet(&seen, law, rules)?;
     let shaft = hole::shaft(&seen, law, rules)?;
     let mut beside = Evidence {
         model: format!(
@@ -52,39 +52,34 @@ pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
             if law.is_some() { "sheet of the world" } else { "linear sheet" },
             shaft.as_ref().map_or("no hole", |s| s.model)
         ),
-        causes: faults.iter().cloned().chain(recordings.iter().flat_map(|r| sample_faults::faults(r).causes)).collect(),
+        causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
         warnings: left_out,
+        atlas: options.atlas,
         ..Evidence::default()
     };
-    beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.study, p)));
+    beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.compared.study, p)));
     if shaft.is_none() {
         let why = "the needle hardly moved in a hole; push it through and draw it out";
         let ids = [coulomb_friction::ID, friction_change::ID, viscous_friction::ID];
-        beside.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+        beside.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
     }
     if !seen.two_fingered {
         let why = "a single tool is held all the time: a bias of its force passes for its weight";
-        beside.not_excited.push(NotExcited { id: force_bias::ID.to_owned(), why: why.to_owned() });
+        beside.not_excited.push(NotExcited::new(force_bias::ID, why));
     }
-    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
-    let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| hole::shows(f));
-    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual).running(&pressed)];
-    if let Some(hole::Shaft { compared, sliding, .. }) = &shaft {
-        parts.push(compared.part(&on_shaft, &plain, &hole::usual).running(sliding));
+    let (on_sheet, in_hole) = (InWorld::of_sheet(&seen, law.is_some()), InWorld::of_hole(&seen, law.is_some()));
+    let mut parts =
+        vec![Part::of(&sheet.compared, &sheet).running(FreeRun::Channel(&sheet.pressed)).in_world(&on_sheet)];
+    if let Some(shaft) = &shaft {
+        parts.push(Part::of(&shaft.compared, shaft).running(FreeRun::Channel(&shaft.sliding)).in_world(&in_hole));
     }
-    let asked =
-        |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
+    let asked = |open: &[Alternative]| {
+        experiment::propose(open, (&seen, law), (&sheet.compared, shaft.as_ref())).or_else(|| next(open))
+    };
     let mut found = answer(&parts, Evidence { next: &asked, ..beside });
-    if options.atlas {
-        let of_shaft = |s: &hole::Shaft| s.compared.atlas(&s.view, sheet::best_seen);
-        found.atlas.channels.push(sheet.atlas(&view, sheet::best_seen));
-        found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
-    }
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
         found.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
-    found.hypotheses =
-        simulated_channels::hypotheses((&sheet, shaft.as_ref()), (seen.holds, seen.two_fingered), law.is_some());
     Ok(found)
 }
 
@@ -163,15 +158,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
 }
 
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
-    let first = open.first()?;
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment {
-        motion: "push in slowly and fast, draw back before the sheet gives way, push through at another place, move to and fro in the \
-                 hole, and end with the needle outside"
-            .to_owned(),
-        separates,
-        expected_power: 0.8,
-        experiment: None,
-    })
+    let motion = "push in slowly and fast, draw back before the sheet gives way, push through at another place, move to and fro in the \
+                  hole, and end with the needle outside";
+    NextExperiment::of_first(open, motion, 0.8)
 }

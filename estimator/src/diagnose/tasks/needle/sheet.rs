@@ -2,17 +2,18 @@
 
 use super::held_needle::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
+use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
 };
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -194,31 +195,60 @@ fn candidates(
     if law.is_some_and(|l| l.give > 0.0) {
         candidates.retain(|c| c.id != hysteresis::ID);
     }
-    let span = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
-    let term = |expression: &str, column: Vec<f64>| Candidate {
-        expression: Some(expression.to_owned()),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-    };
     // A curve of yet another form, so that the whitening is not too optimistic.
-    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
-    candidates.extend((1..=3).map(|n| {
-        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
-        term(&format!("cos({n} pi t/T)"), wave)
-    }));
+    candidates.push(Candidate::term("x²".to_owned(), "", vec![of(&|r| pressed(r).powi(2))]));
+    candidates.extend(slow_waves(&of(&|r| r.time_s), 3, ""));
     candidates
 }
 
 /// The comparison.
-pub struct Sheet {
+pub struct Sheet<'a> {
     pub compared: Compared,
-    /// Variables of the plots of its rows.
-    pub view: View,
     /// Free-run model of a needle outside and on the sheet.
-    pub pressed: Pressed,
+    pub pressed: Pressed<'a>,
+}
+
+impl Told for Sheet<'_> {
+    fn shows(&self, found: &Found<'_>) -> String {
+        match found.candidate.id {
+            stiffness_hardening::ID => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
+            hysteresis::ID => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
+            viscous_friction::ID => "the force on the sheet follows the speed".to_owned(),
+            force_bias::ID => "empty fingers feel a force along the needle".to_owned(),
+            force_drift::ID => "the force of the needle outside the sheet goes with time".to_owned(),
+            other => format!("{other} shows in the force on the sheet"),
+        }
+    }
+
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+        Some(match candidate.id {
+            stiffness_hardening::ID if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
+            hysteresis::ID => {
+                (1.0, "the needle was never drawn back before it went through; push, draw back and push on")
+            }
+            viscous_friction::ID => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
+            force_bias::ID => {
+                (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
+            }
+            force_drift::ID => {
+                (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording")
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// Variable that best shows a cause on a needle.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        stiffness_hardening::ID | hysteresis::ID => Variable::Depth,
+        viscous_friction::ID | coulomb_friction::ID | quadratic_drag::ID => Variable::Velocity,
+        _ => Variable::Time,
+    }
 }
 
 /// Compares them.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result<Sheet, EstimateError> {
+pub fn sheet<'a>(needle: &'a Needle, law: Option<&'a MembraneLaw>, rules: Rules) -> Result<Sheet<'a>, EstimateError> {
     let Columns { rows, floor_n, base, candidates } = columns(needle, law);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let y = of(&|r| r.force_n);
@@ -228,13 +258,13 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, rules: Rules) -> Result
     let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
     let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
-    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state };
     let view = View {
         // Rows on the sheet are apart from those of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
-    Ok(Sheet { compared, view, pressed: Pressed::new(needle, law, rows) })
+    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state, view };
+    Ok(Sheet { compared, pressed: Pressed { needle, law, rows } })
 }
 
 /// Weight of a row in the comparison, 1 for white noise. The rows are dealt out, so that whitening does not remove
@@ -303,16 +333,7 @@ pub fn view(rows: &[Row]) -> View {
         (Variable::Depth, of(&|r| r.depth_m)),
         (Variable::Velocity, of(&|r| r.rate_m_s)),
     ];
-    View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
-}
-
-/// Variable that best shows a cause on a needle.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        stiffness_hardening::ID | hysteresis::ID => Variable::Depth,
-        viscous_friction::ID | coulomb_friction::ID | quadratic_drag::ID => Variable::Velocity,
-        _ => Variable::Time,
-    }
+    View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over, best_seen) }
 }
 
 /// Deals the rows into segments of their own, like cards. A push lasts less than a second, so a held-out block of
@@ -333,30 +354,4 @@ fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
     }
     let dent = share * deepest;
     elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    match found.candidate.id {
-        stiffness_hardening::ID => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
-        hysteresis::ID => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
-        viscous_friction::ID => "the force on the sheet follows the speed".to_owned(),
-        force_bias::ID => "empty fingers feel a force along the needle".to_owned(),
-        force_drift::ID => "the force of the needle outside the sheet goes with time".to_owned(),
-        other => format!("{other} shows in the force on the sheet"),
-    }
-}
-
-/// Smallest sizes that matter, with the experiment that would show them.
-pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
-    Some(match candidate.id {
-        stiffness_hardening::ID if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
-        hysteresis::ID => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
-        viscous_friction::ID => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
-        force_bias::ID => {
-            (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
-        }
-        force_drift::ID => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
-        _ => return None,
-    })
 }

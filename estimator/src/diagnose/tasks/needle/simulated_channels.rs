@@ -1,14 +1,13 @@
-use super::hole::Shaft;
+use super::rows::Needle;
 use crate::diagnose::contract::parameter;
-use crate::diagnose::extension::hypothetical_worlds::{Act, Hypothesis, Simulated, of_channels};
+use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::hypotheses::{coulomb_friction, hysteresis, stiffness_hardening, viscous_friction};
-use crate::diagnose::selection::comparison::Compared;
 use haptics::Vec2;
 
 /// Estimated model of a sheet or a hole: a world's with a factor, or the plain one.
-pub(crate) struct Channel {
+pub struct InWorld {
     /// Name of its act.
     name: &'static str,
     /// Indices of the regressors in the base, and the names of their values.
@@ -16,7 +15,22 @@ pub(crate) struct Channel {
     two_fingered: bool,
 }
 
-impl Simulated for Channel {
+impl InWorld {
+    /// `has_law`: the model is the sheet of a world.
+    pub fn of_sheet(needle: &Needle, has_law: bool) -> Self {
+        let columns = vec![(needle.holds, if has_law { "factor" } else { "k" })];
+        Self { name: "sheet", columns, two_fingered: needle.two_fingered }
+    }
+
+    /// The same of a hole.
+    pub fn of_hole(needle: &Needle, has_law: bool) -> Self {
+        let first = needle.holds + usize::from(needle.two_fingered) + 1;
+        let columns = if has_law { vec![(first, "factor"), (first + 1, "c")] } else { Vec::new() };
+        Self { name: "hole", columns, two_fingered: needle.two_fingered }
+    }
+}
+
+impl Simulated for InWorld {
     fn base(&self, values: &[f64]) -> Vec<Act> {
         let value =
             |(k, name): &(usize, &'static str)| parameter(name, values.get(*k).copied().unwrap_or(0.0), 0.0, "");
@@ -31,14 +45,7 @@ impl Simulated for Channel {
             ("sheet", hysteresis::ID) | ("hole", coulomb_friction::ID | viscous_friction::ID | hysteresis::ID) => true,
             _ => false,
         };
-        let linear =
-            candidate.linear.iter().zip(values).map(|((name, unit), value)| parameter(name, *value, 0.0, unit));
-        let searched = candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit));
-        known.then(|| (format!("{}: {}", self.name, candidate.id), linear.chain(searched).collect()))
-    }
-
-    fn is_late(&self, _: &Candidate) -> bool {
-        false
+        known.then(|| (format!("{}: {}", self.name, candidate.id), candidate.parameters(values)))
     }
 
     /// Forces along the needle are downward pushes, of both fingers together.
@@ -55,21 +62,4 @@ impl Simulated for Channel {
             ..fault
         }
     }
-}
-
-/// The hypothesis as found, and those of every rival cause. `holds`: number of regressors of the base for the held
-/// weight.
-pub fn hypotheses(
-    (sheet, shaft): (&Compared, Option<&Shaft>),
-    (holds, two_fingered): (usize, bool),
-    has_law: bool,
-) -> Vec<Hypothesis> {
-    let of_sheet = vec![(holds, if has_law { "factor" } else { "k" })];
-    let first = holds + usize::from(two_fingered) + 1;
-    let of_hole = if has_law { vec![(first, "factor"), (first + 1, "c")] } else { Vec::new() };
-    let on_sheet = Channel { name: "sheet", columns: of_sheet, two_fingered };
-    let in_hole = Channel { name: "hole", columns: of_hole, two_fingered };
-    let mut all: Vec<(&_, &dyn Simulated)> = vec![(&sheet.study, &on_sheet)];
-    all.extend(shaft.map(|s| (&s.compared.study, &in_hole as &dyn Simulated)));
-    of_channels(&all)
 }

@@ -1,9 +1,7 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::recording::delay_scan::STEP_S;
-use crate::diagnose::recording::delay_scan::{Demands, Late, look};
-use crate::identify::linear::least_squares_values;
+use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 
 /// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
 /// change their contact phase.
@@ -29,9 +27,8 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
     }
     let compared: Vec<usize> = (0..needle.rows.len()).filter(|i| is_compared(needle, &needle.rows[*i])).collect();
     let columns = columns(needle, &compared);
-    let step = (STEP_S / forces.sample_s.max(1e-9)).round().max(1.0);
-    let late = look(step * forces.sample_s, &DEMANDS, &|by| left(forces, &compared, &columns, by * step as isize));
-    late.filter(|late| late.error_s.is_finite()).map(|late| Late { is_seen: late.is_seen && late.tau_s > 0.0, ..late })
+    let late = look_by_samples(forces.sample_s, &DEMANDS, &|by| left(forces, &compared, &columns, by));
+    late.map(|late| Late { is_seen: late.is_seen && late.tau_s > 0.0, ..late })
 }
 
 /// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
@@ -65,14 +62,5 @@ fn left(forces: &Forces<'_>, compared: &[usize], columns: &[Vec<f64>], by: isize
     let later = |i: usize| forces.of_row[i].checked_add_signed(by).and_then(|at| forces.force_n.get(at));
     let (kept, y): (Vec<usize>, Vec<f64>) =
         compared.iter().enumerate().filter_map(|(k, i)| Some((k, *later(*i)?))).unzip();
-    let columns: Vec<Vec<f64>> = columns
-        .iter()
-        .map(|column| kept.iter().map(|k| column[*k]).collect::<Vec<f64>>())
-        .filter(|column| column.iter().any(|v| *v != 0.0))
-        .collect();
-    if y.len() <= 2 * columns.len() {
-        return None;
-    }
-    let rms = least_squares_values(&columns, &y, None).ok()?.rms;
-    Some((rms * rms, y.len() as f64))
+    left_of_fit(columns.iter().map(|column| kept.iter().map(|k| column[*k]).collect()).collect(), &y)
 }

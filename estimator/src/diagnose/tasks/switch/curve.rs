@@ -7,8 +7,8 @@ use super::held_knob::Captured;
 use super::model::Known;
 use super::rows::direction;
 use super::throw::Push;
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::experiment::strokes::PEAK;
 use crate::diagnose::hypotheses::axis::Axis;
@@ -19,7 +19,7 @@ use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
 };
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -56,13 +56,15 @@ pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
     law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
 }
 
+/// The comparison.
+pub struct Beside {
+    pub compared: Compared,
+    /// Free-run model of a knob.
+    pub knob: Captured,
+}
+
 /// Compares the measured curve with the world's. `None` if too little of it was seen.
-pub fn curve(
-    push: &Push,
-    known: &Known<'_>,
-    period_s: f64,
-    rules: Rules,
-) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
+pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Result<Option<Beside>, EstimateError> {
     let viscous = push.compared.study.has(viscous_friction::ID);
     let mut times = Vec::new();
     let mut points = Vec::new();
@@ -97,10 +99,46 @@ pub fn curve(
     ];
     let state = vec![SystemState::Turning; points.len()];
     let recording = times.iter().map(|t| t.0).collect();
-    let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
+    let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over, best_seen) };
     let time = times.iter().map(|t| t.1).collect();
     let knob = Captured::new(&known.switch.curve, points, time, &stretch, period_s);
-    Ok(Some((Compared { study, channel, unit, floor, along, state }, view, knob)))
+    Ok(Some(Beside { compared: Compared { study, channel, unit, floor, along, state, view }, knob }))
+}
+
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        viscous_friction::ID => Variable::Velocity,
+        force_gain::ID => Variable::Force,
+        _ => Variable::Place,
+    }
+}
+
+impl Told for Beside {
+    fn shows(&self, found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+            friction_asymmetry::ID => {
+                format!("the knob asks for {value:+.2} N more than the world's in one direction alone")
+            }
+            viscous_friction::ID => "what the knob asks for beyond the world's goes with its speed".to_owned(),
+            return_spring::ID => "the knob is drawn to one place, the same in both directions".to_owned(),
+            local_resistance::ID => {
+                format!(
+                    "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
+                    1e3 * at("place")
+                )
+            }
+            force_gain::ID => format!(
+                "all forces are {:+.1} % of the world's too large; a switch that is harder by as much would look the same",
+                100.0 * value
+            ),
+            length_scale::ID => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
+            other => format!("{other} shows beside the world's curve"),
+        }
+    }
 }
 
 /// Position of the switch, which may have been moved, as a regressor.
@@ -140,15 +178,6 @@ pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = 
     })
 }
 
-/// Variable that best shows a cause beside the world's curve.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        viscous_friction::ID => Variable::Velocity,
-        force_gain::ID => Variable::Force,
-        _ => Variable::Place,
-    }
-}
-
 fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candidate> {
     let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
     let one = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
@@ -179,8 +208,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     for k in 1..=3 {
         let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
         for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
-            let expression = Some(format!("cos({k} pi x/X) {words}"));
-            found.push(Candidate { expression, ..one("other", "amplitude", "N", column) });
+            found.push(Candidate::term(format!("cos({k} pi x/X) {words}"), "N", vec![column]));
         }
     }
     found.into_iter().map(|c| seen(c, WORLD_STD_ERRORS * known.error_n)).collect()
@@ -194,30 +222,4 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
     let strange = if candidate.expression.is_some() { STRANGE_CURVE_RATIO } else { 1.0 };
     candidate.at_least(strange * least_n / size.max(1e-12))
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    let value = found.parameters.first().map_or(0.0, |p| p.value);
-    let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
-    match found.candidate.id {
-        coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
-        friction_asymmetry::ID => {
-            format!("the knob asks for {value:+.2} N more than the world's in one direction alone")
-        }
-        viscous_friction::ID => "what the knob asks for beyond the world's goes with its speed".to_owned(),
-        return_spring::ID => "the knob is drawn to one place, the same in both directions".to_owned(),
-        local_resistance::ID => {
-            format!(
-                "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
-                1e3 * at("place")
-            )
-        }
-        force_gain::ID => format!(
-            "all forces are {:+.1} % of the world's too large; a switch that is harder by as much would look the same",
-            100.0 * value
-        ),
-        length_scale::ID => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
-        other => format!("{other} shows beside the world's curve"),
-    }
 }

@@ -7,8 +7,7 @@ use super::rows::FREE_EVERY;
 use super::rows::{Place, Row, Seen, direction};
 use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
-use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
-use crate::diagnose::experiment::separation::{Imagined, separation};
+use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;
@@ -32,37 +31,16 @@ pub fn propose(
     seen: &Seen,
     (push, curve, known): (&Push, Option<&Compared>, Option<&Known<'_>>),
 ) -> Option<NextExperiment> {
-    let mut best: Option<NextExperiment> = None;
-    for count in THROWS {
+    proposal::shortest(open, THROWS, &|count| {
         let (asked, motion) = asked(seen, count)?;
-        let on_way = push.imagined(&imagine(seen, push, &motion));
-        let beside: Option<Imagined> = known.map(|known| {
+        let mut channels = vec![(push.imagined(&imagine(seen, push, &motion)), &push.compared.study)];
+        channels.extend(known.zip(curve).map(|(known, curve)| {
             let of = |t: &waypoints::Throw| (usize::from(!t.right), t.fast_m_s, 2.0 * asked.half_range);
-            curve::imagined(&motion.all().iter().map(of).collect::<Vec<_>>(), known, seen.period_s)
-        });
-        let told = |a: &Alternative| {
-            let pair = (a.instead_of.as_str(), a.id.as_str());
-            let on_curve = || separation(beside.as_ref()?, &curve?.study, pair);
-            separation(&on_way, &push.compared.study, pair).or_else(on_curve)
-        };
-        let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, told(a)?))).collect();
-        let least = told.iter().map(|t| t.1).reduce(f64::min)?;
-        let power = SURE_BY_MOTION * power(least);
-        if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
-            let mut separates: Vec<String> = Vec::new();
-            for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
-                if !separates.contains(id) {
-                    separates.push(id.clone());
-                }
-            }
-            let motion = format!("{WORDS}; {count} throws");
-            best = Some(NextExperiment { motion, separates, expected_power: power, experiment: Some(asked) });
-        }
-        if best.as_ref().is_some_and(|b| b.expected_power > LIKELY) {
-            break;
-        }
-    }
-    best
+            let throws: Vec<_> = motion.all().iter().map(of).collect();
+            (curve::imagined(&throws, known, seen.period_s), &curve.study)
+        }));
+        Some((asked, format!("{WORDS}; {count} throws"), channels))
+    })
 }
 
 /// The travel of the recorded throws, at least at their speed.
@@ -86,9 +64,7 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
         middle: middles.iter().sum::<f64>() / middles.len().max(1) as f64,
         half_range,
         fast: percentile(&mut speeds, 0.95).clamp(THROW_SPEEDS_M_S.0, THROW_SPEEDS_M_S.1),
-        across_n: 0.0,
-        added_weight_n: 0.0,
-        added_lever_m: 0.0,
+        ..Experiment::default()
     };
     // Long enough for that many throws: one begins as long as there is time.
     let mut seconds = 0.0;

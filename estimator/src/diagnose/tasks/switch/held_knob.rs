@@ -5,11 +5,11 @@ use super::model::asked_n;
 use super::rows::{Place, Row, direction};
 use super::throw::{Curve, along_m};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::free_run::channel::{Forward, consecutive};
-use crate::diagnose::free_run::integrate::{Moment, Side, run};
+use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
+use crate::diagnose::free_run::integrate::{Side, over};
+use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{local_resistance, return_spring, viscous_friction};
-use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::object::ToggleCurve;
 use haptics::law::{Effect, Inertia, Memories, Motion};
 
@@ -39,22 +39,15 @@ impl Travel {
         mass_kg: f64,
         drive: &dyn Fn(usize) -> f64,
         acts: &dyn Fn(&Motion) -> f64,
-    ) -> (f64, f64) {
-        let moment = |i: &usize| Moment {
-            motion: Motion {
-                time_s: self.time_s[*i],
-                position: self.place_m[*i],
-                velocity: self.speed_m_s[*i],
-                ..Motion::default()
-            },
-            drive: drive(*i),
-            beside: [0.0; 2],
+    ) -> Errors {
+        let row = |i: usize| {
+            let (time_s, position, velocity) = (self.time_s[i], self.place_m[i], self.speed_m_s[i]);
+            (Motion { time_s, position, velocity, ..Motion::default() }, drive(i))
         };
-        let moments: Vec<Moment> = window.iter().map(moment).collect();
         // A negative mass is noise of a zero one.
         let effects = [Effect::new(&Inertia, &[mass_kg.max(0.0)])];
         let acts = &mut |motion: &Motion, _: [f64; 2]| acts(motion);
-        run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: false })
+        over(window, &row, Side { effects: &effects, memory: Memories::default(), acts, driven: false })
     }
 }
 
@@ -103,26 +96,20 @@ impl Forward for Thrown {
         self.travel.windows()
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
         let side = self.travel.side[window[0]].unwrap_or(0);
-        let curve = self.curve(side, values);
+        let curve = self.curve(side, fit.values);
         let is_drag = |c: &Candidate| c.id == viscous_friction::ID;
-        let drag: f64 = study.with_values(picks, values).filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
+        let drag: f64 = fit.causes().filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
         let drive = |i: usize| {
-            let beside = study.with_values(picks, values).filter(|(c, _)| !is_drag(c));
-            study.y[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
+            let beside = fit.causes().filter(|(c, _)| !is_drag(c));
+            fit.study.y[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
         let acts = |motion: &Motion| {
             curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
         };
         // The mass is the last regressor of the model.
-        Ok(self.travel.errors(window, values[study.base.len() - 1], &drive, &acts))
+        Ok(self.travel.errors(window, fit.values[fit.study.base.len() - 1], &drive, &acts))
     }
 }
 
@@ -156,25 +143,18 @@ impl Forward for Captured {
         self.travel.windows()
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
         let side = self.points[window[0]].side;
         let goes_with_motion =
             |c: &Candidate| [viscous_friction::ID, return_spring::ID, local_resistance::ID].contains(&c.id);
         let drive = |i: usize| {
             let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
-            let beside = study.with_values(picks, values).filter(|(c, _)| !goes_with_motion(c));
+            let beside = fit.causes().filter(|(c, _)| !goes_with_motion(c));
             // The position of the switch is estimated.
-            let moved = values[0] * direction(side) * slope_n_m;
+            let moved = fit.values[0] * direction(side) * slope_n_m;
             left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
-        let laws: Vec<(&Candidate, &[f64])> =
-            study.with_values(picks, values).filter(|(c, _)| goes_with_motion(c)).collect();
+        let laws: Vec<(&Candidate, &[f64])> = fit.causes().filter(|(c, _)| goes_with_motion(c)).collect();
         let acts = |motion: &Motion| {
             let at_m = direction(side) * motion.position;
             let law = |(candidate, own): &(&Candidate, &[f64])| match (candidate.id, candidate.searched.as_slice()) {

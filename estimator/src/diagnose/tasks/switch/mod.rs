@@ -13,14 +13,11 @@ pub(crate) mod simulated_channels;
 pub(crate) mod stop;
 pub(crate) mod throw;
 
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Part;
-use crate::diagnose::contract::{Alternative, Cause, CauseParameter, NextExperiment, NotExcited};
+use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited};
 use crate::diagnose::findings::Findings;
-use crate::diagnose::free_run::pads::Pads;
-use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::{
     added_constraint, backlash, coulomb_friction, force_gain, friction_asymmetry, friction_change, hysteresis,
     length_scale, local_resistance, return_spring,
@@ -29,9 +26,9 @@ use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::tasks::switch::simulated_channels::InWorld;
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
-use held_knob::Captured;
 use model::Known;
 use throw::Push;
 
@@ -39,8 +36,8 @@ use throw::Push;
 struct Look {
     seen: rows::Seen,
     push: Push,
-    curve: Option<(Compared, View, Captured)>,
-    stop: Option<(Compared, View, Pads)>,
+    curve: Option<curve::Beside>,
+    stop: Option<stop::Pressed>,
 }
 
 fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
@@ -55,7 +52,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
     };
     // With another knob force or a sensor error, the knob rests at another position in its stops.
     let has_changed = push.compared.study.has(friction_change::ID);
-    let other = has_changed || curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty());
+    let other = has_changed || curve.as_ref().is_some_and(|c| !c.compared.study.chosen.is_empty());
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), rules)? };
     Ok(Look { seen, push, curve, stop })
 }
@@ -64,7 +61,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
 pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
     let bad: Vec<Vec<bool>> = recordings.iter().map(|r| sample_faults::faults(r).bad).collect();
     let Look { push, curve, stop, .. } = look(recordings, &bad, options)?;
-    Ok(std::iter::once(push.compared).chain(curve.map(|c| c.0)).chain(stop.map(|s| s.0)).collect())
+    Ok(std::iter::once(push.compared).chain(curve.map(|c| c.compared)).chain(stop.map(|s| s.compared)).collect())
 }
 
 /// Diagnoses recordings of one switch.
@@ -77,36 +74,26 @@ pub fn switch(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
         model: if has_world { "curve and stops of the world" } else { "any curve there and back, pads that give" }
             .to_owned(),
         causes: faults.iter().cloned().chain(of_samples.into_iter().flat_map(|f| f.causes)).collect(),
+        atlas: options.atlas,
         ..Evidence::default()
     };
     unseen(&seen, has_world, &mut beside);
-    let plain = |_: usize, _: &Candidate, found: Vec<CauseParameter>| found;
-    let (on_way, on_curve, on_stop) =
-        (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
-    let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual).running(&push.thrown)];
-    parts.extend(curve.as_ref().map(|(c, _, knob)| c.part(&on_curve, &plain, &|_| None).running(knob)));
-    parts.extend(stop.as_ref().map(|(s, _, pads)| s.part(&on_stop, &plain, &|_| None).running(pads)));
+    let mut parts = vec![Part::of(&push.compared, &push).running(FreeRun::Channel(&push.thrown))];
+    parts.extend(curve.as_ref().map(|c| Part::of(&c.compared, c).running(FreeRun::Channel(&c.knob))));
+    parts.extend(stop.as_ref().map(|s| Part::of(&s.compared, s).running(FreeRun::Channel(&s.pads))));
+    let parts: Vec<Part<'_>> = parts.into_iter().map(|part| part.in_world(&InWorld)).collect();
     let known = options.world.as_ref().and_then(Known::of);
     let asked = |open: &[Alternative]| {
-        experiment::propose(open, &seen, (&push, curve.as_ref().map(|c| &c.0), known.as_ref())).or_else(|| next(open))
+        let on_curve = curve.as_ref().map(|c| &c.compared);
+        experiment::propose(open, &seen, (&push, on_curve, known.as_ref())).or_else(|| next(open))
     };
-    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
-    if options.atlas {
-        let channels = &mut found.atlas.channels;
-        channels.push(push.compared.atlas(&push.view, throw::best_seen));
-        channels.extend(curve.as_ref().map(|(c, view, _)| c.atlas(view, curve::best_seen)));
-        channels.extend(stop.as_ref().map(|(s, view, _)| s.atlas(view, stop::best_seen)));
-    }
-    let beside = curve.iter().map(|(c, ..)| c).chain(stop.iter().map(|(s, ..)| s));
-    let compared = std::iter::once(&push.compared).chain(beside);
-    found.hypotheses = simulated_channels::hypotheses(&compared.map(|c| &c.study).collect::<Vec<_>>());
-    Ok(found)
+    Ok(answer(&parts, Evidence { next: &asked, ..beside }))
 }
 
 /// Causes that no recording of this kind shows.
 fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Evidence<'_>) {
     let mut add = |ids: &[&str], why: &str| {
-        beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
+        beside.not_excited.extend(ids.iter().map(|id| NotExcited::new(id, why)));
     };
     if !has_world {
         let why = "the curve is the recording's own; name a world that was captured before to compare it with";
@@ -130,15 +117,7 @@ fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Evidence<'_>) {
 
 /// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
-    let first = open.first()?;
-    let mut separates = vec![first.instead_of.clone()];
-    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment {
-        motion: "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
-                 two seconds before and after"
-            .to_owned(),
-        separates,
-        expected_power: 0.8,
-        experiment: None,
-    })
+    let motion = "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
+                  two seconds before and after";
+    NextExperiment::of_first(open, motion, 0.8)
 }

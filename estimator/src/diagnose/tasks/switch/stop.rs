@@ -3,15 +3,15 @@
 
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
-use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::answer::part::Told;
+use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{added_constraint, pad_compliance, stiffness_hardening};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -27,12 +27,14 @@ const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
+/// The comparison.
+pub struct Pressed {
+    pub compared: Compared,
+    pub pads: Pads,
+}
+
 /// Compares the causes that move the tip while it presses the knob against a stop. `None` if that was hardly done.
-pub fn stop(
-    seen: &Seen,
-    known: Option<&Known<'_>>,
-    rules: Rules,
-) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
+pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Option<Pressed>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
     if indices.len() < LEAST_STOP_ROWS {
         return Ok(None);
@@ -67,12 +69,30 @@ pub fn stop(
     let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let over = vec![(Variable::Force, of(&pressed)), (Variable::Time, of(&|r| r.time_s))];
     // The two stops are separate positions.
-    let view =
-        View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
+    let recording = rows.iter().map(|r| r.recording).collect();
+    let by_force = View::of(recording, over, |_| Variable::Force);
+    let view = View { sensor: rows.iter().map(side).collect(), ..by_force };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
     // Pads have damping: the first regressor is the rate.
     let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
-    Ok(Some((Compared { study, channel, unit: "m", floor, along, state }, view, pads)))
+    Ok(Some(Pressed { compared: Compared { study, channel, unit: "m", floor, along, state, view }, pads }))
+}
+
+impl Told for Pressed {
+    fn shows(&self, found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            pad_compliance::ID => {
+                format!(
+                    "pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give",
+                    1e3 * value
+                )
+            }
+            stiffness_hardening::ID => "pressed harder against a stop, the pads give less and less".to_owned(),
+            added_constraint::ID => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
+            other => format!("{other} shows on the stops"),
+        }
+    }
 }
 
 /// Candidates beside a world's switch: pads of another stiffness, and stops at other positions. `on`: rows on the right
@@ -99,22 +119,4 @@ fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<
         found.push(Candidate { expression, ..plant("other", "way", "m", rows).positive() }.at_least(least_m));
     }
     found
-}
-
-/// Variable that best shows a cause on the stops: the force on the knob.
-pub fn best_seen(_: &str) -> Variable {
-    Variable::Force
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    let value = found.parameters.first().map_or(0.0, |p| p.value);
-    match found.candidate.id {
-        pad_compliance::ID => {
-            format!("pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give", 1e3 * value)
-        }
-        stiffness_hardening::ID => "pressed harder against a stop, the pads give less and less".to_owned(),
-        added_constraint::ID => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
-        other => format!("{other} shows on the stops"),
-    }
 }

@@ -4,14 +4,15 @@
 
 use super::held_knob::Thrown;
 use super::rows::{Place, Row, Seen, direction};
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
@@ -36,8 +37,6 @@ const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
-    /// Variables of the plots of its rows.
-    pub view: View,
     /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
@@ -187,8 +186,8 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    let compared = Compared { study, channel, unit, floor, along, state };
-    Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
+    let compared = Compared { study, channel, unit, floor, along, state, view };
+    Ok(Push { compared, rows: kept, curves, forces_n: forces, thrown })
 }
 
 /// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
@@ -213,16 +212,7 @@ fn view(rows: &[Row]) -> View {
     ];
     let way = of(&|r| r.side().map_or(0.0, direction));
     let sensor = rows.iter().map(sensor).collect();
-    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
-}
-
-/// Variable that best shows a cause on the travel of the throws.
-pub fn best_seen(id: &str) -> Variable {
-    match id {
-        viscous_friction::ID => Variable::Velocity,
-        time_delay::ID => Variable::Place,
-        _ => Variable::Time,
-    }
+    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over, best_seen) }
 }
 
 /// Contribution of the chosen causes to the rows.
@@ -264,34 +254,15 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         let change = Candidate::one(friction_change::ID, Kind::Plant, "change", "N", column);
         found.push(change.at("from recording", (recording + 1) as f64, "1"));
     }
-    sensors(rows, &mut found);
+    found.extend(of_fingers(force_bias::ID, &BIAS, &|finger, axis| of(&|r| r.share(finger, axis))));
+    found.extend(of_fingers(force_drift::ID, &DRIFT, &|finger, axis| of(&|r| r.share(finger, axis) * r.time_s)));
     for k in 1..=3 {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
         let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
-        let expression = Some(format!("cos({k} pi t/T), the same way in both directions"));
-        found.push(Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "N", column) });
+        let expression = format!("cos({k} pi t/T), the same way in both directions");
+        found.push(Candidate::term(expression, "N", vec![column]));
     }
     found
-}
-
-/// A bias or a drift of single channels, of a finger, or of all.
-fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
-    const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
-    const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
-    let mut all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], size: &dyn Fn(&Row) -> f64| {
-        let column = |f: usize, axis: usize| rows.iter().map(|r| r.share(f, axis) * size(r)).collect::<Vec<f64>>();
-        for (finger, names) in names.iter().enumerate() {
-            for (axis, (name, unit)) in names.iter().enumerate() {
-                found.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
-            }
-            let both = vec![column(finger, 0), column(finger, 1)];
-            found.push(Candidate::several(id, Kind::Instrument, both, names.to_vec()));
-        }
-        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
-        found.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
-    };
-    all(force_bias::ID, &BIAS, &|_| 1.0);
-    all(force_drift::ID, &DRIFT, &|r| r.time_s);
 }
 
 impl Push {
@@ -310,9 +281,19 @@ impl Push {
         let curve = self.curves.iter().find(|c| c.side == side)?;
         curve.places.first().copied().zip(curve.places.last().copied())
     }
+}
 
-    /// Sentence on how the residual shows a cause.
-    pub fn shows(found: &Found<'_>) -> String {
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        viscous_friction::ID => Variable::Velocity,
+        time_delay::ID => Variable::Place,
+        _ => Variable::Time,
+    }
+}
+
+impl Told for Push {
+    fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
             viscous_friction::ID => {
@@ -331,8 +312,7 @@ impl Push {
         }
     }
 
-    /// Smallest sizes that matter, with the experiment that would show them.
-    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         Some(match (candidate.id, candidate.linear[0].0) {
             (viscous_friction::ID, _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
             (friction_change::ID, "change") => (0.05, "there were few throws; go on for longer"),

@@ -61,21 +61,20 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
 /// Residual RMS of the heights of all flights: with standard gravity, with their common fall, and with each one's own,
 /// m.
 pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
-    let falls = [Some(gravity_m_s2), Some(seen.fall.down_m_s2), None];
-    let flights = seen.tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
-    let all: Vec<[f64; 4]> = flights
-        .map(|(track, n)| {
-            let [by_gravity, in_common, own] = falls.map(|down| left(track, n, down));
-            [by_gravity, in_common, own, n as f64]
-        })
-        .collect();
-    let sum = without_hidden_blows(all).iter().fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
+    let squares = squares(&seen.tracks, [gravity_m_s2, seen.fall.down_m_s2]);
+    let sum = squares.iter().fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
     [0, 1, 2].map(|k| (sum[k] / sum[3].max(1.0)).sqrt())
 }
 
-/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more
-/// than others do.
-fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+/// Residual sums of squares of the heights of each flight with two accelerations and with its own, m², and its rows.
+/// Flights with a blow that was not seen say nothing: they stray from their own parabolas far more than others do.
+fn squares(tracks: &[Track], [first, second]: [f64; 2]) -> Vec<[f64; 4]> {
+    let flights = tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
+    let of = |(track, n): (&Track, usize)| {
+        let [by_first, by_second, own] = [Some(first), Some(second), None].map(|down| left(track, n, down));
+        [by_first, by_second, own, n as f64]
+    };
+    let squares: Vec<[f64; 4]> = flights.map(of).collect();
     let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
     own.sort_by(f64::total_cmp);
     let usual = 9.0 * own.get(own.len() / 2).copied().unwrap_or(f64::INFINITY);
@@ -89,17 +88,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         if k % HELD_OUT_THROWS == HELD_OUT_THROWS - 1 { &mut tested } else { &mut others }.push(track.clone());
     }
     let Some(fall) = Fall::of(&others) else { return Gain::default() };
-    let squares: Vec<[f64; 4]> = tested
-        .iter()
-        .filter_map(|track| {
-            let n = end(track);
-            (n >= least(track)).then(|| {
-                let of = |down: Option<f64>| left(track, n, down);
-                [of(Some(gravity_m_s2)), of(Some(fall.down_m_s2)), of(None), n as f64]
-            })
-        })
-        .collect();
-    let squares = without_hidden_blows(squares);
+    let squares = squares(&tested, [gravity_m_s2, fall.down_m_s2]);
     let share = |of: &mut dyn Iterator<Item = &[f64; 4]>| {
         let sum = of.fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
         (((sum[0] - sum[1]) / (sum[0] - sum[2]).max(1e-3 * sum[0]).max(1e-300)).min(1.0), sum)
@@ -122,8 +111,6 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         heldout_rms_after: (sum[1] / sum[3].max(1.0)).sqrt(),
         share_of_explainable: all,
         interval: [all - 1.96 * spread, (all + 1.96 * spread).min(1.0)],
-        no_share: None,
-        in_turn: false,
         unit: Some("m".to_owned()),
         ..Gain::default()
     }

@@ -1,15 +1,15 @@
 //! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and
 //! after.
 
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::hypotheses::candidate;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::velocity_loss;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
@@ -50,14 +50,16 @@ const OVER_MEDIAN: f64 = 1.4826;
 /// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
 const UNSEEN: f64 = 0.29;
 
+/// The comparison.
+pub struct Blows {
+    pub compared: Compared,
+    /// Error of a restitution that no scatter shows: the ground may push on behind a blow, the more of it the longer the
+    /// time between samples.
+    pushed: f64,
+}
+
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
-/// The number is the error of a restitution that no scatter shows: the ground may push on behind a blow, the more of it
-/// the longer the time between samples.
-pub fn blow(
-    seen: &Tossed,
-    half_width_m: f64,
-    restitution: f64,
-) -> Result<Option<(Compared, View, f64)>, EstimateError> {
+pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Blows>, EstimateError> {
     let pairs: Vec<(f64, f64)> =
         seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
     if pairs.len() < LEAST_BLOWS {
@@ -84,10 +86,28 @@ pub fn blow(
         candidate.searched.push(candidate::Searched { name: "e of the model", value: restitution, unit: "1" });
     }
     // A throw has one blow, so all of them are shown together, over their speed before impact.
-    let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
+    let over = vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())];
+    let view = View::of(Vec::new(), over, |_| Variable::Velocity);
     // Segmentation has no state for a blow.
     let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
-    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, state }, view, pushed)))
+    Ok(Some(Blows { compared: Compared { study, channel, unit: "m/s", floor, along, state, view }, pushed }))
+}
+
+impl Told for Blows {
+    /// Restitution from its change against the model.
+    fn states(&self, _: usize, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        let model = candidate.searched.first().map_or(1.0, |s| s.value);
+        found
+            .first()
+            .map(|p| parameter("e", model + p.value, p.std_error.hypot(self.pushed), "1"))
+            .into_iter()
+            .collect()
+    }
+
+    fn shows(&self, found: &Found<'_>) -> String {
+        let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
+        format!("the corner that hits first leaves with {value:.3} ± {error:.3} of the speed it came with")
+    }
 }
 
 /// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one
@@ -101,11 +121,6 @@ fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let off = |(before, after): &(f64, f64)| (after - kept * before).abs();
     let scatter_m_s = OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
     (pairs.into_iter().filter(|pair| off(pair) <= TWO * scatter_m_s).collect(), scatter_m_s)
-}
-
-/// Variable that best shows a cause in the impacts.
-pub fn best_seen(_: &str) -> Variable {
-    Variable::Velocity
 }
 
 /// Upward velocity of the corner that hits first, before and after, m/s.
@@ -213,16 +228,4 @@ fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
         DVector::from_fn(time.len(), |i, _| track.points[range.start + i].z + 0.5 * fall_m_s2 * time[i].powi(2));
     let solved = own.pseudo_inverse(1e-12).ok()? * place;
     Some(Free { point: (middle_s, solved[0]), speed_m_s: solved[1] })
-}
-
-/// Restitution from its change against the model. `pushed`: its error beside that of the scatter.
-pub fn states(candidate: &Candidate, found: &[CauseParameter], pushed: f64) -> Vec<CauseParameter> {
-    let model = candidate.searched.first().map_or(1.0, |s| s.value);
-    found.first().map(|p| parameter("e", model + p.value, p.std_error.hypot(pushed), "1")).into_iter().collect()
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
-    format!("the corner that hits first leaves with {value:.3} ± {error:.3} of the speed it came with")
 }

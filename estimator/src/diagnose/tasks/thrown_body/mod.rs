@@ -6,17 +6,15 @@ pub(crate) mod impact;
 pub(crate) mod sliding;
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Part;
-use crate::diagnose::contract::{Alternative, Baseline, Cause, CauseParameter, Final, NextExperiment, NotExcited};
+use crate::diagnose::contract::{Alternative, Baseline, Cause, Final, NextExperiment, NotExcited};
 use crate::diagnose::findings::{Figures, Findings};
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{channel_fault, coulomb_friction, length_scale, load_friction, velocity_loss};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::estimate::EstimateError;
-use crate::identify::tossed::pose::Track;
 use crate::identify::tossed::slide::unknown_of_foot;
 use crate::identify::tossed::{Tossed, tossed};
 use haptics::recording::Recording;
@@ -30,7 +28,8 @@ pub fn impact(recordings: &[Recording], options: &Options) -> Option<Result<Find
 fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Result<Findings, EstimateError> {
     let meta = &recordings[0].meta;
     let floor = options.world.as_ref().and_then(|w| w.floor.as_ref());
-    let sliding = sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)))?;
+    let sliding =
+        sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)), mean_friction(seen))?;
     let half_width_m = meta.known.get("half_width_m").copied();
     let scaled = flight::scale(seen, meta.gravity());
     let recorded = if scaled.is_some() { seen.fall.down_m_s2 / meta.gravity() } else { 1.0 };
@@ -41,7 +40,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     };
     let mut beside = Evidence {
         model: "free-fall+impact without loss+sliding without friction".to_owned(),
-        causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
+        causes: sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect(),
         ..Evidence::default()
     };
     if floor.is_some() {
@@ -51,8 +50,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         beside.causes.push(cause);
         beside.alternatives.push(alternative);
     }
-    let mut unseen =
-        |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let mut unseen = |id: &str, why: &str| beside.not_excited.push(NotExcited::new(id, why));
     if half_width_m.is_some() && blow.is_none() {
         unseen(velocity_loss::ID, "too few impacts on one corner, with free flight before and after, were seen");
     }
@@ -66,24 +64,11 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         coulomb_friction::ID,
         "the body slides under its own weight only: friction in proportion to the load and a constant one are the same",
     );
-    let mean = mean_friction(seen);
-    let slides = |_: usize, c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
-    let pushed = blow.as_ref().map_or(0.0, |(_, _, pushed)| *pushed);
-    let loses = |_: usize, c: &Candidate, found: Vec<CauseParameter>| impact::states(c, &found, pushed);
-    let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| impact::shows(f));
-    let step_s = seen.tracks.first().map_or(0.0, Track::step_s);
-    let run = sliding.as_ref().map(|(compared, _)| sliding::Slides { compared, step_s });
-    let mut parts: Vec<Part<'_>> = Vec::new();
-    parts.extend(run.as_ref().map(|run| run.compared.part(&slide_shows, &slides, &|_| None).running(run)));
-    parts.extend(blow.as_ref().map(|(b, _, _)| b.part(&blow_shows, &loses, &|_| None).still(AT_AN_INSTANT)));
+    let slides = sliding.as_ref().map(|slides| Part::of(&slides.compared, slides).running(FreeRun::Channel(slides)));
+    let blows = blow.as_ref().map(|blows| Part::of(&blows.compared, blows).running(FreeRun::None(AT_AN_INSTANT)));
+    let parts: Vec<Part<'_>> = slides.into_iter().chain(blows).collect();
     let figures = of_falls(seen, meta.gravity(), &beside.causes);
-    let mut found = answer(&parts, Evidence { figures, next: &next, ..beside });
-    if options.atlas {
-        let channels = &mut found.atlas.channels;
-        channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::best_seen)));
-        channels.extend(blow.as_ref().map(|(b, view, _)| b.atlas(view, impact::best_seen)));
-    }
-    Ok(found)
+    Ok(answer(&parts, Evidence { figures, next: &next, atlas: options.atlas, ..beside }))
 }
 
 /// Figures of the falls, for throws without anything else to compare.
@@ -130,6 +115,5 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     } else {
         "let the body slide flat from several speeds, and load it with a known weight"
     };
-    let separates = vec![first.instead_of.clone(), first.id.clone()];
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None })
+    Some(NextExperiment::in_words(motion, vec![first.instead_of.clone(), first.id.clone()], 0.9))
 }

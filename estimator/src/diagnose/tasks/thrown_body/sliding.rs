@@ -1,19 +1,21 @@
 //! Causes that slow a sliding body: dry friction, or a resistance that depends on the speed.
 
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
-use crate::diagnose::free_run::channel::{Forward, columns};
+use crate::diagnose::free_run::channel::{Fit, Forward};
+use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
+use crate::identify::tossed::pose::Track;
 use crate::identify::tossed::slide::Slide;
 use crate::segment::SystemState;
 use crate::signal::derive::polynomial;
@@ -37,8 +39,8 @@ struct Way {
     direct: Vec<f64>,
 }
 
-/// Compares the causes that slow the body. `mu`: friction of the model.
-pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, EstimateError> {
+/// Compares the causes that slow the body. `mu`: friction of the model; `scatter`: as in [`Slides`].
+pub fn sliding(seen: &Tossed, mu: f64, scatter: f64) -> Result<Option<Slides>, EstimateError> {
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
     }
@@ -89,19 +91,54 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
     // A single slide is short, so all are shown together.
-    let view = View::of(Vec::new(), over);
+    let view = View::of(Vec::new(), over, best_seen);
     let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
-    Ok(Some((Compared { study, channel, unit: "m", floor, along, state }, view)))
+    let step_s = seen.tracks.first().map_or(0.0, Track::step_s);
+    let compared = Compared { study, channel, unit: "m", floor, along, state, view };
+    Ok(Some(Slides { compared, step_s, scatter }))
 }
 
-/// Free-run simulation of slides. Their regressors are decelerations already integrated twice, each from its own start.
-pub struct Slides<'a> {
-    pub compared: &'a Compared,
+/// The comparison. Its regressors are decelerations already integrated twice, each from its own start.
+pub struct Slides {
+    pub compared: Compared,
     /// Time between samples, s.
-    pub step_s: f64,
+    step_s: f64,
+    /// Standard error of the friction by the scatter of the slides, which is larger than that of their samples.
+    scatter: f64,
 }
 
-impl Forward for Slides<'_> {
+/// Variable that best shows a cause.
+fn best_seen(id: &str) -> Variable {
+    if id == load_friction::ID { Variable::Time } else { Variable::Velocity }
+}
+
+impl Told for Slides {
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        if candidate.id == load_friction::ID {
+            for p in &mut found {
+                p.std_error = p.std_error.hypot(self.scatter);
+            }
+        }
+        found
+    }
+
+    fn shows(&self, found: &Found<'_>) -> String {
+        match found.candidate.id {
+            load_friction::ID => {
+                let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
+                format!(
+                    "the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}"
+                )
+            }
+            viscous_friction::ID => "the faster the body slides, the more it slows down".to_owned(),
+            quadratic_drag::ID => "the body slows down with the square of its speed".to_owned(),
+            stribeck::ID => "the body slows down more just before it stops".to_owned(),
+            other => format!("{other} shows in the slides"),
+        }
+    }
+}
+
+impl Forward for Slides {
     fn of(&self) -> (RolloutOf, &str) {
         (RolloutOf::Position, "m")
     }
@@ -117,22 +154,10 @@ impl Forward for Slides<'_> {
         self.step_s * longest.saturating_sub(1) as f64
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
-        let columns: Vec<(&[f64], f64)> = columns(study, picks, values).collect();
-        let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| value * column[*i]).sum::<f64>();
-        Ok((window.iter().map(|i| left(i).powi(2)).sum(), window.len() as f64))
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let columns: Vec<(&[f64], f64)> = fit.columns().collect();
+        Ok((window.iter().map(|i| fit.less(*i, &columns).powi(2)).sum(), window.len() as f64))
     }
-}
-
-/// Variable that best shows a cause in the slides.
-pub fn best_seen(id: &str) -> Variable {
-    if id == load_friction::ID { Variable::Time } else { Variable::Velocity }
 }
 
 fn way(seen: &Tossed, slide: &Slide) -> Option<Way> {
@@ -215,30 +240,4 @@ fn floor(ways: &[Way]) -> f64 {
         n += way.time_s.len() as f64 - 4.0;
     }
     (sum / n.max(1.0)).sqrt()
-}
-
-/// Parameters for the answer. Slides scatter more than their samples do: `scatter` is the standard error from it.
-pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
-    if candidate.id == load_friction::ID {
-        for p in &mut found {
-            p.std_error = p.std_error.hypot(scatter);
-        }
-    }
-    found
-}
-
-/// Sentence on how the residual shows a cause.
-pub fn shows(found: &Found<'_>) -> String {
-    match found.candidate.id {
-        load_friction::ID => {
-            let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
-            format!(
-                "the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}"
-            )
-        }
-        viscous_friction::ID => "the faster the body slides, the more it slows down".to_owned(),
-        quadratic_drag::ID => "the body slows down with the square of its speed".to_owned(),
-        stribeck::ID => "the body slows down more just before it stops".to_owned(),
-        other => format!("{other} shows in the slides"),
-    }
 }

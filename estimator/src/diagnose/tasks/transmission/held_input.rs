@@ -4,13 +4,12 @@
 
 use super::rows::{Row, Seen, TRANSMISSION_ROW_HZ};
 use crate::diagnose::contract::RolloutOf;
-use crate::diagnose::free_run::channel::{Forward, consecutive};
-use crate::diagnose::free_run::integrate::{Moment, Side, remembered, run};
-use crate::diagnose::free_run::windows::NO_LAW;
+use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
+use crate::diagnose::free_run::integrate::{Side, over, remembered};
+use crate::diagnose::free_run::windows::{Errors, NO_LAW};
 use crate::diagnose::hypotheses::{
     coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
-use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
 };
@@ -45,9 +44,9 @@ impl Input {
     }
 
     /// Laws of the causes; `None` if one has no law.
-    fn effects(&self, study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
-        let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
-        for (candidate, own) in study.with_values(picks, values) {
+    fn effects(&self, fit: &Fit<'_>) -> Option<Vec<Effect>> {
+        let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[fit.values[self.inertia].max(0.0)])], 0.0);
+        for (candidate, own) in fit.causes() {
             match candidate.id {
                 coulomb_friction::ID => dry += own[0],
                 // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
@@ -89,25 +88,16 @@ impl Forward for Input {
         })
     }
 
-    fn errors(
-        &self,
-        study: &ChannelFit,
-        window: &[usize],
-        picks: &[usize],
-        values: &[f64],
-    ) -> Result<(f64, f64), String> {
-        let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let effects = self.effects(fit).ok_or_else(|| NO_LAW.to_owned())?;
         // The sensors' zeros and the load drive it; they are no laws.
-        let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();
-        let moment = |i: &usize| {
-            let known: f64 = beside.iter().map(|k| values[*k] * study.base[*k][*i]).sum();
-            Moment { motion: self.motion(*i), drive: study.y[*i] - known, beside: [0.0; 2] }
-        };
-        let moments: Vec<Moment> = window.iter().map(moment).collect();
+        let of_model = fit.columns().take(fit.study.base.len()).enumerate().filter(|(k, _)| *k != self.inertia);
+        let beside: Vec<(&[f64], f64)> = of_model.map(|(_, column)| column).collect();
+        let row = |i: usize| (self.motion(i), fit.less(i, &beside));
         let first = window[0];
         let began = (0..first).rev().find(|i| self.rows[*i].recording != self.rows[first].recording);
         let past: Vec<Motion> = (began.map_or(0, |i| i + 1)..=first).map(|i| self.motion(i)).collect();
-        let acts = &mut |_: &Motion, _: [f64; 2]| 0.0;
-        Ok(run(&moments, Side { effects: &effects, memory: remembered(&effects, &past), acts, driven: false }))
+        let memory = remembered(&effects, &past);
+        Ok(over(window, &row, Side { effects: &effects, memory, acts: &mut |_, _| 0.0, driven: false }))
     }
 }

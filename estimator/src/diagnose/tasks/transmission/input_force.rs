@@ -3,13 +3,17 @@
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
 use super::held_input::Input;
-use super::load_confounding::Told;
+use super::load_confounding::Confounding;
 use super::rows::{Columns, Row, Seen, constants, stretches_of};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{
     coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
-use crate::diagnose::tasks::transmission::{Side, fit, generic};
+use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -28,9 +32,9 @@ fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
 
 /// The comparison with its free-run model.
 pub struct Force {
-    pub side: Side,
+    pub compared: Compared,
     /// Separability of friction and load.
-    pub told: Option<Told>,
+    pub told: Option<Confounding>,
     /// Free-run model of the input.
     pub input: Input,
 }
@@ -79,9 +83,24 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
         fit(of(&|r| r.force.unwrap_or(0.0)), &base, candidates, &rows)
     };
     let study = closer(&mut [Tried::new(hysteresis::ID, high - low)], &once)?;
-    let told = if is_loaded { Told::of(&study, load, &direction, &rows) } else { None };
+    let told = if is_loaded { Confounding::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
     let input = Input::new((&rows, &stretch), names.force_unit, inertia, seen);
-    let side = Side::new(study, rows, ("force at the input", names.force_unit), floor);
-    Ok(Some(Force { side, told, input }))
+    let compared = compared(study, (&rows, names), ("force at the input", names.force_unit), floor);
+    Ok(Some(Force { compared, told, input }))
+}
+
+impl Told for Force {
+    fn shows(&self, found: &Found<'_>) -> String {
+        shows(found)
+    }
+
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        if let (Some(confounding), true) = (&self.told, candidate.id == coulomb_friction::ID) {
+            for p in &mut found {
+                p.std_error = p.std_error.hypot(confounding.error(p.value));
+            }
+        }
+        found
+    }
 }

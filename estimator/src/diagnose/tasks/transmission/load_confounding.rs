@@ -15,7 +15,7 @@ const SHAPE: f64 = 0.03;
 const LEAST_OWN_MEAN_SQUARE: f64 = 1e-6;
 
 /// Separability of a load from dry friction.
-pub struct Told {
+pub struct Confounding {
     /// Share of the load's own part (beyond the other regressors) that may be noise or another shape of the reversal, 0
     /// to 1.
     noise: f64,
@@ -25,7 +25,7 @@ pub struct Told {
     weight: f64,
 }
 
-impl Told {
+impl Confounding {
     /// Separability in a comparison whose base model has the load as regressor `load`. `direction`: the regressor of
     /// dry friction, a value per row.
     pub fn of(study: &ChannelFit, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {

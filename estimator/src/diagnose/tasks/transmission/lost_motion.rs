@@ -3,12 +3,14 @@
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
 use super::rows::{Columns, Row, Seen, constants, ratio, spread};
+use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
-use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::tasks::transmission::{Side, fit, generic};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -20,8 +22,16 @@ const LOST_MOTION_SHARES: [f64; 2] = [0.1, 2.0];
 const OUTPUT_NOISES: f64 = 2.0;
 const STEPS_OF_SENSOR: f64 = 0.5;
 
+/// The comparison.
+pub struct Way {
+    pub compared: Compared,
+    names: &'static Columns,
+    /// Steps of the output's sensor.
+    step: f64,
+}
+
 /// The output against the input.
-pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> {
+pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let (low, high) = seen.ends();
     let kept: Vec<usize> = (0..seen.rows.len()).collect();
     let rows = &seen.rows;
@@ -79,40 +89,42 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     };
     let mut tried = [backlash::ID, hysteresis::ID].map(|id| Tried::new(id, high - low));
     let study = closer(&mut tried, &once)?;
-    Ok(Side::new(study, rows.clone(), ("output's place", names.unit), noise))
+    let compared = compared(study, (rows, names), ("output's place", names.unit), noise);
+    Ok(Way { compared, names, step: seen.step })
 }
 
-/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known
-/// better than the gap is.
-pub fn as_of_input(
-    study: &ChannelFit,
-    k: usize,
-    mut found: Vec<CauseParameter>,
-    (names, step): (&Columns, f64),
-) -> Vec<CauseParameter> {
-    let candidate = study.chosen[k].candidate;
-    let own = &study.candidates[candidate];
-    let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
-    // An output at rest within a gap shows one step of its sensor, whatever its exact position.
-    let unseen = step / 12.0_f64.sqrt() / ratio.abs();
-    let searched = own.searched.first().map_or(f64::INFINITY, |s| s.value);
-    for p in &mut found {
-        match p.name.as_str() {
-            "share" => {
-                let error = (p.std_error / ratio).abs();
-                (p.value, p.std_error) = (p.value / ratio, error.hypot(unseen / searched));
-            }
-            "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
-            "tau" => {
-                // Noise of a regressor biases its coefficient towards zero.
-                let small = p.value * noise_of_own(study, candidate);
-                (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
-            }
-            "k" if own.id == pad_compliance::ID => p.unit = format!("{}/{}", names.force_unit, names.unit),
-            _ => {}
-        }
+impl Told for Way {
+    fn shows(&self, found: &Found<'_>) -> String {
+        shows(found)
     }
-    found
+
+    /// Parameters for the input: the output moves by the ratio. Of a gap's share it is not known better than the gap is.
+    fn states(&self, k: usize, _: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        let (study, names, step) = (&self.compared.study, self.names, self.step);
+        let candidate = study.chosen[k].candidate;
+        let own = &study.candidates[candidate];
+        let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
+        // An output at rest within a gap shows one step of its sensor, whatever its exact position.
+        let unseen = step / 12.0_f64.sqrt() / ratio.abs();
+        let searched = own.searched.first().map_or(f64::INFINITY, |s| s.value);
+        for p in &mut found {
+            match p.name.as_str() {
+                "share" => {
+                    let error = (p.std_error / ratio).abs();
+                    (p.value, p.std_error) = (p.value / ratio, error.hypot(unseen / searched));
+                }
+                "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
+                "tau" => {
+                    // Noise of a regressor biases its coefficient towards zero.
+                    let small = p.value * noise_of_own(study, candidate);
+                    (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
+                }
+                "k" if own.id == pad_compliance::ID => p.unit = format!("{}/{}", names.force_unit, names.unit),
+                _ => {}
+            }
+        }
+        found
+    }
 }
 
 /// Noise share of a candidate's first regressor after whitening.

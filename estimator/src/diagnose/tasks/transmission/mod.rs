@@ -9,11 +9,12 @@ pub(crate) mod load_confounding;
 pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
-use crate::diagnose::answer::atlas::View;
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
-use crate::diagnose::contract::{CauseParameter, NotExcited};
+use crate::diagnose::answer::part::Part;
+use crate::diagnose::contract::NotExcited;
 use crate::diagnose::findings::Findings;
+use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
@@ -23,12 +24,11 @@ use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
-use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, columns, stretches_of};
 
@@ -44,19 +44,21 @@ pub fn is_driven(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_some() && columns(r).is_some())
 }
 
-/// Comparison of one channel, with its rows.
-pub(crate) struct Side {
-    compared: Compared,
-    rows: Vec<Row>,
-}
-
-impl Side {
-    fn new(study: ChannelFit, rows: Vec<Row>, what: (&'static str, &'static str), floor: f64) -> Self {
-        let n = rows.len();
-        let (channel, unit) = what;
-        let (along, state) = (vec![true; n], vec![SystemState::Turning; n]);
-        Self { compared: Compared { study, channel, unit, floor, along, state }, rows }
-    }
+/// The comparison of a channel, with the variables of its plots.
+fn compared(
+    study: ChannelFit,
+    (rows, names): (&[Row], &Columns),
+    (channel, unit): (&'static str, &'static str),
+    floor: f64,
+) -> Compared {
+    let (along, state) = (vec![true; rows.len()], vec![SystemState::Turning; rows.len()]);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
+    let over =
+        vec![(Variable::Place, of(&|r| r.input)), (Variable::Velocity, of(&|r| r.rate)), (Variable::Load, of(&load))];
+    let recording = rows.iter().map(|r| r.recording).collect();
+    let view = View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over, best_seen) };
+    Compared { study, channel, unit, floor, along, state, view }
 }
 
 /// Diagnoses recordings of one transmission.
@@ -65,15 +67,15 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let mut seen = Seen::of(recordings, names);
     let mut beside = Evidence {
         model: "rigid transmission+input without friction".to_owned(),
-        causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
+        causes: sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect(),
+        atlas: options.atlas,
         ..Evidence::default()
     };
     turn(&mut seen.rows, names, &mut beside);
     let way = lost_motion::way(&seen, names)?;
     let force = input_force::force(&seen, names)?;
     if force.is_none() {
-        let why = "no force at the input was recorded".to_owned();
-        beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+        beside.not_excited.push(NotExcited::new(coulomb_friction::ID, "no force at the input was recorded"));
     }
     if seen.rows.iter().all(|r| r.load.is_none()) {
         beside
@@ -82,37 +84,17 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
     }
     let told = force.as_ref().and_then(|f| f.told.as_ref());
     if let (Some(force), Some(told)) = (&force, told.filter(|t| t.is_one())) {
-        if force.side.compared.study.has(coulomb_friction::ID) {
+        if force.compared.study.has(coulomb_friction::ID) {
             beside.alternatives.extend(told.alternative());
         } else {
-            let why = load_confounding::WHY.to_owned();
-            beside.not_excited.push(NotExcited { id: coulomb_friction::ID.to_owned(), why });
+            beside.not_excited.push(NotExcited::new(coulomb_friction::ID, load_confounding::WHY));
         }
     }
-    let way_states = |k: usize, _: &Candidate, found: Vec<CauseParameter>| {
-        lost_motion::as_of_input(&way.compared.study, k, found, (names, seen.step))
-    };
-    let force_states = |_: usize, c: &Candidate, mut found: Vec<CauseParameter>| {
-        if let (Some(told), true) = (told, c.id == coulomb_friction::ID) {
-            for p in &mut found {
-                p.std_error = p.std_error.hypot(told.error(p.value));
-            }
-        }
-        found
-    };
-    let shown = |f: &Found<'_>| shows(f);
-    let mut parts = Vec::new();
     // The force is the quantity that a trainee feels, so its figures represent the whole diagnosis.
-    if let Some(input_force::Force { side, input, .. }) = &force {
-        parts.push(side.compared.part(&shown, &force_states, &|_| None).running(input));
-    }
-    parts.push(way.compared.part(&shown, &way_states, &|_| None));
-    let mut found = answer(&parts, beside);
-    if options.atlas {
-        let sides = force.iter().map(|f| &f.side).chain([&way]);
-        found.atlas.channels = sides.map(|side| side.compared.atlas(&view(&side.rows, names), best_seen)).collect();
-    }
-    Ok(found)
+    let of_force = force.as_ref().map(|f| Part::of(&f.compared, f).running(FreeRun::Channel(&f.input)));
+    let mut parts: Vec<Part<'_>> = of_force.into_iter().collect();
+    parts.push(Part::of(&way.compared, &way));
+    Ok(answer(&parts, beside))
 }
 
 /// Makes the output count in the input's direction, and the force positive if it drives the input. Gears and cables may
@@ -152,16 +134,6 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Evidence<'_>) {
     }
 }
 
-/// Variables of the plots of both channels.
-fn view(rows: &[Row], names: &Columns) -> View {
-    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
-    let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
-    let over =
-        vec![(Variable::Place, of(&|r| r.input)), (Variable::Velocity, of(&|r| r.rate)), (Variable::Load, of(&load))];
-    let recording = rows.iter().map(|r| r.recording).collect();
-    View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over) }
-}
-
 /// Variable that best shows a cause of a transmission.
 fn best_seen(id: &str) -> Variable {
     match id {
@@ -179,9 +151,8 @@ fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row])
 
 fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
     let range = (high - low).max(1e-12);
-    let term = |expression: String, of: &dyn Fn(&Row) -> f64| Candidate {
-        expression: Some(expression),
-        ..Candidate::one("other", Kind::Plant, "amplitude", "", rows.iter().map(of).collect())
+    let term = |expression: String, of: &dyn Fn(&Row) -> f64| {
+        Candidate::term(expression, "", vec![rows.iter().map(of).collect()])
     };
     let mut found: Vec<Candidate> = (2..=5_u32)
         .map(|n| {
