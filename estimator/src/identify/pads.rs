@@ -8,6 +8,7 @@
 
 use super::bootstrap::{Resampled, block_bootstrap_within};
 use super::linear::{LinearFit, Values, least_squares_values};
+use super::long_run_variance::HALF_INTERVAL;
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
@@ -108,13 +109,27 @@ pub(super) struct PadFit {
     pub(super) line: (f64, f64),
 }
 
-/// Half of the 95 % range of an even distribution, over 1.96: its weight beside errors that are normal.
-pub(super) const EVEN: f64 = 0.95 / 1.96;
+/// Weight of an even distribution's half width beside errors that are normal: half of its 95 % range over that of a
+/// standard error.
+/// Derived: 0.95 over 1.96.
+pub(super) const EVEN: f64 = 0.95 / HALF_INTERVAL;
 /// Give of a pad in shear over that under pressure, if nothing shows it, with its error. The shear stiffness is taken
 /// as evenly distributed between 0.3 and 1.1 of the normal one, for soft pads of foam and rubber. These are the mean of
 /// the inverse ratio, and the error that holds 95 %. The far side is the soft one: half the width of the even
 /// distribution itself would leave the softest pads five errors away.
 pub(super) const SHEAR_GIVE: (f64, f64) = (1.62, 0.67);
+/// Least variation of a grip, as a share of its mean, that tells the pads' give from the width.
+pub(super) const LEAST_GRIP_VARIATION: f64 = 0.05;
+/// Share of its usual force from which a grip counts as closed; less is the way to it or from it.
+pub(super) const CLOSED_GRIP_SHARE: f64 = 0.5;
+/// Relative error of a width whose pad compression could not be measured.
+/// Source: docs/parameters.md: the thesis's plain means of the widths are 7 % too narrow.
+pub(super) const UNKNOWN_COMPRESSION: f64 = 0.07;
+/// Stiffness of a hand whose pads' give the recording does not show, N/m. The thesis's fingers gave 1.1 mm under a few
+/// newtons.
+pub(super) const HAND_N_M: f64 = 1000.0;
+/// Shear stiffness of the softest pad, N/m.
+pub(super) const SOFTEST_N_M: f64 = 500.0;
 
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
 const SIMPLER: f64 = 12.0;

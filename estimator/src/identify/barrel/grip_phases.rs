@@ -5,6 +5,8 @@ use super::cable_force::{GEOMETRY, Pull, STIFFNESS};
 use super::report::{CABLE, OBJECT, Seen, Value, error_of};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
+use crate::identify::long_run_variance::HALF_INTERVAL;
+use crate::identify::pads::HAND_N_M;
 use haptics::Vec2;
 use nalgebra::DMatrix;
 
@@ -17,8 +19,6 @@ const SWINGS_M: f64 = 4e-5;
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
 /// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
-/// Stiffness of a hand whose give was not seen, N/m.
-const HAND_N_M: f64 = 1000.0;
 
 impl Seen<'_> {
     /// A value of the cable with its own error and the changes by softer pads.
@@ -164,7 +164,7 @@ impl Seen<'_> {
             constraint_force_n: Some(-self.strongest_n()),
             yielding: Some(Yielding {
                 stiffness_n_m: Some(stiffness),
-                interval_n_m: ((stiffness - 1.96 * error).max(0.0), Some(stiffness + 1.96 * error)),
+                interval_n_m: ((stiffness - HALF_INTERVAL * error).max(0.0), Some(stiffness + HALF_INTERVAL * error)),
                 manipulator_n_m: hand,
             }),
             evidence: format!(

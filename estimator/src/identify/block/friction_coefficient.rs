@@ -12,7 +12,9 @@
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::CONTACT_NOISES;
 use crate::identify::linear::least_squares;
+use crate::identify::pads::SOFTEST_N_M;
 use crate::segment::threshold::percentile;
 use haptics::Vec2;
 
@@ -25,7 +27,6 @@ const MISSING: f64 = 0.06;
 /// [`SOFTEST_N_M`], m.
 const PINCH_CHANGES: f64 = 0.08;
 const SLIDES_M: f64 = 0.3e-3;
-const SOFTEST_N_M: f64 = 500.0;
 /// A slip's ratio is at least this share of the largest ratio that was certainly held.
 const OF_THE_BOUND: f64 = 0.9;
 /// The two fingers' ratios agree within this share: one that only leans has another one.
@@ -101,7 +102,6 @@ impl Blocks<'_> {
 
     /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
     fn slip(&self, number: usize, ratio: f64) -> Option<Slip> {
-        const NOISES: f64 = 8.0;
         const AFTER_S: f64 = 0.3;
         let carried = self.shown(MAIN, number);
         let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
@@ -110,7 +110,7 @@ impl Blocks<'_> {
         let grasp = self.shown("friction", number);
         let time = &self.signals.time_s;
         let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
-        let least_grip_n = NOISES * self.levels.force_noise_n;
+        let least_grip_n = CONTACT_NOISES * self.levels.force_noise_n;
         slip(self, *grasp.first()?, end, Held { weight_n, least_grip_n, ratio })
     }
 

@@ -18,6 +18,7 @@ use super::rests::{Rest, rests};
 use super::signals::{Blocks, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::bootstrap::{Resampled, block_bootstrap_within};
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::{LinearFit, least_squares};
 use std::ops::Range;
 
@@ -28,8 +29,6 @@ const LEAST_SAMPLES: usize = 5;
 const CONTACTS_DIFFER: f64 = 0.33;
 /// Prior standard deviation of the give of a contact, m/N: 5 kN/m is a soft block.
 const GIVE_BEFORE: f64 = 2e-4;
-/// A shear stiffness is reported when its give is this many standard errors above zero.
-const SIGNIFICANT: f64 = 3.0;
 
 /// The regression's rows and columns.
 struct Rows {

@@ -2,6 +2,7 @@
 //! of the fingers (pads that yield, a slip of the grip) from lowering, so the earlier it is seen the better.
 
 use super::signals::Blocks;
+use crate::identify::limits::SIGNIFICANT;
 use crate::segment::threshold::percentile;
 use std::ops::Range;
 
@@ -9,8 +10,6 @@ use std::ops::Range;
 const LEAST_CHANGE: f64 = 0.1;
 /// Share of the weight missing from the lift at which the ground takes a part of the load.
 const LEAST_SHARE: f64 = 0.05;
-/// Least size of that deficit in standard deviations of the force error while the block is carried.
-const CLEARLY: f64 = 3.0;
 /// Share of the weight and time, s, up to which the load is followed from there; the line through it tells the
 /// beginning.
 const HALF: f64 = 0.5;
@@ -58,7 +57,7 @@ pub(crate) fn stands_from(
     let limit = |off: &dyn Fn(usize) -> f64| {
         let mut all: Vec<f64> = carried.iter().map(|i| off(*i)).collect();
         // Half of the range of two thirds: a few rows at the ends may stand already.
-        0.5 * CLEARLY * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
+        0.5 * SIGNIFICANT * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
     };
     let plain_n = limit(&missing);
     let moving_n = limit(&|i| missing(i) + usual(i) * blocks.acceleration_y[i] / gravity);
@@ -74,7 +73,7 @@ pub(crate) fn stands_from(
     let rises = |i: &usize| missing(*i) < HALF * usual(*i) && time_s[*i] - time_s[clear] < RISE_S;
     let rise = (clear..time_s.len()).take_while(rises);
     let rise: Vec<(f64, f64)> = rise.map(|i| (time_s[i], missing(i))).collect();
-    let begins_s = begin(&rise, usual(clear), plain_n.min(moving_n) / CLEARLY);
+    let begins_s = begin(&rise, usual(clear), plain_n.min(moving_n) / SIGNIFICANT);
     let begins_s = begins_s.map_or(time_s[clear], |s| s.clamp(time_s[clear] - BEFORE_S, time_s[clear]));
     time_s[..clear].partition_point(|t| *t < begins_s).max(least)
 }
@@ -87,7 +86,7 @@ fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
     for share in FIRST {
         let end = rise.iter().position(|(_, load)| *load > share * weight_n).map_or(rise.len(), |last| last + 1);
         if let Some((own_s, error_s)) = zero(&rise[..end], noise_n)
-            && own_s - CLEARLY * error_s > begins_s
+            && own_s - SIGNIFICANT * error_s > begins_s
         {
             begins_s = own_s;
         }

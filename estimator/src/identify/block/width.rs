@@ -3,17 +3,14 @@
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::linear::{LinearFit, least_squares};
-use crate::identify::pads::{Grip, PadFit, width_over_force};
+use crate::identify::pads::{
+    CLOSED_GRIP_SHARE, Grip, LEAST_GRIP_VARIATION, PadFit, UNKNOWN_COMPRESSION, width_over_force,
+};
 use crate::segment::Segmentation;
 use crate::segment::threshold::{Levels, percentile};
 use crate::signal::task::{half_width, task_signals};
 use haptics::law::contact::Cushion;
 use haptics::recording::Recording;
-
-/// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
-const UNKNOWN_COMPRESSION: f64 = 0.07;
-/// The grip must vary by this share of its mean for the pads' give to be told from the width.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
 
 /// Share of force noise in the variation of the grip above which that variation tells nothing of the pads.
 const MOSTLY_NOISE: f64 = 0.5;
@@ -128,8 +125,6 @@ pub(crate) type Hold = Vec<(f64, f64)>;
 
 /// Grip on each of the first `count` blocks, as measured, in the states that show its width.
 pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Hold>> {
-    /// Less than this share of the usual grip is the way to it or from it.
-    const HELD: f64 = 0.5;
     let signals = task_signals(recording).ok()?;
     let levels = Levels::of(&signals);
     let task = segmentation.definition.as_ref()?;
@@ -139,7 +134,7 @@ pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: u
         let samples = task.showing("width_m", MAIN, number).into_iter().flat_map(|s| segmentation.samples_of(&s));
         let all: Hold = samples.map(|i| (signals.grip_width_m[i], 0.5 * (normal(0, i) - normal(1, i)))).collect();
         let usual_n = percentile(&mut all.iter().map(|(_, f)| *f).collect::<Vec<f64>>(), 0.5);
-        all.into_iter().filter(|(_, f)| *f > HELD * usual_n).collect()
+        all.into_iter().filter(|(_, f)| *f > CLOSED_GRIP_SHARE * usual_n).collect()
     };
     Some((1..=count).map(hold).collect())
 }

@@ -1,11 +1,12 @@
 //! Weighted regression of the tangential force on the laws, and the identifiability of their parameters.
 
-use super::geometry::{Geometry, SIGNIFICANT};
+use super::geometry::Geometry;
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
 use super::path_coordinate::{Along, Rows};
 use super::signals::Held;
 use crate::estimate::{Correlated, EstimateError, Parameter, Quality};
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
+use crate::identify::limits::{HELD_OUT, SIGNIFICANT};
 use crate::identify::linear::LinearFit;
 use crate::identify::robust::robust;
 use haptics::Vec2;
@@ -227,8 +228,8 @@ fn system(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> (Vec<Vec
 
 /// Fit on the first 70 %, tested on the rest.
 pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Quality> {
-    const TRAIN: f64 = 0.7;
-    let cut = (TRAIN * rows.len() as f64) as usize;
+    let train = 1.0 - HELD_OUT;
+    let cut = (train * rows.len() as f64) as usize;
     let trained = friction(recording, &rows.head(cut)).ok()?;
     let rms = |from: usize, to: usize, model: bool| {
         let square = |i: usize| {
@@ -242,7 +243,7 @@ pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Qual
         rms: rms(0, cut, true),
         heldout_rms,
         heldout_relative: heldout_rms / rms(cut, rows.len(), false).max(1e-12),
-        heldout_share: 1.0 - TRAIN,
+        heldout_share: 1.0 - train,
         unit: "N".to_owned(),
     })
 }

@@ -4,14 +4,13 @@
 use super::parameters::Term;
 use super::signals::{Piece, Raw};
 use crate::identify::bootstrap::block_bootstrap_within;
+use crate::identify::limits::MOST_FIT_ROWS;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};
 use std::ops::Range;
 
 /// Largest number of segments that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
-/// Largest number of samples in the fit; longer records are thinned.
-const MAX_SAMPLES: usize = 4000;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
 const STEP_SHARE: f64 = 0.005;
 const ITERATIONS: usize = 25;
@@ -86,7 +85,7 @@ fn runs(raws: &[Raw], pieces: &[Piece]) -> Option<Vec<Run>> {
         return None;
     }
     let total: usize = pieces.iter().map(|p| p.motion.len()).sum();
-    let every = total.div_ceil(MAX_SAMPLES).max(1);
+    let every = total.div_ceil(MOST_FIT_ROWS).max(1);
     let make = |(k, piece): (usize, &Piece)| {
         let raw = if raws.len() == 1 { &raws[0] } else { &raws[k] };
         // The ends of the filtered signals are the weakest: begin where they are good.

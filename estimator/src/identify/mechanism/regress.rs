@@ -16,10 +16,10 @@ const REVERSAL_SHARE: f64 = 0.02;
 const REVERSAL_WAY: f64 = 0.01;
 /// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
 const SKEW_SAMPLES: f64 = 0.29;
-/// Slower than about this share of the usual speed a mechanism may stick.
-const SLOW_SHARE: f64 = 0.015;
-/// Rounds of weighting.
-const ROUNDS: usize = 3;
+/// Share of its usual speed below which a mechanism or joint may stick.
+pub(super) const STICKING_SHARE: f64 = 0.015;
+/// Number of rounds of weighting.
+pub(super) const WEIGHTING_ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
 const UNSEEN_STOP: f64 = 0.4;
 /// Decay rate of the reach of the filter, per period of its cut-off. It lies between its main lobe and its ringing
@@ -85,7 +85,7 @@ impl System {
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
-        for _ in 0..ROUNDS {
+        for _ in 0..WEIGHTING_ROUNDS {
             weights = self.weights(&fit);
             let Some(weights) = weights.as_deref() else { break };
             fit = least_squares(&self.columns, &self.target, Some(weights))?;
@@ -175,7 +175,7 @@ pub(super) fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
-    let slow = SLOW_SHARE * piece.rms(|m| m.velocity);
+    let slow = STICKING_SHARE * piece.rms(|m| m.velocity);
     // A mechanism that sticks resists with anything up to its friction, and a stop that is shorter than the filter's
     // own time looks like a smooth reversal. The filtered error of such a moment reaches as far as the filter does. All
     // samples within that time share it: one error that comes back so often counts so often.

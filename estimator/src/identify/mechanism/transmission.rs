@@ -6,6 +6,7 @@
 
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::least_squares;
 use haptics::recording::Recording;
 
@@ -24,8 +25,6 @@ const ROWS: usize = 3000;
 const SETTLING: f64 = 0.02;
 /// The input must turn round this often to show a gap.
 const REVERSALS: usize = 2;
-/// Standard errors from zero from which a value counts as seen.
-const SEEN: f64 = 3.0;
 
 /// A value with its standard error by covariance and by resampling.
 #[derive(Clone, Copy)]
@@ -65,7 +64,7 @@ pub(super) fn parameters(recordings: &[Recording]) -> Vec<Parameter> {
     let mut all = Vec::new();
     let mut push = |name: &str, values: Vec<Value>, text: &str| {
         if let Some(Value { best: value, error, resampled }) = together(&values) {
-            all.push(if error * SEEN < value.abs() {
+            all.push(if error * SIGNIFICANT < value.abs() {
                 Parameter::identified(OBJECT, name, value, error, used, &how(text)).with_bootstrap(resampled)
             } else {
                 let why = format!("{value:.2e} ± {error:.2e} {unit} cannot be told from none");

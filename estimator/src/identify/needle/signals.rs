@@ -1,6 +1,7 @@
 //! Signals of a needle recording along the needle's way: depth, force, and the segments in which it is held.
 
 use crate::estimate::EstimateError;
+use crate::identify::limits::CONTACT_NOISES;
 use crate::identify::pads::SHEAR_GIVE;
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
@@ -10,8 +11,6 @@ use std::ops::Range;
 
 /// Least grip, as a share of the strongest one.
 const GRIP_SHARE: f64 = 0.15;
-/// Least grip, in multiples of its noise.
-const GRIP_NOISES: f64 = 8.0;
 /// Share of the largest forces whose mean direction is that of the needle, and least number of those samples.
 const STRONGEST: f64 = 0.02;
 const LEAST_STRONG: usize = 5;
@@ -114,7 +113,7 @@ fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f
 /// Segments of samples with a grip.
 fn holds(grip: &[f64]) -> Vec<Range<usize>> {
     let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let least = (GRIP_SHARE * most).max(GRIP_NOISES * white_noise(grip));
+    let least = (GRIP_SHARE * most).max(CONTACT_NOISES * white_noise(grip));
     let mut found: Vec<Range<usize>> = Vec::new();
     for (i, _) in grip.iter().enumerate().filter(|(_, g)| **g > least) {
         match found.last_mut() {

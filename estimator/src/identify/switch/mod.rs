@@ -14,6 +14,7 @@ mod throw_curve;
 
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::{Resampled, median_error_of_few};
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::identify::pads::EVEN;
 use assumptions::Assumptions;
 use haptics::recording::Recording;
@@ -40,8 +41,6 @@ const RESTING_M: f64 = 5e-5;
 const UNSEEN_TOUCH: f64 = 0.15;
 /// A touch is seen late by up to this share of the way between two samples.
 const STEP_SHARE: f64 = 0.7;
-/// A peak counts from this many standard errors of rise and fall.
-const PEAK_SEEN: f64 = 4.0;
 
 /// Fits one recording.
 pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
@@ -95,7 +94,8 @@ struct Captured {
 impl Curves {
     fn of(signals: &Signals, reading: &Assumptions) -> Result<Self, EstimateError> {
         let seen = [signals.seen(0, reading), signals.seen(1, reading)];
-        let peaked = |w: &Throw| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
+        let peaked =
+            |w: &Throw| w.around.t_value(1) > CLEARLY_SIGNIFICANT && w.around.t_value(2) < -CLEARLY_SIGNIFICANT;
         let ways = [throw_curve::throw(&seen[0])?.filter(peaked), throw_curve::throw(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {

@@ -3,12 +3,10 @@
 use super::signals::{Sample, Seen};
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
+use crate::identify::limits::{GOLDEN_STEPS, LEAST_LINE_ROWS, SEARCH_STEPS};
 use crate::identify::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares};
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of the search for the peak, and of the golden section after it.
-const SEARCH: usize = 60;
-const FINE: usize = 40;
 /// Largest number of samples in the fit.
 const MOST_ROWS: usize = 6000;
 /// Column of the rate, which that of the acceleration follows.
@@ -19,8 +17,6 @@ const LEAST_ROWS: usize = 24;
 const FALLING_N: f64 = 0.025;
 /// The same up to the peak, where it moves slowly, N.
 const MOVING_N: f64 = 0.02;
-/// Fewest that show a stop.
-const LEAST_STOP: usize = 8;
 
 /// Rise and fall. Regressors of `around`: force at the peak, rise, fall, place of the peak. If they can be told from
 /// the curve there follow the terms of the knob's own motion: damping, mass.
@@ -89,12 +85,12 @@ pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
 fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>, EstimateError> {
     let moving = noise.is_some();
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s.at_m), h.max(s.at_m)));
-    let at = |k: usize| low + (high - low) * k as f64 / SEARCH as f64;
+    let at = |k: usize| low + (high - low) * k as f64 / SEARCH_STEPS as f64;
     let cost = |place: f64| solve(rows, place, moving).map_or(f64::INFINITY, |(_, cost)| cost);
-    let best = (1..SEARCH).min_by(|&a, &b| cost(at(a)).total_cmp(&cost(at(b)))).unwrap_or(1);
+    let best = (1..SEARCH_STEPS).min_by(|&a, &b| cost(at(a)).total_cmp(&cost(at(b)))).unwrap_or(1);
     let (mut left, mut right) = (at(best - 1), at(best + 1));
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..FINE {
+    for _ in 0..GOLDEN_STEPS {
         let (a, b) = (right - share * (right - left), left + share * (right - left));
         if cost(a) < cost(b) { right = b } else { left = a }
     }
@@ -134,7 +130,7 @@ fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>,
 
 /// `None` when no stop was pressed. Place over force, not the other way round: places are the noisy ones on a hard stop.
 pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
-    if seen.stop.len() < LEAST_STOP {
+    if seen.stop.len() < LEAST_LINE_ROWS {
         return Ok(None);
     }
     let rows: Vec<Sample> = seen.stop.iter().copied().step_by(seen.stop.len().div_ceil(MOST_ROWS)).collect();

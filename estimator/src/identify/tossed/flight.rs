@@ -1,6 +1,6 @@
 //! Free flight, from the first sample to the first blow.
 
-use super::pose::Track;
+use super::pose::{LEAST_OF_PARABOLA, Track};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Time at the beginning that shows undisturbed flight, s.
@@ -17,11 +17,10 @@ const BLOW_M_S: f64 = 0.15;
 const GUARD: usize = 1;
 /// A shorter flight tells nothing, s; a parabola with two samples more than it has numbers is the least that can be judged.
 const LEAST_S: f64 = 0.047;
-const LEAST: usize = 5;
 
 /// Samples of the shortest flight that tells something.
 pub(crate) fn least(track: &Track) -> usize {
-    LEAST.max(track.steps(LEAST_S) + 1)
+    LEAST_OF_PARABOLA.max(track.steps(LEAST_S) + 1)
 }
 
 /// Parameters common to all flights.

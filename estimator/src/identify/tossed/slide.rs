@@ -1,6 +1,6 @@
 //! Sliding flat: height and orientation stay, the speed falls evenly.
 
-use super::pose::Track;
+use super::pose::{LEAST_OF_PARABOLA, Track};
 use crate::signal::derive::polynomial;
 use nalgebra::Vector3;
 
@@ -26,7 +26,6 @@ const FOOT_M: f64 = 0.055;
 /// Relative difference between the two of the friction that does not go against the speed.
 const FOOT_ERROR: f64 = 0.6;
 /// A shorter slide tells nothing, samples and s.
-const LEAST: usize = 5;
 const LEAST_S: f64 = 0.05;
 
 /// One slide.
@@ -129,7 +128,7 @@ fn direct(spinning: f64) -> f64 {
 
 /// The way along the mean direction, as a parabola.
 fn slide(track: &Track, first: usize, end: usize, spins: &[Option<f64>]) -> Option<Slide> {
-    if end < first + LEAST || track.time_s[end - 1] - track.time_s[first] < LEAST_S {
+    if end < first + LEAST_OF_PARABOLA || track.time_s[end - 1] - track.time_s[first] < LEAST_S {
         return None;
     }
     let (points, time) = (&track.points[first..end], &track.time_s[first..end]);

@@ -3,6 +3,7 @@
 use super::joints::{JointRows, Joints};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
+use crate::identify::mechanism::regress::WEIGHTING_ROUNDS;
 use haptics::law::object::TWO_LINK;
 
 /// Numbers of the model.
@@ -16,8 +17,6 @@ const STEP: f64 = std::f64::consts::SQRT_2;
 /// The lowest cut-off lies this far below the motion, the highest this far below the light filter.
 const BELOW_MOTION: f64 = 0.5;
 const BELOW_LIGHT: f64 = 1.0 / 3.0;
-/// Rounds of weighting.
-const ROUNDS: usize = 3;
 
 /// One row of the regression.
 #[derive(Clone, Debug)]
@@ -111,7 +110,7 @@ pub fn solve(
     }
     let torque: Vec<f64> = rows.iter().map(|r| r.torque).collect();
     let mut fit = least_squares(&columns, &torque, None)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..WEIGHTING_ROUNDS {
         let weights = weights(&rows, &fit, &zeros, count);
         fit = least_squares(&columns, &torque, Some(&weights))?;
     }
