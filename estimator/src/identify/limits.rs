@@ -2,11 +2,12 @@
 
 /// Number of its standard errors from which a value differs from zero, or from another value.
 pub(super) const SIGNIFICANT: f64 = 3.0;
-/// Number of its standard errors from which the strongest of several candidates differs from zero.
+/// Number of its standard errors from which a value differs from zero beyond doubt, such as the strongest of several
+/// candidates.
 pub(super) const CLEARLY_SIGNIFICANT: f64 = 4.0;
 /// Multiple of its noise from which a force is that of a contact.
 pub(super) const CONTACT_NOISES: f64 = 8.0;
-/// Least number of rows of a fit to a held object; averaging leaves so many.
+/// Least number of rows of a fit to a held object; thinning leaves so many.
 pub(super) const LEAST_FIT_ROWS: usize = 12;
 /// Least number of samples of a straight line through place over force.
 pub(super) const LEAST_LINE_ROWS: usize = 8;

@@ -8,7 +8,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Largest order that is tried; no more than a tenth of the samples either.
+/// Largest order of the autoregression that is tried; no more than a tenth of the samples either.
 const LARGEST_ORDER: usize = 6;
 /// Half width of a 95 % interval, in standard errors: `value ± 1.96 std_error` everywhere.
 /// Derived: the 97.5 % quantile of the normal distribution in two decimals.

@@ -13,9 +13,9 @@ use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
 /// Distance of a value outside its bounds, in standard errors, beyond which it simply stands at the bound.
 const FAR_OUTSIDE: f64 = 6.0;
-/// Bounds closer than this share of the standard error leave a uniform distribution.
+/// Distance between bounds, in standard errors, below which a distribution within them is uniform.
 const NARROW: f64 = 0.02;
-/// A prior that loses less than this share of its spread has learnt nothing from the recording.
+/// Share of a prior's spread above which the result has learnt nothing from the recording.
 const LEARNT: f64 = 0.9;
 
 /// Takes the statements of `meta` into a fit. Warnings say where they contradict the recording, or name nothing.

@@ -12,10 +12,10 @@ use nalgebra::DMatrix;
 
 /// Uncertainty of the shift of the barrel's middle, as a share of it: held above or below its middle, a pulled barrel
 /// turns in the grip.
-const TURN_SHARE: f64 = 0.25;
+const GRIP_TURN_SHARE: f64 = 0.25;
 /// Uncertainty of that shift, m.
 const SWINGS_M: f64 = 4e-5;
-/// The same while the pull grows, m.
+/// Uncertainty of the shift while the pull grows, m.
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
 /// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
@@ -87,7 +87,7 @@ impl Seen<'_> {
         let (u, far) = (cable.away(), 1.0 / cable.bend_1_m);
         // Along the pull the distance is uncertain, across it the direction.
         let across = Vec2::new(-u.y, u.x);
-        let model_m = SWINGS_M.hypot(TURN_SHARE * self.taken.turned_m);
+        let model_m = SWINGS_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m);
         let anchor_error = |k: usize, c: &DMatrix<f64>| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
             let square = (by_angle * error_of(c, GEOMETRY)).powi(2)
@@ -121,7 +121,7 @@ impl Seen<'_> {
     fn stiffness_by(&self, covariance: &DMatrix<f64>) -> Option<Value> {
         let stiffness = self.taken.pull.values.get(STIFFNESS)?;
         let stretch_m = self.strongest_n() / stiffness;
-        let model = stiffness * SWINGS_AS_PULLED_M.hypot(TURN_SHARE * self.taken.turned_m) / stretch_m;
+        let model = stiffness * SWINGS_AS_PULLED_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m) / stretch_m;
         let own = error_of(covariance, STIFFNESS).hypot(model);
         self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
     }

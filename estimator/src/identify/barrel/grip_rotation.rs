@@ -12,7 +12,7 @@ use crate::identify::linear::least_squares;
 use crate::identify::pads::CLOSED_GRIP_SHARE;
 use haptics::Vec2;
 
-/// Largest distance of the grip from its middle, m: a larger estimate is no balance of a stiff barrel.
+/// Largest distance of the grip from the barrel's middle, m: a larger estimate is no balance of a stiff barrel.
 const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.

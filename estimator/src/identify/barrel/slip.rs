@@ -12,12 +12,12 @@ use crate::identify::limits::CLEARLY_SIGNIFICANT;
 /// Least way of a slip, m: pads creep, and a floor is not quite even.
 const CREEP_M: f64 = 4e-5;
 /// Share of the weight at which heights are compared.
-const HALF: f64 = 0.5;
+const COMPARED_LOAD: f64 = 0.5;
 
 /// Way that the barrel slid down (below 0: up) in the grip within its lifts, m; `None` if it did not, or was not put
 /// down again.
 pub fn slipped_m(signals: &Signals) -> Option<f64> {
-    let half_n = HALF * weight_n(signals)?;
+    let half_n = COMPARED_LOAD * weight_n(signals)?;
     let lifts = signals.hanging();
     let ways = lifts.iter().filter_map(|lift| {
         let (first, last) = (*lift.first()?, *lift.last()?);

@@ -8,7 +8,7 @@ use crate::online::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
 use crate::segment::SystemState;
 use crate::signal::task::smooth;
 
-/// The ends of free motion may touch already, s.
+/// Time at either end of free motion that may touch already, s.
 const ENDS_S: f64 = 0.05;
 
 /// Times and forces.

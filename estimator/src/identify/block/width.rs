@@ -14,7 +14,8 @@ use haptics::recording::Recording;
 
 /// Share of force noise in the variation of the grip above which that variation tells nothing of the pads.
 const MOSTLY_NOISE: f64 = 0.5;
-/// Of white noise, the parabolic window of `2 h + 1` samples leaves this over their number (6/5: the mean square of its weights).
+/// Variance of white noise after a parabolic window of `2 h + 1` samples, times their number.
+/// Derived: 6/5, the mean square of the window's weights.
 const WINDOW_NOISE: f64 = 1.2;
 
 impl Blocks<'_> {
@@ -142,7 +143,8 @@ pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: u
 /// Width at which pads with the give of `pad` press on average as hard as measured: a world with any other one would
 /// predict another grip, or none at all. `None` for a hold without a measured grip.
 pub(crate) fn width_under(pad: &Cushion, hold: &[(f64, f64)]) -> Option<f64> {
-    /// Halvings of the bracket: beyond the digits of a double.
+    /// Number of halvings of the bracket.
+    /// Derived: more than the 53 binary digits of a double.
     const HALVINGS: usize = 60;
     let measured_n: f64 = hold.iter().map(|(_, f)| f).sum();
     let pressed_n =

@@ -14,9 +14,10 @@ use haptics::recording::Recording;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
+/// Largest error of the predicted force by one parameter, as a share of the measured one; beyond, the parameter is not
+/// identified.
 const LARGEST_ERROR: f64 = 0.3;
-/// Samples of each low-pass window that a shift of the geometry is followed through.
+/// Number of samples of each low-pass window that a shift of the geometry is followed through.
 const TAPS: usize = 16;
 
 /// Quantities besides the rows that decide the uncertainty of the laws.
@@ -65,6 +66,7 @@ impl Friction {
     /// True if the recording shows the parameter of a regressor: it is distinct from the others, its error is small
     /// enough, and it is not tied to one that is not shown.
     fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        /// Size of the correlation of two parameters from which they are tied.
         const SAME_THING: f64 = 0.9;
         let covariance = &self.fit.covariance;
         let tied = |other: usize| {

@@ -176,9 +176,10 @@ pub(super) fn constraint(
 
 /// The handle's motion and force, for the test whether anything guides it.
 fn existence_rows(recording: &Recording, held: &Held) -> Rows {
-    const SLOW_SHARE: f64 = 0.3;
+    /// Least speed of a row of the test of existence, as a share of the root mean square of the speed.
+    const EXISTENCE_SPEED_SHARE: f64 = 0.3;
     let square: f64 = held.turning.iter().map(|i| held.velocity[*i].norm_squared()).sum();
-    let least = SLOW_SHARE * (square / held.turning.len().max(1) as f64).sqrt();
+    let least = EXISTENCE_SPEED_SHARE * (square / held.turning.len().max(1) as f64).sqrt();
     let stride = (4 * half_width(&held.time_s)).max(2 * CUBIC_HALF) + 1;
     let picked: Vec<usize> =
         held.turning.iter().copied().step_by(stride).filter(|i| held.velocity[*i].norm() > least).collect();

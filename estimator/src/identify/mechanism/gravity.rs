@@ -10,8 +10,8 @@ use crate::estimate::EstimateError;
 use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::identify::linear::LinearFit;
 
-/// Evidence (log-likelihood ratio less the BIC penalty) that a gravity moment must bring. 10 is "very strong" (Kass and
-/// Raftery 1995).
+/// Least evidence for a gravity moment: twice the log-likelihood ratio, less the BIC penalty.
+/// Source: Kass & Raftery 1995: above 10 it is "very strong".
 const EVIDENCE: f64 = 10.0;
 /// Smallest range of the angle in which sine and line can differ, rad.
 const MIN_RANGE_RAD: f64 = 0.3;

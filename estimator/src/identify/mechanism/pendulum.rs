@@ -12,9 +12,10 @@ use std::ops::Range;
 /// Largest number of segments that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
-const STEP_SHARE: f64 = 0.005;
+const INNER_STEP_SHARE: f64 = 0.005;
+/// Largest number of Gauss-Newton steps.
 const ITERATIONS: usize = 25;
-/// The refined motion must follow the measured one to this share of its size, or the regression stands.
+/// Largest distance of the refined motion from the measured one, as a share of its size; beyond, the regression stands.
 const ACCEPTED_SHARE: f64 = 0.05;
 
 /// Measured samples of one segment.
@@ -115,7 +116,7 @@ fn effects(terms: &[Term], ratios: &[f64]) -> Vec<Effect> {
 fn simulate(terms: &[Term], ratios: &[f64], state: &[f64], run: &Run) -> Vec<f64> {
     let effects = effects(terms, ratios);
     let fastest = ratios.iter().fold(1.0_f64, |m, r| m.max(r.abs().sqrt()));
-    let largest_step = STEP_SHARE / fastest;
+    let largest_step = INNER_STEP_SHARE / fastest;
     let mut motion = Motion { position: state[0], velocity: state[1], ..Motion::default() };
     let mut time = run.time_s.first().copied().unwrap_or(0.0);
     run.time_s

@@ -11,7 +11,7 @@ use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
 use std::f64::consts::TAU;
 
-/// Fewest samples of a segment without a gap.
+/// Least number of samples of a segment without a gap.
 pub const MIN_SAMPLES: usize = 24;
 /// Step in periods above which a segment ends.
 const GAP_PERIODS: f64 = 10.0;

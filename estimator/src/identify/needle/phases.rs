@@ -14,9 +14,9 @@ use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
-/// Depth below which force over depth means nothing, m.
+/// Least depth at which force over depth has a meaning, m.
 const LEAST_DEPTH_M: f64 = 2e-4;
-/// The needle is drawn out once it has come back by this, m.
+/// Way back of a needle from which it is drawn out, m.
 const BACK_M: f64 = 0.3e-3;
 
 /// Phases of every push, in order of time.

@@ -19,10 +19,10 @@ pub const HELD: &str = "held_force_N";
 /// Error of a place by geometry and log, m: seats, resolution.
 const PLACE_ERROR_M: f64 = 1e-5;
 
-/// Samples are averaged to points where that leaves at least so many.
+/// Least number of points to which samples are averaged.
 const LEAST_POINTS: usize = 60;
 
-/// Fewer samples of loading show no curve.
+/// Least number of samples of loading that show a curve.
 pub(super) const LEAST_LOADING: usize = 20;
 
 /// The loading curve with its change by the pads' unknown give.

@@ -6,12 +6,12 @@ use crate::identify::limits::CONTACT_NOISES;
 use std::ops::Range;
 
 /// Least reversal of the motion, as a share of its whole range.
-const TURN_SHARE: f64 = 0.05;
+const STROKE_TURN_SHARE: f64 = 0.05;
 /// Least reversal of the motion, m.
 const TURN_M: f64 = 2e-4;
-/// Places closer than this are the same hole, m.
+/// Largest distance of two places of the same hole, m.
 const SAME_PLACE_M: f64 = 1e-3;
-/// Beyond an earlier dent by this much, the sheet is untouched again, m.
+/// Distance beyond an earlier dent from which the sheet is untouched again, m.
 pub const BEYOND_DENT_M: f64 = 1e-4;
 /// Share of its peak below which the force of a needle that is through falls.
 const FALLEN: f64 = 0.6;
@@ -20,7 +20,7 @@ const FALLEN: f64 = 0.6;
 const DRAWN_BACK: f64 = 0.1;
 /// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 const LAST_PART: usize = 4;
-/// Peaks below this share of the strongest force are no push.
+/// Least peak of a push, as a share of the strongest force.
 const PUSH_SHARE: f64 = 0.15;
 
 /// One push.
@@ -49,7 +49,7 @@ struct Place {
 /// All pushes, first to last; pushes into a hole that is there already are left out.
 pub fn pushes(along: &Along) -> Vec<Push> {
     let (low, high) = extremes(&along.depth_m, &along.holds);
-    let turn_m = (TURN_SHARE * (high - low)).max(TURN_M);
+    let turn_m = (STROKE_TURN_SHARE * (high - low)).max(TURN_M);
     let outside_n = quiet_force(along);
     let strongest_n =
         along.holds.iter().flat_map(Clone::clone).map(|i| along.force_n[i] - outside_n).fold(0.0, f64::max);

@@ -26,21 +26,24 @@ use throw_curve::{Stop, Throw};
 pub const OBJECT: &str = "switch";
 /// Length of the lever that is assumed, in travels of the knob.
 pub const LEVER_TRAVELS: f64 = 1.9;
-/// One over that is taken as evenly likely within this share.
+/// Relative uncertainty of the inverse of the lever's length.
+/// Derived: evenly likely within half of itself.
 const LEVER_SPREAD: f64 = 0.5 * EVEN;
-/// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
+/// The pads' share of the give at the stops, and its error.
+/// Derived: evenly likely between 0.4 and 1.
 const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
-/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of the 95 % range, and its
-/// error.
+/// Stiffness of a pad in terms of that at the stops, and its error.
+/// Derived: the middle of the 95 % range of 1/share, 1.02 … 2.41, and its half width over 1.96, for shares as in
+/// `PAD_SHARE`.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
 /// Uncertainty of the place of a touch on the knob's round side, m.
 const TOUCHED_M: f64 = 3e-5;
 /// Uncertainty of the resting place of a knob held by friction, m.
 const RESTING_M: f64 = 5e-5;
-/// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
+/// Share of the least force of a touch, over the rise, by which a finger moves the knob before the touch is seen.
 const UNSEEN_TOUCH: f64 = 0.15;
-/// A touch is seen late by up to this share of the way between two samples.
-const STEP_SHARE: f64 = 0.7;
+/// Largest delay of a touch, as a share of the way between two samples.
+const TOUCH_STEP_SHARE: f64 = 0.7;
 
 /// Fits one recording.
 pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
@@ -102,7 +105,7 @@ impl Curves {
             reading: *reading,
             top_m: signals.middle_m,
             ways,
-            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
+            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(TOUCH_STEP_SHARE * signals.step_m),
             stops: [throw_curve::stop(&seen[0])?, throw_curve::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
             width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),

@@ -8,14 +8,15 @@ use crate::identify::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of samples in the fit.
-const MOST_ROWS: usize = 6000;
+const MOST_THROW_ROWS: usize = 6000;
 /// Column of the rate, which that of the acceleration follows.
+/// Derived: the fifth column, after level, rise, fall, and place.
 const RATE: usize = 4;
-/// Fewest samples that show a rise and a fall.
-const LEAST_ROWS: usize = 24;
+/// Least number of samples that show a rise and a fall.
+const LEAST_THROW_ROWS: usize = 24;
 /// Force by speed and mass of a knob on its way down that is not in the curve, N (one standard deviation).
 const FALLING_N: f64 = 0.025;
-/// The same up to the peak, where it moves slowly, N.
+/// Force by speed and mass of a slow knob up to the peak that is not in the curve, N (one standard deviation).
 const MOVING_N: f64 = 0.02;
 
 /// Rise and fall. Regressors of `around`: force at the peak, rise, fall, place of the peak. If they can be told from
@@ -70,10 +71,10 @@ impl Throw {
 /// `None` when too little is seen, or no fall after a rise.
 pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
     let count = seen.way.len();
-    if count < LEAST_ROWS {
+    if count < LEAST_THROW_ROWS {
         return Ok(None);
     }
-    let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_ROWS)).collect();
+    let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_THROW_ROWS)).collect();
     let still = throw_with(&rows, None)?;
     let Some(moving) = throw_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Throw::assumed_slow)) };
     // At one speed all the time, or in few samples, the force of the motion cannot be told from the curve.
@@ -133,7 +134,7 @@ pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
     if seen.stop.len() < LEAST_LINE_ROWS {
         return Ok(None);
     }
-    let rows: Vec<Sample> = seen.stop.iter().copied().step_by(seen.stop.len().div_ceil(MOST_ROWS)).collect();
+    let rows: Vec<Sample> = seen.stop.iter().copied().step_by(seen.stop.len().div_ceil(MOST_THROW_ROWS)).collect();
     let force: Vec<f64> = rows.iter().map(|s| s.force_n).collect();
     let place: Vec<f64> = rows.iter().map(|s| s.at_m).collect();
     let columns = [vec![1.0; rows.len()], force];
@@ -146,7 +147,8 @@ pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
 
 /// Peak, rise and fall for a given place (and, for a knob that is `moving`, damping and mass beside them), and the sum of squares.
 fn solve(rows: &[Sample], place: f64, moving: bool) -> Option<(DVector<f64>, f64)> {
-    // Millimetres, so that all columns are of one size.
+    /// Millimetres in a metre: all columns are then of one size.
+    /// Derived: 1 m / 1 mm.
     const MILLI: f64 = 1e3;
     let count = if moving { 5 } else { 3 };
     let (mut normal, mut right, mut power) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count), 0.0);

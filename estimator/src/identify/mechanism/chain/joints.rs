@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 pub const ANGLES: [&str; 2] = ["q1_rad", "q2_rad"];
 /// Torques.
 pub const TORQUES: [&str; 2] = ["tau1_Nm", "tau2_Nm"];
-/// Rows a period of the cut-off: neighbours repeat each other.
+/// Number of rows in a period of the cut-off: closer neighbours repeat each other.
 const ROWS_A_PERIOD: f64 = 4.0;
 
 /// One segment of a recording without a gap.

@@ -9,10 +9,13 @@ use haptics::law::object::TWO_LINK;
 /// The object's name in the results.
 pub const OBJECT: &str = "chain";
 
-/// Fewer recordings cannot show by leaving one out how far they agree.
+/// Least number of recordings that show by leaving one out how far they agree.
 pub const LEAST_FOR_JACKKNIFE: usize = 4;
-/// Length of the first link: the coupling over the second link's moment.
+/// Index of the coupling; over the second link's moment it is the length of the first link.
+/// Derived: position in [`TWO_LINK`].
 const COUPLING: usize = 2;
+/// Index of the second link's moment.
+/// Derived: position in [`TWO_LINK`].
 const MOMENT: usize = 5;
 
 /// The chosen solution with the sources of its errors.
