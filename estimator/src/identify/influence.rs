@@ -9,9 +9,9 @@ use super::long_run_variance::{inflation, long_run};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
-/// The influences are summed in blocks down to about this many before the long-run variance is taken.
+/// Least number of blocks to which the influences of a long series are summed before the long-run variance is taken.
 const BLOCKS: usize = 192;
-/// No residual is trusted to be shrunk by more than this.
+/// Largest leverage by which a residual is corrected.
 const LARGEST_LEVERAGE: f64 = 0.9;
 
 /// A solved regression: p regressors of n samples scaled by `scales`, and the inverse of its normal matrix in scaled
@@ -107,7 +107,7 @@ impl Solved<'_> {
     }
 }
 
-/// Samples that are computed side by side.
+/// Number of samples that are computed side by side.
 const LANES: usize = 16;
 
 /// Result of [`Solved::fill`] for some samples: p scaled regressors and influences, and the residuals with their

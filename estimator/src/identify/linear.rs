@@ -10,9 +10,10 @@ use crate::cancellation;
 use crate::estimate::EstimateError;
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values below this share of the largest (columns scaled to 1) count as zero: the direction is not excited.
+/// Share of the largest singular value (columns scaled to 1) below which one counts as zero: the direction is not
+/// excited.
 const RANK_TOLERANCE: f64 = 1e-9;
-/// A parameter that loads on a lost direction by more than this is not identified.
+/// Largest loading of an identified parameter on a lost direction.
 const LOADING_TOLERANCE: f64 = 1e-4;
 
 /// The answer of [`least_squares`].
@@ -148,7 +149,7 @@ impl Values {
     }
 }
 
-/// The noise in the columns is known to about this share (a white level read from its upper band).
+/// Relative uncertainty of the noise in the columns (a white level read from its upper band).
 pub(super) const COLUMN_NOISE_UNCERTAINTY: f64 = 0.25;
 /// Share of noise in the own part of a regressor above which it is not corrected: the correction would amplify errors.
 const CORRECTABLE: f64 = 0.5;

@@ -8,9 +8,13 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Largest order that is tried; no more than a tenth of the samples either.
+/// Largest order of the autoregression that is tried; no more than a tenth of the samples either.
 const LARGEST_ORDER: usize = 6;
-/// 97.5 % quantile of the normal distribution: `value ± 1.96 std_error` is the 95 % interval everywhere.
+/// Half width of a 95 % interval, in standard errors: `value ± 1.96 std_error` everywhere.
+/// Derived: the 97.5 % quantile of the normal distribution in two decimals.
+pub(super) const HALF_INTERVAL: f64 = 1.96;
+/// 97.5 % quantile of the normal distribution.
+/// Derived: Φ⁻¹(0.975).
 pub(super) const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// The long-run variance of one series.

@@ -5,6 +5,7 @@ pub mod block;
 pub mod bootstrap;
 pub mod crank;
 mod influence;
+mod limits;
 pub mod linear;
 pub mod long_run_variance;
 pub mod mechanism;

@@ -5,18 +5,17 @@
 //! update), so that it also sharpens parameters that were inseparable from its own. A bound cuts the distribution off;
 //! the result holds mean and spread of the remaining part (moment matching), and correlated parameters follow.
 
+use super::limits::SIGNIFICANT;
 use crate::estimate::{Correlated, Fit, Parameter};
 use haptics::recording::{Meta, Prior};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// Distance of a statement from the recording's estimate, in standard errors, from which it is pointed out.
-const CONTRADICTION: f64 = 3.0;
 /// Distance of a value outside its bounds, in standard errors, beyond which it simply stands at the bound.
 const FAR_OUTSIDE: f64 = 6.0;
-/// Bounds closer than this share of the standard error leave a uniform distribution.
+/// Distance between bounds, in standard errors, below which a distribution within them is uniform.
 const NARROW: f64 = 0.02;
-/// A prior that loses less than this share of its spread has learnt nothing from the recording.
+/// Share of a prior's spread above which the result has learnt nothing from the recording.
 const LEARNT: f64 = 0.9;
 
 /// Takes the statements of `meta` into a fit. Warnings say where they contradict the recording, or name nothing.
@@ -118,7 +117,7 @@ fn take_known(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize
         return Said { parameter: j, how, spread: 0.0, warning: None };
     }
     let apart = (value - values[j]).abs() / own.sqrt();
-    let warning = (apart > CONTRADICTION).then(|| {
+    let warning = (apart > SIGNIFICANT).then(|| {
         format!(
             "the value {value} that {name} is known to have lies {apart:.1} standard errors off what the recording shows ({:.5} ± {:.5}); check both",
             values[j],
@@ -143,7 +142,7 @@ fn take_prior(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize
     }
     let surprise = prior.mean - values[j];
     let apart = surprise.abs() / (own + other).sqrt();
-    let warning = (apart > CONTRADICTION).then(|| {
+    let warning = (apart > SIGNIFICANT).then(|| {
         format!(
             "the stated prior of {name}, {} ± {}, lies {apart:.1} standard errors off what the recording shows ({:.5} ± {:.5}); check both",
             prior.mean,
@@ -183,7 +182,7 @@ fn cut_off(
     }
     let (new_mean, new_variance) = truncated(mean, sigma, low, high);
     condition(values, covariance, j, new_mean, new_variance);
-    let warning = (outside > CONTRADICTION).then(|| {
+    let warning = (outside > SIGNIFICANT).then(|| {
         format!(
             "{name} is {mean:.5} ± {sigma:.5} by the recording, {outside:.1} standard errors outside its stated bounds; check them, or what \
              the model leaves out"

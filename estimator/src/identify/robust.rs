@@ -7,14 +7,15 @@ use super::linear::{LinearFit, least_squares};
 use crate::estimate::EstimateError;
 use statrs::statistics::{Data, OrderStatistics};
 
-/// Residuals beyond this many standard deviations do not count at all; 95 % efficient under Gaussian noise.
+/// Size of a residual from which it does not count at all, in standard deviations.
+/// Source: Holland & Welsch 1977: 95 % efficiency under Gaussian noise.
 const BISQUARE: f64 = 4.685;
 /// Size of a residual in the tail, standard deviations: one in two million under Gaussian noise.
 const TAIL: f64 = 5.0;
 /// Share of the samples in the tail from which it is heavy; at least two of them.
 const HEAVY: f64 = 0.004;
-/// Reweighting settles in a handful of rounds.
-const ROUNDS: usize = 20;
+/// Largest number of rounds of reweighting; it settles in a handful.
+const REWEIGHTING_ROUNDS: usize = 20;
 
 /// A fit, and how it was made.
 #[derive(Clone, Debug)]
@@ -42,7 +43,7 @@ pub fn robust(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Res
     }
     let mut fit = plain;
     let mut total = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..REWEIGHTING_ROUNDS {
         total = residuals.iter().enumerate().map(|(i, r)| given(i) * bisquare(r / sigma)).collect();
         let next = least_squares(columns, rhs, Some(&total))?;
         let moved =

@@ -8,21 +8,22 @@ use crate::identify::linear::{LinearFit, least_squares};
 use haptics::Vec2;
 use nalgebra::{DMatrix, DVector};
 
-/// Directions that are tried, and places along each.
+/// Number of directions of the cable that are tried.
 const DIRECTIONS: usize = 48;
+/// Number of taut places that are tried along each direction.
 const PLACES: usize = 32;
-/// Steps of Gauss and Newton after the search.
-const STEPS: usize = 30;
+/// Largest number of Gauss-Newton steps after the search.
+const NEWTON_STEPS: usize = 30;
 /// Stiffness of a cable in standard errors above zero from which it is seen. It is more than a single test would need,
 /// because the best of many directions and places is chosen.
-const SEEN: f64 = 7.0;
+const CABLE_SEEN: f64 = 7.0;
 /// Least ratio of the largest pull to the weight.
 const LEAST_PULL: f64 = 0.03;
-/// The fingers' acceleration is the barrel's up to this share.
+/// Relative error of the fingers' acceleration as that of the barrel.
 const ACCELERATION_SHARE: f64 = 0.05;
-/// No force is known better, N.
+/// Least noise of a force, N.
 const LEAST_NOISE_N: f64 = 1e-4;
-/// The pull turns, so that the anchor shows, when the bend is this many standard errors above zero.
+/// Bend in standard errors above zero from which the pull turns, so that the anchor shows.
 const TURNS: f64 = 6.0;
 
 /// Samples while the barrel hangs.
@@ -91,13 +92,17 @@ pub struct Pull {
     pub taut: usize,
 }
 
-/// Columns: mass, growth, offset; stiffness, damping. Index of the mass.
+/// Index of the mass.
+/// Derived: column of the fit: mass, growth, offset, stiffness, damping, then the geometry.
 pub const MASS: usize = 0;
 /// Index of the growth of the mass.
+/// Derived: column of the fit, as for [`MASS`].
 pub const GROWTH: usize = 1;
 /// Index of the cable's stiffness.
+/// Derived: column of the fit, as for [`MASS`].
 pub const STIFFNESS: usize = 3;
 /// Index of angle, taut place and bend.
+/// Derived: column of the fit, as for [`MASS`].
 pub const GEOMETRY: usize = 5;
 
 impl Pull {
@@ -120,7 +125,7 @@ impl Pull {
             let strongest_n =
                 rows.place_m.iter().filter_map(|p| Some(stiffness * held.cable?.stretch(*p).0)).fold(0.0, f64::max);
             let weight_n = held.values[MASS] * rows.gravity;
-            let clear = shown(STIFFNESS) && stiffness > SEEN * held.around.std_errors[STIFFNESS];
+            let clear = shown(STIFFNESS) && stiffness > CABLE_SEEN * held.around.std_errors[STIFFNESS];
             if clear && strongest_n > LEAST_PULL * weight_n {
                 return Ok(held);
             }
@@ -259,7 +264,7 @@ fn refine(rows: &Rows, start: Cable, bent: bool) -> Cable {
     let which = if bent { 3 } else { 2 };
     let mut cable = start;
     let Some((_, mut cost)) = solve(rows, &cable, GEOMETRY) else { return start };
-    for _ in 0..STEPS {
+    for _ in 0..NEWTON_STEPS {
         let Some((values, _)) = solve(rows, &cable, GEOMETRY) else { return cable };
         let (mut columns, target) = columns(rows, Some(&cable));
         columns.extend((0..which).map(|k| geometry_column(rows, &cable, &values, k)));

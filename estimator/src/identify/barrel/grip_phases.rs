@@ -5,20 +5,20 @@ use super::cable_force::{GEOMETRY, Pull, STIFFNESS};
 use super::report::{CABLE, OBJECT, Seen, Value, error_of};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
+use crate::identify::long_run_variance::HALF_INTERVAL;
+use crate::identify::pads::HAND_N_M;
 use haptics::Vec2;
 use nalgebra::DMatrix;
 
 /// Uncertainty of the shift of the barrel's middle, as a share of it: held above or below its middle, a pulled barrel
 /// turns in the grip.
-const TURN_SHARE: f64 = 0.25;
+const GRIP_TURN_SHARE: f64 = 0.25;
 /// Uncertainty of that shift, m.
 const SWINGS_M: f64 = 4e-5;
-/// The same while the pull grows, m.
+/// Uncertainty of the shift while the pull grows, m.
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
 /// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
-/// Stiffness of a hand whose give was not seen, N/m.
-const HAND_N_M: f64 = 1000.0;
 
 impl Seen<'_> {
     /// A value of the cable with its own error and the changes by softer pads.
@@ -87,7 +87,7 @@ impl Seen<'_> {
         let (u, far) = (cable.away(), 1.0 / cable.bend_1_m);
         // Along the pull the distance is uncertain, across it the direction.
         let across = Vec2::new(-u.y, u.x);
-        let model_m = SWINGS_M.hypot(TURN_SHARE * self.taken.turned_m);
+        let model_m = SWINGS_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m);
         let anchor_error = |k: usize, c: &DMatrix<f64>| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
             let square = (by_angle * error_of(c, GEOMETRY)).powi(2)
@@ -121,7 +121,7 @@ impl Seen<'_> {
     fn stiffness_by(&self, covariance: &DMatrix<f64>) -> Option<Value> {
         let stiffness = self.taken.pull.values.get(STIFFNESS)?;
         let stretch_m = self.strongest_n() / stiffness;
-        let model = stiffness * SWINGS_AS_PULLED_M.hypot(TURN_SHARE * self.taken.turned_m) / stretch_m;
+        let model = stiffness * SWINGS_AS_PULLED_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m) / stretch_m;
         let own = error_of(covariance, STIFFNESS).hypot(model);
         self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
     }
@@ -164,7 +164,7 @@ impl Seen<'_> {
             constraint_force_n: Some(-self.strongest_n()),
             yielding: Some(Yielding {
                 stiffness_n_m: Some(stiffness),
-                interval_n_m: ((stiffness - 1.96 * error).max(0.0), Some(stiffness + 1.96 * error)),
+                interval_n_m: ((stiffness - HALF_INTERVAL * error).max(0.0), Some(stiffness + HALF_INTERVAL * error)),
                 manipulator_n_m: hand,
             }),
             evidence: format!(

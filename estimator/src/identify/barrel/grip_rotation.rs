@@ -7,14 +7,12 @@
 
 use super::signals::Signals;
 use crate::estimate::EstimateError;
+use crate::identify::limits::LEAST_FIT_ROWS;
 use crate::identify::linear::least_squares;
+use crate::identify::pads::CLOSED_GRIP_SHARE;
 use haptics::Vec2;
 
-/// A grip counts as closed from this share of its usual force on.
-const CLOSED: f64 = 0.5;
-/// Fewer samples show no balance.
-const LEAST_ROWS: usize = 12;
-/// Largest distance of the grip from its middle, m: a larger estimate is no balance of a stiff barrel.
+/// Largest distance of the grip from the barrel's middle, m: a larger estimate is no balance of a stiff barrel.
 const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.
@@ -31,9 +29,9 @@ impl GripRotation {
     pub fn of(signals: &Signals, hanging: &[usize], give: Vec2) -> Result<Self, EstimateError> {
         let held = signals.held();
         let first = hanging.first().copied().unwrap_or(0);
-        let closed = |i: &usize| *i < first && signals.grip_n[*i] > CLOSED * signals.levels.usual_grip_n;
+        let closed = |i: &usize| *i < first && signals.grip_n[*i] > CLOSED_GRIP_SHARE * signals.levels.usual_grip_n;
         let standing: Vec<usize> = held.into_iter().filter(closed).collect();
-        if standing.is_empty() || hanging.len() < LEAST_ROWS {
+        if standing.is_empty() || hanging.len() < LEAST_FIT_ROWS {
             return Ok(Self::default());
         }
         // The give of one finger is twice that of both together.

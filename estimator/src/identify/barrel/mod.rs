@@ -16,6 +16,7 @@ mod slip;
 mod wall_stiffness;
 
 use crate::estimate::{EstimateError, Fit};
+use crate::identify::limits::LEAST_FIT_ROWS;
 use crate::segment::{Method, Segmentation, Thresholds};
 use cable_force::{Pull, Rows};
 use grip_rotation::GripRotation;
@@ -26,9 +27,6 @@ use sensor_zero::SensorZero;
 use signals::Signals;
 use wall_stiffness::Grip;
 
-/// Fewer rows while it hangs tell nothing.
-const LEAST_ROWS: usize = 12;
-
 /// Fits one recording; the segmentation that was used comes with the fit.
 pub fn fit_by(
     method: Method,
@@ -37,7 +35,7 @@ pub fn fit_by(
 ) -> Result<(Fit, Segmentation), EstimateError> {
     let signals = Signals::of(method, recording, thresholds)?;
     let hanging: Vec<usize> = signals.hanging().iter().flat_map(|lift| signals.rows(lift)).collect();
-    if hanging.len() < LEAST_ROWS {
+    if hanging.len() < LEAST_FIT_ROWS {
         return Err(EstimateError::Other(format!(
             "no barrel was lifted off the floor in {}: there is nothing to weigh; check the task and the signs of the forces",
             recording.name
@@ -60,7 +58,7 @@ pub fn fit_by(
             // The barrel was not at the fingers' place while the cable pulled: only the rows before count.
             let slack = |p: &Vec2| cable.stretch(*p).0 < -way_m.abs();
             let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
-            let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
+            let hanging = &hanging[..before.clamp(LEAST_FIT_ROWS, hanging.len())];
             let zero = SensorZero::at(&signals, middle_s(&signals, hanging))?;
             let rows = rows(&signals, hanging, usual, &swing, &zero, gravity);
             let pull = Pull::without_cable(&rows)?;

@@ -6,6 +6,8 @@ use super::sensor_zero::SensorZero;
 use super::signals::Signals;
 use super::wall_stiffness::Grip;
 use crate::estimate::{Fit, Parameter};
+use crate::identify::limits::SIGNIFICANT;
+use crate::identify::pads::UNKNOWN_COMPRESSION;
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
 use haptics::recording::Recording;
@@ -16,10 +18,6 @@ pub(crate) const OBJECT: &str = "barrel";
 /// Object name of the cable that holds it.
 pub(crate) const CABLE: &str = "cable";
 
-/// Width of a barrel whose sides' give could not be measured: the thesis's blocks came out 7 % too narrow.
-const UNKNOWN_COMPRESSION: f64 = 0.07;
-/// A wall's give counts when it is this many standard errors above zero.
-const SEEN: f64 = 3.0;
 /// Error of a cable's pull along and across, as a share of it: fingers that move the barrel feel it a little late, and
 /// their sensors' axes are not quite those of their positions.
 const PULL_SHARE: f64 = 2e-4;
@@ -151,11 +149,11 @@ impl Seen<'_> {
             }
             Some(pad_n_m) => {
                 let left = give - 1.0 / pad_n_m;
-                if left > SEEN * error {
+                if left > SIGNIFICANT * error {
                     let how = "what pads of the stated stiffness leave of the give of the sides";
                     let drawn = sides.resampled.map(|(_, drawn)| drawn / (left * left));
                     self.given(OBJECT, WALL, stiffness(left), how).with_bootstrap(drawn)
-                } else if left > -SEEN * error {
+                } else if left > -SIGNIFICANT * error {
                     let least = 1.0 / (left + 2.0 * error);
                     let why = format!("the pads explain all of the give: the wall is stiffer than {least:.0} N/m");
                     self.missing(OBJECT, WALL, &why)
@@ -189,7 +187,7 @@ impl Seen<'_> {
             let content = mass - empty;
             let how = "mass less the stated empty_mass_kg";
             found.push(self.given_by(OBJECT, "content_mass_kg", |c| (content, self.mass_by(c).1), how));
-            if content > SEEN * mass_error {
+            if content > SIGNIFICANT * mass_error {
                 let how = "mass of the contents over the volume of the whole barrel";
                 let density = |c: &DMatrix<f64>| over(content, self.mass_by(c).1);
                 found.push(self.given_by(OBJECT, "content_density_kg_m3", density, how));

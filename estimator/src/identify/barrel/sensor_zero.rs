@@ -5,8 +5,8 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
 
-/// A free phase before the first grip, or after the last, counts from this length on, s.
-const LEAST_FREE_S: f64 = 0.2;
+/// Least length of a free phase before the first grip or after the last, s.
+const LEAST_FREE_PHASE_S: f64 = 0.2;
 
 /// The zero of both sensors together.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,7 +32,7 @@ impl SensorZero {
         let (first, last) = (held.first().map_or(0.0, time), held.last().map_or(0.0, time));
         let lasts = |side: &dyn Fn(f64) -> bool| {
             let inside: Vec<f64> = free.iter().map(time).filter(|t| side(*t)).collect();
-            inside.first().zip(inside.last()).is_some_and(|(a, b)| b - a > LEAST_FREE_S)
+            inside.first().zip(inside.last()).is_some_and(|(a, b)| b - a > LEAST_FREE_PHASE_S)
         };
         let both = lasts(&|t| t < first) && lasts(&|t| t > last);
         // Unfiltered: a filter would carry a touch into the free samples beside it.
@@ -44,7 +44,7 @@ impl SensorZero {
             columns.push(since);
         }
         let fit = least_squares(&columns, &lift, None)?;
-        let span_s = (last - first).max(LEAST_FREE_S);
+        let span_s = (last - first).max(LEAST_FREE_PHASE_S);
         Ok(Self {
             net_n: Vec2::new(0.0, fit.values[0]),
             error_n: fit.std_errors[0].hypot(resolution_n),

@@ -2,6 +2,8 @@
 //! in which it was held.
 
 use crate::estimate::EstimateError;
+use crate::identify::limits::LEAST_FIT_ROWS;
+use crate::identify::pads::SOFTEST_N_M;
 use crate::segment::definition::{Definition, MOST_CARRIES};
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by};
@@ -12,8 +14,6 @@ use haptics::recording::{Recording, Task};
 
 /// Share of its height from which a lift counts: below it the floor may still carry a part.
 const CLEAR_OF_FLOOR: f64 = 0.25;
-/// Shear stiffness of two fingers, N/m, whose stretch under the weight is enough for a lift, too: no pads are softer.
-const SOFTEST_N_M: f64 = 500.0;
 
 /// The recording of a barrel.
 pub struct Signals {
@@ -158,8 +158,7 @@ impl Signals {
 
     /// Samples a filter window apart: neighbours share their noise.
     pub fn rows(&self, samples: &[usize]) -> Vec<usize> {
-        const LEAST_ROWS: usize = 12;
-        let stride = self.stride.min(samples.len() / LEAST_ROWS).max(1);
+        let stride = self.stride.min(samples.len() / LEAST_FIT_ROWS).max(1);
         samples.iter().copied().step_by(stride).collect()
     }
 }

@@ -7,18 +7,17 @@
 
 use super::signals::Signals;
 use super::wall_stiffness::weight_n;
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 
 /// Least way of a slip, m: pads creep, and a floor is not quite even.
 const CREEP_M: f64 = 4e-5;
-/// Least size of a slip, standard errors.
-const CLEAR: f64 = 4.0;
 /// Share of the weight at which heights are compared.
-const HALF: f64 = 0.5;
+const COMPARED_LOAD: f64 = 0.5;
 
 /// Way that the barrel slid down (below 0: up) in the grip within its lifts, m; `None` if it did not, or was not put
 /// down again.
 pub fn slipped_m(signals: &Signals) -> Option<f64> {
-    let half_n = HALF * weight_n(signals)?;
+    let half_n = COMPARED_LOAD * weight_n(signals)?;
     let lifts = signals.hanging();
     let ways = lifts.iter().filter_map(|lift| {
         let (first, last) = (*lift.first()?, *lift.last()?);
@@ -26,7 +25,7 @@ pub fn slipped_m(signals: &Signals) -> Option<f64> {
         let down = (last + 1..signals.time_s.len()).find(|i| signals.net_n[*i].y < half_n)?;
         Some(height_m(signals, down, half_n) - height_m(signals, up, half_n))
     });
-    let noise_m = CLEAR * signals.resolution_m.hypot(signals.place_noise_m());
+    let noise_m = CLEARLY_SIGNIFICANT * signals.resolution_m.hypot(signals.place_noise_m());
     ways.max_by(|a, b| a.abs().total_cmp(&b.abs())).filter(|way| way.abs() > CREEP_M.max(noise_m))
 }
 

@@ -3,25 +3,23 @@
 
 use super::signals::Signals;
 use crate::estimate::EstimateError;
+use crate::identify::limits::{LEAST_LINE_ROWS, SIGNIFICANT};
 use crate::identify::linear::least_squares;
-use crate::identify::pads::{self, EVEN, PadFit, SHEAR_GIVE, width_over_force};
+use crate::identify::pads::{self, EVEN, LEAST_GRIP_VARIATION, PadFit, SHEAR_GIVE, width_over_force};
 use crate::segment::threshold::percentile;
 
-/// The grip must vary by this share of its mean for the give to be told from the width.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
-/// Give of a pad that was not measured, m/N, and how well that is known: foam of 2 mm (thesis, 1.1 mm at 2.75 N).
+/// Give of a pad that was not measured, m/N, and its standard deviation.
+/// Source: the thesis: pads of foam of 2 mm gave 1.1 mm at 2.75 N.
 const USUAL_GIVE_M_N: (f64, f64) = (4e-4, 2e-4);
-/// Share of the give at lift-off that is the pads' shear, and not the floor's: evenly likely between 0.86 and 1 (floors are many times
-/// as stiff as pads).
+/// Share of the give at lift-off that is the pads' shear, and not the floor's, with its error.
+/// Derived: evenly likely between 0.86 and 1, because floors are many times as stiff as pads.
 const SHEAR_SHARE: (f64, f64) = (0.93, 0.07 * EVEN);
-/// Lift between these shares of the weight: on the floor, and already carried in part.
+/// Lift between these shares of the weight: the barrel stands on the floor and is carried in part.
 const PARTLY: (f64, f64) = (0.1, 0.85);
-/// The weight by itself, among all that the fingers carried while a cable pulled, too: this share of the samples had less.
+/// Share of the samples below the weight by itself: a cable pulls in many of those above, too.
 const LEAST_CARRIED: f64 = 0.1;
-/// A pull to the side of more than this share of the weight turns the barrel in the grip, so that its width is not seen.
+/// Pull to the side, as a share of the weight, from which the barrel turns in the grip, so that its width is not seen.
 const SIDEWAYS: f64 = 0.05;
-/// Fewer samples show no give.
-const LEAST_ROWS: usize = 8;
 
 /// Estimates from the grip.
 pub struct Grip {
@@ -83,13 +81,13 @@ fn shear(signals: &Signals) -> Result<Option<(f64, f64)>, EstimateError> {
     let first = held.first().copied().unwrap_or(off);
     let partly = |i: &usize| (PARTLY.0 * weight_n..PARTLY.1 * weight_n).contains(&signals.net_n[*i].y);
     let rows: Vec<usize> = (first..off).filter(partly).collect();
-    if rows.len() < LEAST_ROWS {
+    if rows.len() < LEAST_LINE_ROWS {
         return Ok(None);
     }
     let lift: Vec<f64> = rows.iter().map(|i| signals.net_n[*i].y).collect();
     let height: Vec<f64> = rows.iter().map(|i| signals.position[*i].y).collect();
     let fit = least_squares(&[vec![1.0; rows.len()], lift], &height, None)?;
     let (slope, error) = (fit.values[1], fit.std_errors[1]);
-    let seen = fit.identified[1] && slope > 3.0 * error;
+    let seen = fit.identified[1] && slope > SIGNIFICANT * error;
     Ok(seen.then(|| (SHEAR_SHARE.0 * slope, (SHEAR_SHARE.1 * slope).hypot(error))))
 }

@@ -12,23 +12,25 @@
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::CONTACT_NOISES;
 use crate::identify::linear::least_squares;
+use crate::identify::pads::SOFTEST_N_M;
 use crate::segment::threshold::percentile;
 use haptics::Vec2;
 
-/// Length of the windows that are looked at, and their distance, s.
-const WINDOW_S: f64 = 0.05;
-const STEP_S: f64 = 0.01;
+/// Length of the windows that are looked at, s.
+const SLIP_WINDOW_S: f64 = 0.05;
+/// Distance between these windows, s.
+const WINDOW_STEP_S: f64 = 0.01;
 /// Least deficit of the lift, as a share of the force that the block needs.
 const MISSING: f64 = 0.06;
-/// Least change of the pinch within a window, as a share, or least motion of the tips beyond the give of pads of
-/// [`SOFTEST_N_M`], m.
+/// Least change of the pinch within a window, as a share of it.
 const PINCH_CHANGES: f64 = 0.08;
+/// Least motion of the tips in a window beyond the give of the softest pads, m.
 const SLIDES_M: f64 = 0.3e-3;
-const SOFTEST_N_M: f64 = 500.0;
-/// A slip's ratio is at least this share of the largest ratio that was certainly held.
+/// Least ratio of a slip, as a share of the largest ratio that was certainly held.
 const OF_THE_BOUND: f64 = 0.9;
-/// The two fingers' ratios agree within this share: one that only leans has another one.
+/// Largest difference of the two fingers' ratios, as a share: one that only leans has another ratio.
 const FINGERS_AGREE: f64 = 0.15;
 /// Largest change of the ratio from the first to the second half of a window, as a share of itself, beyond doubt.
 const KEEPS: f64 = 0.2;
@@ -37,7 +39,7 @@ const KEEPS: f64 = 0.2;
 const OF_THE_PINCH: f64 = 0.5;
 /// Number of standard errors beyond doubt.
 const DOUBT: f64 = 2.0;
-/// Onset: the first part of a slip, s; later the friction is that of motion.
+/// Duration of a slip's onset, s; later the friction is that of motion.
 const ONSET_S: f64 = 0.1;
 
 impl Blocks<'_> {
@@ -101,7 +103,7 @@ impl Blocks<'_> {
 
     /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
     fn slip(&self, number: usize, ratio: f64) -> Option<Slip> {
-        const NOISES: f64 = 8.0;
+        /// Time after the end of a grasp in which slips still count, s.
         const AFTER_S: f64 = 0.3;
         let carried = self.shown(MAIN, number);
         let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
@@ -110,17 +112,18 @@ impl Blocks<'_> {
         let grasp = self.shown("friction", number);
         let time = &self.signals.time_s;
         let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
-        let least_grip_n = NOISES * self.levels.force_noise_n;
+        let least_grip_n = CONTACT_NOISES * self.levels.force_noise_n;
         slip(self, *grasp.first()?, end, Held { weight_n, least_grip_n, ratio })
     }
 
     /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.
     pub(super) fn mean_force(&self, finger: usize, i: usize) -> Vec2 {
-        const HALF_S: f64 = 0.03;
+        /// Half of the window over which a tip force is averaged, s.
+        const MEAN_FORCE_HALF_S: f64 = 0.03;
         let time = &self.signals.time_s;
-        let first = time[..i].partition_point(|t| *t < time[i] - HALF_S);
+        let first = time[..i].partition_point(|t| *t < time[i] - MEAN_FORCE_HALF_S);
         let mut end = i + 1;
-        while end < time.len() && time[end] <= time[i] + HALF_S {
+        while end < time.len() && time[end] <= time[i] + MEAN_FORCE_HALF_S {
             end += 1;
         }
         (first..end).map(|j| self.force(finger, j)).sum::<Vec2>() / (end - first) as f64
@@ -156,17 +159,17 @@ pub(super) fn slip(blocks: &Blocks<'_>, first: usize, end: usize, held: Held) ->
     let mut at = first;
     let mut quiet_until = f64::NEG_INFINITY;
     while at < end {
-        let stop = time[..end].partition_point(|t| *t < time[at] + WINDOW_S);
+        let stop = time[..end].partition_point(|t| *t < time[at] + SLIP_WINDOW_S);
         let window = (at, stop.max(at + 1));
         if time[at] >= quiet_until && slides(blocks, window, held) {
             // The first window that slides may still begin before it does.
-            let begin = time[..end].partition_point(|t| *t < time[at] + 0.5 * WINDOW_S);
+            let begin = time[..end].partition_point(|t| *t < time[at] + 0.5 * SLIP_WINDOW_S);
             let onset_end = time[..end].partition_point(|t| *t < time[at] + ONSET_S);
             onsets.push((begin, onset_end.max(begin + 1)));
             // One slip has one onset.
             quiet_until = time[at] + 1.0;
         }
-        at = time[..end].partition_point(|t| *t < time[at] + STEP_S).max(at + 1);
+        at = time[..end].partition_point(|t| *t < time[at] + WINDOW_STEP_S).max(at + 1);
     }
     let at_s = time[onsets.first()?.0];
     let (mut shear, mut normal) = (Vec::new(), Vec::new());

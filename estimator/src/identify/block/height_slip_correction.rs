@@ -7,8 +7,8 @@ use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
 use crate::identify::linear::least_squares;
 use crate::signal::task::half_width;
 
-/// Fewer rows of a rest show nothing.
-const LEAST_ROWS: usize = 8;
+/// Least number of rows of a rest that show a slip.
+const LEAST_REST_ROWS: usize = 8;
 /// Least decrease of −2 ln(likelihood) by a slip: no rows can be held out of so few, so it must be beyond doubt.
 const SURE: f64 = 50.0;
 /// Least size of a slip in its own standard errors.
@@ -127,7 +127,7 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
     for (number, rest) in rests.iter().enumerate() {
         let (from_s, samples) = standing(blocks, rest, number % 2 == 1);
         let picked: Vec<usize> = samples.into_iter().step_by(2 * half).collect();
-        if picked.len() < LEAST_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i])) {
+        if picked.len() < LEAST_REST_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i])) {
             continue;
         }
         let first = rows.time_s.len();

@@ -18,18 +18,18 @@ use super::rests::{Rest, rests};
 use super::signals::{Blocks, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::bootstrap::{Resampled, block_bootstrap_within};
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::{LinearFit, least_squares};
 use std::ops::Range;
 
-/// Fewer samples of a block at rest in the grip show no height.
-const LEAST_SAMPLES: usize = 5;
+/// Least number of samples of a block at rest in the grip that show a height.
+const LEAST_REST_SAMPLES: usize = 5;
 /// Relative difference of the give of the floor's contact from that between blocks, one standard deviation. They cannot
 /// be told apart, because the floor's give looks like the pads' shear.
 const CONTACTS_DIFFER: f64 = 0.33;
-/// Prior standard deviation of the give of a contact, m/N: 5 kN/m is a soft block.
+/// Prior standard deviation of the give of a contact, m/N.
+/// Derived: 1/(5 kN/m), the give of a soft block.
 const GIVE_BEFORE: f64 = 2e-4;
-/// A shear stiffness is reported when its give is this many standard errors above zero.
-const SIGNIFICANT: f64 = 3.0;
 
 /// The regression's rows and columns.
 struct Rows {
@@ -96,7 +96,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
     let rows = rows(seen, &at);
     let rests = || seen.iter().flat_map(|one| &one.rests);
     let mut parameters = Vec::new();
-    let shown = |rest: &Rest| rest.samples.len() >= LEAST_SAMPLES;
+    let shown = |rest: &Rest| rest.samples.len() >= LEAST_REST_SAMPLES;
     if !rests().any(shown) || rows.height.len() <= rows.columns.len() {
         let why = "no block was held still on the ground";
         parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)));
@@ -114,7 +114,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
         let column = at.blocks + number - 1;
         let below = rests().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
         let samples = rests().map(|r| r.samples.len()).sum::<usize>();
-        if below < LEAST_SAMPLES || !fit.identified[column] {
+        if below < LEAST_REST_SAMPLES || !fit.identified[column] {
             let why =
                 "it was never clearly below a block that was carried to or from a known height; unstack and restack it";
             parameters.push(Parameter::unidentified(&object(number), "height_m", below, why));
@@ -160,7 +160,7 @@ fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
     let columns = vec![Vec::new(); at.contact + 1];
     let mut rows = Rows { columns, height: Vec::new(), floor: Vec::new(), slipped: Vec::new(), stretches: Vec::new() };
     for (Stacked { blocks, weights_n, rests, slips }, grasp) in seen.iter().zip(&at.grasps) {
-        for (number, rest) in rests.iter().enumerate().filter(|(_, r)| r.samples.len() >= LEAST_SAMPLES) {
+        for (number, rest) in rests.iter().enumerate().filter(|(_, r)| r.samples.len() >= LEAST_REST_SAMPLES) {
             let slip = slips.iter().find(|slip| slip.rest == number);
             let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
             let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();

@@ -12,17 +12,13 @@ use super::single_fit::describe;
 use super::weight::weight_and_mass;
 use crate::estimate::{Correlated, EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::block_bootstrap_within;
-use crate::identify::pads::{Grip, Grips, widths_over_force};
+use crate::identify::limits::SIGNIFICANT;
+use crate::identify::pads::{Grip, Grips, LEAST_GRIP_VARIATION, widths_over_force};
 use crate::identify::robust::{RobustFit, robust};
 use crate::segment::{Method, Segmentation, Thresholds};
 use crate::signal::task::half_width;
 use haptics::recording::Recording;
 use std::ops::Range;
-
-/// The grip must vary by this share of its mean within the holds for the pads' give to be told from the widths.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
-/// A stiffness is reported when its give is this many standard errors above zero.
-const SIGNIFICANT: f64 = 3.0;
 
 /// Every recording's own fit and segmentation, and the shared parameters from all of them at once.
 pub struct JointFit {

@@ -2,14 +2,13 @@
 
 use super::signals::Blocks;
 use crate::estimate::Parameter;
+use crate::identify::limits::LEAST_FREE_S;
 use crate::online::block::leak_parameter;
 use crate::online::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
 use crate::segment::SystemState;
 use crate::signal::task::smooth;
 
-/// Shorter rests are not free motion, s.
-const LEAST_FREE_S: f64 = 0.25;
-/// The ends of free motion may touch already, s.
+/// Time at either end of free motion that may touch already, s.
 const ENDS_S: f64 = 0.05;
 
 /// Times and forces.

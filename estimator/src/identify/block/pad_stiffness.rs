@@ -2,6 +2,7 @@
 
 use super::signals::Blocks;
 use crate::estimate::Parameter;
+use crate::identify::limits::SIGNIFICANT;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A measured give of a pad, m/N, with its standard error by covariance and by resampling.
@@ -29,7 +30,6 @@ impl Blocks<'_> {
 ///
 /// A scatter larger than their errors means that the errors are too small by that ratio (Birge 1932).
 fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
-    const SIGNIFICANT: f64 = 3.0;
     let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();
     let weights: f64 = gives.iter().map(|g| g.error.powi(-2)).sum();
     let give = gives.iter().map(|g| g.m_per_n * g.error.powi(-2)).sum::<f64>() / weights;

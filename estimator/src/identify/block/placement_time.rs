@@ -2,23 +2,22 @@
 //! of the fingers (pads that yield, a slip of the grip) from lowering, so the earlier it is seen the better.
 
 use super::signals::Blocks;
+use crate::identify::limits::SIGNIFICANT;
 use crate::segment::threshold::percentile;
 use std::ops::Range;
 
-/// A weight that changes by less than this share in a carry is taken for one that does not.
+/// Least change of a weight in a carry, as a share of the weight.
 const LEAST_CHANGE: f64 = 0.1;
 /// Share of the weight missing from the lift at which the ground takes a part of the load.
-const LEAST_SHARE: f64 = 0.05;
-/// Least size of that deficit in standard deviations of the force error while the block is carried.
-const CLEARLY: f64 = 3.0;
-/// Share of the weight and time, s, up to which the load is followed from there; the line through it tells the
-/// beginning.
-const HALF: f64 = 0.5;
+const GROUND_SHARE: f64 = 0.05;
+/// Share of the weight up to which the load is followed; the line through it tells the beginning.
+const FOLLOWED_SHARE: f64 = 0.5;
+/// Time over which the load is followed at most, s.
 const RISE_S: f64 = 0.2;
 /// Shares of the weight up to which lines through the first part are fitted, too.
 const FIRST: [f64; 2] = [0.25, 0.12];
-/// Largest lead of the beginning so found, s.
-const BEFORE_S: f64 = 0.06;
+/// Largest lead of the beginning that the line tells, s.
+const LARGEST_LEAD_S: f64 = 0.06;
 
 /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out. `rows`: samples in which the block is carried.
 pub(crate) fn usual_lift(time_s: &[f64], rows: &[usize], lift_n: &dyn Fn(usize) -> f64) -> impl Fn(f64) -> f64 + use<> {
@@ -58,12 +57,12 @@ pub(crate) fn stands_from(
     let limit = |off: &dyn Fn(usize) -> f64| {
         let mut all: Vec<f64> = carried.iter().map(|i| off(*i)).collect();
         // Half of the range of two thirds: a few rows at the ends may stand already.
-        0.5 * CLEARLY * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
+        0.5 * SIGNIFICANT * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
     };
     let plain_n = limit(&missing);
     let moving_n = limit(&|i| missing(i) + usual(i) * blocks.acceleration_y[i] / gravity);
     let stands = |i: &usize| {
-        let (plain, least) = (missing(*i), LEAST_SHARE * usual(*i));
+        let (plain, least) = (missing(*i), GROUND_SHARE * usual(*i));
         plain > plain_n.max(least) || plain + falls(*i) > moving_n.max(least)
     };
     let (least, end) = (within.start, within.end);
@@ -71,11 +70,11 @@ pub(crate) fn stands_from(
     if clear == end {
         return end;
     }
-    let rises = |i: &usize| missing(*i) < HALF * usual(*i) && time_s[*i] - time_s[clear] < RISE_S;
+    let rises = |i: &usize| missing(*i) < FOLLOWED_SHARE * usual(*i) && time_s[*i] - time_s[clear] < RISE_S;
     let rise = (clear..time_s.len()).take_while(rises);
     let rise: Vec<(f64, f64)> = rise.map(|i| (time_s[i], missing(i))).collect();
-    let begins_s = begin(&rise, usual(clear), plain_n.min(moving_n) / CLEARLY);
-    let begins_s = begins_s.map_or(time_s[clear], |s| s.clamp(time_s[clear] - BEFORE_S, time_s[clear]));
+    let begins_s = begin(&rise, usual(clear), plain_n.min(moving_n) / SIGNIFICANT);
+    let begins_s = begins_s.map_or(time_s[clear], |s| s.clamp(time_s[clear] - LARGEST_LEAD_S, time_s[clear]));
     time_s[..clear].partition_point(|t| *t < begins_s).max(least)
 }
 
@@ -87,7 +86,7 @@ fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
     for share in FIRST {
         let end = rise.iter().position(|(_, load)| *load > share * weight_n).map_or(rise.len(), |last| last + 1);
         if let Some((own_s, error_s)) = zero(&rise[..end], noise_n)
-            && own_s - CLEARLY * error_s > begins_s
+            && own_s - SIGNIFICANT * error_s > begins_s
         {
             begins_s = own_s;
         }

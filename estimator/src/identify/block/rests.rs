@@ -2,7 +2,7 @@
 
 use super::signals::{Blocks, MAIN};
 
-/// A block is below another one when its grip was lower by at least this, m.
+/// Least height of a block above another one, m, by the grip's place.
 const LEAST_STEP_M: f64 = 3e-3;
 
 /// One end of a carry: where the block rested in the grip.

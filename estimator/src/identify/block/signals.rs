@@ -1,6 +1,7 @@
 //! Signals of a recording of blocks: states, calmed channels, and the samples that show a parameter of a block.
 
 use crate::estimate::EstimateError;
+use crate::identify::limits::LEAST_FIT_ROWS;
 use crate::identify::linear::least_squares;
 use crate::segment::definition::{Definition, MOST_CARRIES};
 use crate::segment::threshold::Levels;
@@ -141,9 +142,8 @@ impl<'a> Blocks<'a> {
     /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours
     /// that share their noise are too small.
     pub(crate) fn rows(&self, samples: &[usize]) -> Vec<usize> {
-        const LEAST_ROWS: usize = 12;
         let window = 2 * half_width(&self.signals.time_s);
-        let stride = window.min(samples.len() / LEAST_ROWS).max(1);
+        let stride = window.min(samples.len() / LEAST_FIT_ROWS).max(1);
         samples.iter().copied().step_by(stride).collect()
     }
 

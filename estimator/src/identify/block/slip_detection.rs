@@ -6,21 +6,22 @@ use std::ops::Range;
 
 /// Durations of a slip in the search for the best place, s.
 const SEARCHED_S: [f64; 9] = [0.0, 0.02, 0.05, 0.08, 0.1, 0.13, 0.17, 0.23, 0.3];
-/// Most starts of that search in one rest.
+/// Largest number of starts of that search in one rest.
 const MOST_STARTS: usize = 60;
-/// Number of rounds in which the best place is approached; each has steps of `SHRINKS` times those before.
-const ROUNDS: usize = 8;
+/// Number of rounds in which the best place is approached.
+const APPROACH_ROUNDS: usize = 8;
+/// Size of a round's steps, as a share of those of the round before.
 const SHRINKS: f64 = 0.6;
 /// Least share of a slip between the first and the last row of its rest: with less, any slip would fit.
-const SEEN: f64 = 0.3;
+const SEEN_SHARE: f64 = 0.3;
 /// Least share of a regressor that is not in the model's own space.
 const OWN: f64 = 1e-3;
 /// Relative uncertainty (one standard deviation) of the part of a slip before its rest's first row: it need not be
 /// even.
 const UNSEEN: f64 = 0.3;
-/// No slip goes quite evenly: its rows are off an even one by this share of its way.
+/// Deviation of a slip's rows from an even slip, as a share of its way.
 const SHAPE: f64 = 0.05;
-/// Less than this is how blocks turn in the grasp and how flat they are, m.
+/// Least way of a slip, m. Turns of blocks in the grasp and their unevenness stay below it.
 pub(crate) const LEAST_M: f64 = 3e-4;
 
 /// Largest range of heights, m: with more the block does not stand in the grip, whatever the states say.
@@ -85,6 +86,7 @@ impl Slip {
     /// The same in the mean over a filter's window: the part that a row shows.
     pub(crate) fn shown(self, time_s: f64, half_s: f64) -> f64 {
         /// Places in the window, as shares of its half, and how much they count.
+        /// Derived: the parabola 1 − x² at five evenly spaced places.
         const WINDOW: [(f64, f64); 5] = [(-0.8, 0.36), (-0.4, 0.84), (0.0, 1.0), (0.4, 0.84), (0.8, 0.36)];
         let weights: f64 = WINDOW.iter().map(|(_, w)| w).sum();
         WINDOW.iter().map(|(at, w)| w * self.done(time_s + at * half_s)).sum::<f64>() / weights
@@ -93,7 +95,7 @@ impl Slip {
 
 /// True if enough of the slip lies within the rows; the part before the first row is in the rest's own height.
 pub(crate) fn is_seen(column: &[f64]) -> bool {
-    column.last().zip(column.first()).is_some_and(|(last, first)| last - first > SEEN)
+    column.last().zip(column.first()).is_some_and(|(last, first)| last - first > SEEN_SHARE)
 }
 
 impl Heights<'_> {
@@ -151,7 +153,7 @@ impl Heights<'_> {
         });
         let mut best = self.most(left, everywhere)?;
         let mut step = 1.0;
-        for _ in 0..ROUNDS {
+        for _ in 0..APPROACH_ROUNDS {
             let near = self.most(left, self.about(best.slip, step).into_iter());
             best = near.filter(|b| b.taken_m2 > best.taken_m2).unwrap_or(best);
             step *= SHRINKS;
@@ -181,13 +183,14 @@ impl Heights<'_> {
 
     /// Slips that begin and end within half a window of this one, and all that begin earlier and end with it.
     fn likely(&self, best: Slip) -> Vec<Slip> {
-        const STEPS: usize = 12;
+        /// Number of steps between the first and the latest start.
+        const START_STEPS: usize = 12;
         let (first_s, last_s) = self.bounds(best.rest);
         let latest_s = (best.start_s + 0.5 * self.half_s).min(last_s).max(first_s);
-        let start = |k: usize| first_s + (latest_s - first_s) * k as f64 / STEPS as f64;
+        let start = |k: usize| first_s + (latest_s - first_s) * k as f64 / START_STEPS as f64;
         // A rest is long, and so may be the part before a slip within it.
         let earliest_s = best.start_s - 2.0 * self.half_s - best.length_s;
-        let starts = (0..=STEPS).map(start).filter(|s| *s >= earliest_s);
+        let starts = (0..=START_STEPS).map(start).filter(|s| *s >= earliest_s);
         let near = (-4..=2).map(|k| (best.start_s + 0.25 * f64::from(k) * self.half_s).clamp(first_s, latest_s));
         let with = |start_s: f64| {
             [-0.5, -0.25, 0.0, 0.25, 0.5].map(|e| {

@@ -3,21 +3,19 @@
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::linear::{LinearFit, least_squares};
-use crate::identify::pads::{Grip, PadFit, width_over_force};
+use crate::identify::pads::{
+    CLOSED_GRIP_SHARE, Grip, LEAST_GRIP_VARIATION, PadFit, UNKNOWN_COMPRESSION, width_over_force,
+};
 use crate::segment::Segmentation;
 use crate::segment::threshold::{Levels, percentile};
 use crate::signal::task::{half_width, task_signals};
 use haptics::law::contact::Cushion;
 use haptics::recording::Recording;
 
-/// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
-const UNKNOWN_COMPRESSION: f64 = 0.07;
-/// The grip must vary by this share of its mean for the pads' give to be told from the width.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
-
 /// Share of force noise in the variation of the grip above which that variation tells nothing of the pads.
 const MOSTLY_NOISE: f64 = 0.5;
-/// Of white noise, the parabolic window of `2 h + 1` samples leaves this over their number (6/5: the mean square of its weights).
+/// Variance of white noise after a parabolic window of `2 h + 1` samples, times their number.
+/// Derived: 6/5, the mean square of the window's weights.
 const WINDOW_NOISE: f64 = 1.2;
 
 impl Blocks<'_> {
@@ -128,8 +126,6 @@ pub(crate) type Hold = Vec<(f64, f64)>;
 
 /// Grip on each of the first `count` blocks, as measured, in the states that show its width.
 pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Hold>> {
-    /// Less than this share of the usual grip is the way to it or from it.
-    const HELD: f64 = 0.5;
     let signals = task_signals(recording).ok()?;
     let levels = Levels::of(&signals);
     let task = segmentation.definition.as_ref()?;
@@ -139,7 +135,7 @@ pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: u
         let samples = task.showing("width_m", MAIN, number).into_iter().flat_map(|s| segmentation.samples_of(&s));
         let all: Hold = samples.map(|i| (signals.grip_width_m[i], 0.5 * (normal(0, i) - normal(1, i)))).collect();
         let usual_n = percentile(&mut all.iter().map(|(_, f)| *f).collect::<Vec<f64>>(), 0.5);
-        all.into_iter().filter(|(_, f)| *f > HELD * usual_n).collect()
+        all.into_iter().filter(|(_, f)| *f > CLOSED_GRIP_SHARE * usual_n).collect()
     };
     Some((1..=count).map(hold).collect())
 }
@@ -147,7 +143,8 @@ pub(crate) fn holds(recording: &Recording, segmentation: &Segmentation, count: u
 /// Width at which pads with the give of `pad` press on average as hard as measured: a world with any other one would
 /// predict another grip, or none at all. `None` for a hold without a measured grip.
 pub(crate) fn width_under(pad: &Cushion, hold: &[(f64, f64)]) -> Option<f64> {
-    /// Halvings of the bracket: beyond the digits of a double.
+    /// Number of halvings of the bracket.
+    /// Derived: more than the 53 binary digits of a double.
     const HALVINGS: usize = 60;
     let measured_n: f64 = hold.iter().map(|(_, f)| f).sum();
     let pressed_n =

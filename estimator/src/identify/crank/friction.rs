@@ -1,11 +1,12 @@
 //! Weighted regression of the tangential force on the laws, and the identifiability of their parameters.
 
-use super::geometry::{Geometry, SIGNIFICANT};
+use super::geometry::Geometry;
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
 use super::path_coordinate::{Along, Rows};
 use super::signals::Held;
 use crate::estimate::{Correlated, EstimateError, Parameter, Quality};
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
+use crate::identify::limits::{HELD_OUT, SIGNIFICANT};
 use crate::identify::linear::LinearFit;
 use crate::identify::robust::robust;
 use haptics::Vec2;
@@ -13,9 +14,10 @@ use haptics::recording::Recording;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
+/// Largest error of the predicted force by one parameter, as a share of the measured one; beyond, the parameter is not
+/// identified.
 const LARGEST_ERROR: f64 = 0.3;
-/// Samples of each low-pass window that a shift of the geometry is followed through.
+/// Number of samples of each low-pass window that a shift of the geometry is followed through.
 const TAPS: usize = 16;
 
 /// Quantities besides the rows that decide the uncertainty of the laws.
@@ -64,6 +66,7 @@ impl Friction {
     /// True if the recording shows the parameter of a regressor: it is distinct from the others, its error is small
     /// enough, and it is not tied to one that is not shown.
     fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        /// Size of the correlation of two parameters from which they are tied.
         const SAME_THING: f64 = 0.9;
         let covariance = &self.fit.covariance;
         let tied = |other: usize| {
@@ -227,8 +230,8 @@ fn system(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> (Vec<Vec
 
 /// Fit on the first 70 %, tested on the rest.
 pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Quality> {
-    const TRAIN: f64 = 0.7;
-    let cut = (TRAIN * rows.len() as f64) as usize;
+    let train = 1.0 - HELD_OUT;
+    let cut = (train * rows.len() as f64) as usize;
     let trained = friction(recording, &rows.head(cut)).ok()?;
     let rms = |from: usize, to: usize, model: bool| {
         let square = |i: usize| {
@@ -242,7 +245,7 @@ pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Qual
         rms: rms(0, cut, true),
         heldout_rms,
         heldout_relative: heldout_rms / rms(cut, rows.len(), false).max(1e-12),
-        heldout_share: 1.0 - TRAIN,
+        heldout_share: 1.0 - train,
         unit: "N".to_owned(),
     })
 }

@@ -3,12 +3,10 @@
 use super::signals::Held;
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::{Values, least_squares, least_squares_values};
 use crate::signal::task::half_width;
 use haptics::Vec2;
-
-/// A radial stiffness is reported when its give is this many standard errors above zero.
-pub(crate) const SIGNIFICANT: f64 = 3.0;
 
 /// Circle and give of the pads.
 pub(crate) struct Geometry {

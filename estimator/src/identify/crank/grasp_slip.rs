@@ -9,17 +9,17 @@ use crate::signal::task::{CUBIC_HALF, half_width};
 use haptics::Vec2;
 
 /// Least size of a slip, as a share of the radius: less is neither felt nor does it matter.
-const LEAST_SHARE: f64 = 0.01;
+const LEAST_GRASP_SLIP_SHARE: f64 = 0.01;
 /// Least size of a slip, m.
-const LEAST_M: f64 = 1e-4;
-/// Rounds of search and correction: slips change the look of the first fit.
-const ROUNDS: usize = 2;
+const LEAST_GRASP_SLIP_M: f64 = 1e-4;
+/// Number of rounds of search and correction: slips change the look of the first fit.
+const CORRECTION_ROUNDS: usize = 2;
 
 /// Centre and radius with all slips taken out: those of the first grasp. The positions in `held` are moved back to it.
 pub(super) fn without_slips(held: &mut Held) -> Result<(Geometry, Vec<Slip>), EstimateError> {
     let mut fitted = geometry(held)?;
     let mut slips: Vec<Slip> = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..CORRECTION_ROUNDS {
         let found = find(held, &fitted);
         if found.is_empty() {
             break;
@@ -52,7 +52,7 @@ fn find(held: &Held, geometry: &Geometry) -> Vec<Slip> {
         column(&|i, n| n.y * held.force[i].y),
     ];
     let deviation = column(&|i, _| arm(i).norm() - geometry.radius_m);
-    let least = LEAST_M.max(LEAST_SHARE * geometry.radius_m);
+    let least = LEAST_GRASP_SLIP_M.max(LEAST_GRASP_SLIP_SHARE * geometry.radius_m);
     let slip = |step: crate::constraint::slips::Step| Slip {
         time_s: Some(held.time_s[rows[step.row]]),
         not_before_s: Some(held.time_s[rows[step.row.saturating_sub(1)]]),

@@ -5,13 +5,17 @@ use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, 
 /// The laws of eq. 5.2, with the two that it left out: each linear in one parameter.
 pub static LAWS: [&dyn Law; 5] = [&Weight, &LoadFriction, &ViscousFriction, &CoulombFriction, &Inertia];
 
-/// Place of the weight.
+/// Index of the weight.
+/// Derived: position in [`LAWS`].
 pub const WEIGHT: usize = 0;
-/// Place of the inertia.
+/// Index of the inertia.
+/// Derived: position in [`LAWS`].
 pub const INERTIA: usize = 4;
-/// Place of the constant friction.
+/// Index of the constant friction.
+/// Derived: position in [`LAWS`].
 pub const COULOMB: usize = 3;
 /// Indices of the laws that resist the motion.
+/// Derived: positions in [`LAWS`].
 pub const FRICTION: [usize; 3] = [1, 2, COULOMB];
 
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.

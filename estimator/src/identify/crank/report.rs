@@ -1,14 +1,16 @@
 //! Parameters, constraint and warnings in the words of a fit.
 
 use super::friction::Friction;
-use super::geometry::{Drawn, Geometry, SIGNIFICANT};
+use super::geometry::{Drawn, Geometry};
 use super::laws::WEIGHT;
 use super::signals::{Held, Smooth};
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Screw, Yielding};
-use crate::identify::pads::{Grip, width_over_force};
+use crate::identify::limits::SIGNIFICANT;
+use crate::identify::long_run_variance::HALF_INTERVAL;
+use crate::identify::pads::{Grip, HAND_N_M, width_over_force};
 use crate::segment::Segmentation;
 use crate::segment::threshold::Levels;
 use crate::signal::task::{CUBIC_HALF, Smoothed, half_width, smooth, task_signals};
@@ -149,7 +151,7 @@ pub(super) fn constraint(
         center_m: Some(vec![geometry.center_m.x, geometry.center_m.y]),
         normals_center_m: by_normals.map(|center| vec![center.x, center.y]),
         radius_m: Some(geometry.radius_m),
-        radius_interval_m: Some((geometry.radius_m - 1.96 * er, Some(geometry.radius_m + 1.96 * er))),
+        radius_interval_m: Some((geometry.radius_m - HALF_INTERVAL * er, Some(geometry.radius_m + HALF_INTERVAL * er))),
         rigid,
         yielding,
         std_error: BTreeMap::from([("center_m".to_owned(), ex.max(ey)), ("radius_m".to_owned(), er)]),
@@ -174,9 +176,10 @@ pub(super) fn constraint(
 
 /// The handle's motion and force, for the test whether anything guides it.
 fn existence_rows(recording: &Recording, held: &Held) -> Rows {
-    const SLOW_SHARE: f64 = 0.3;
+    /// Least speed of a row of the test of existence, as a share of the root mean square of the speed.
+    const EXISTENCE_SPEED_SHARE: f64 = 0.3;
     let square: f64 = held.turning.iter().map(|i| held.velocity[*i].norm_squared()).sum();
-    let least = SLOW_SHARE * (square / held.turning.len().max(1) as f64).sqrt();
+    let least = EXISTENCE_SPEED_SHARE * (square / held.turning.len().max(1) as f64).sqrt();
     let stride = (4 * half_width(&held.time_s)).max(2 * CUBIC_HALF) + 1;
     let picked: Vec<usize> =
         held.turning.iter().copied().step_by(stride).filter(|i| held.velocity[*i].norm() > least).collect();
@@ -195,9 +198,6 @@ fn existence_rows(recording: &Recording, held: &Held) -> Rows {
         bias_error_n: held.bias_error_n.unwrap_or(0.0).hypot(held.resolution_n),
     }
 }
-
-/// Stiffness of a hand whose pads' give the recording does not show, N/m: the thesis's fingers gave 0.11 cm under a few newtons.
-const HAND_N_M: f64 = 1000.0;
 
 /// The give along x, where the pads press and their stiffness is known from grip and width, against the hand's own there: two
 /// pads side by side.

@@ -1,6 +1,7 @@
 //! Motion and force of the handle while it is held, smoothed, with their noise.
 
 use crate::estimate::EstimateError;
+use crate::identify::limits::LEAST_FREE_S;
 use crate::identify::linear::least_squares;
 use crate::segment::{Segmentation, SystemState};
 use crate::signal::derive::savitzky_golay;
@@ -12,9 +13,6 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Deref;
 use std::sync::Arc;
-
-/// The force passes through zero in a turn, too: shorter rests are not free motion, s.
-const LEAST_FREE_S: f64 = 0.25;
 
 /// The handle's motion and force, all channels through the same smoothing filter. One entry a sample. Nothing in here depends on
 /// the segmentation, so that refits of the same recording share it.

@@ -12,11 +12,11 @@ use crate::signal::task::{half_width, is_two_fingered};
 use haptics::recording::{Recording, Segment, Task};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A path that misses its best circle by more than this share of the radius is no crank's.
+/// Largest distance of a crank's path from its best circle, as a share of the radius.
 const LARGEST_RESIDUAL: f64 = 0.08;
 
-/// Fewer turning samples than this cannot carry nine parameters.
-const LEAST_SAMPLES: usize = 40;
+/// Least number of turning samples: fewer cannot carry nine parameters.
+const LEAST_TURNING_SAMPLES: usize = 40;
 
 /// Fits one recording of a crank, with `thresholds` or those chosen from its noise. The segmentation that was used comes with
 /// the fit.
@@ -96,12 +96,12 @@ pub(super) fn see(
 ) -> Result<Seen, EstimateError> {
     let (segmentation, grasped) = prepared.segmentation(method, recording, thresholds)?;
     let mut held = Held::new(&grasped);
-    if held.turning.len() < LEAST_SAMPLES {
+    if held.turning.len() < LEAST_TURNING_SAMPLES {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
             samples: held.turning.len(),
             what: " in which the crank turns".to_owned(),
-            needed: LEAST_SAMPLES,
+            needed: LEAST_TURNING_SAMPLES,
         });
     }
     let (geometry, slips) = without_slips(&mut held)?;

@@ -7,6 +7,7 @@ use super::report::{OBJECT, PHASE, push_known};
 use super::signals::{Piece, Raw};
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::{CLEARLY_SIGNIFICANT, SIGNIFICANT};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::Coordinate;
 use haptics::recording::Meta;
@@ -170,7 +171,8 @@ fn restoring(pieces: &[Piece]) -> bool {
     };
     let pairs: Vec<(f64, f64)> = pieces.iter().flat_map(usable).collect();
     let (sine, acceleration): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-    least_squares(&[sine.clone(), vec![1.0; sine.len()]], &acceleration, None).is_ok_and(|f| f.t_value(0) < -4.0)
+    least_squares(&[sine.clone(), vec![1.0; sine.len()]], &acceleration, None)
+        .is_ok_and(|f| f.t_value(0) < -CLEARLY_SIGNIFICANT)
 }
 
 /// Inertia and its relative error from whichever parameter is known.
@@ -183,11 +185,11 @@ fn scale(ratios: &Ratios, known: &Known) -> Option<(f64, f64)> {
         let (a, error) = ratios.get(Term::GravitySine)?;
         let b = ratios.get(Term::GravityCosine).map_or(0.0, |(b, _)| b);
         let ratio = a.hypot(b);
-        return (ratio > 3.0 * error).then(|| (moment / ratio, (error / ratio).hypot(INTEGRATION_ERROR)));
+        return (ratio > SIGNIFICANT * error).then(|| (moment / ratio, (error / ratio).hypot(INTEGRATION_ERROR)));
     }
     let other = [Term::Viscous, Term::Coulomb].into_iter().find_map(|t| Some((known.value(t)?, ratios.get(t)?)));
     let (value, (ratio, error)) = other?;
-    (ratio > 3.0 * error).then(|| (value / ratio, error / ratio))
+    (ratio > SIGNIFICANT * error).then(|| (value / ratio, error / ratio))
 }
 
 /// Gravity moment and where hanging is, when the recording rather than the sidecar tells.
@@ -211,7 +213,7 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
     let how = "angle at which the mechanism hangs at rest, in the recording's coordinate";
     let parameter = Parameter::identified(OBJECT, PHASE, phase, b_error / ratio.max(f64::MIN_POSITIVE), samples, how);
     result.parameters.push(parameter);
-    if phase.abs() > 3.0 * b_error / ratio && phase.abs() > 0.01 {
+    if phase.abs() > SIGNIFICANT * b_error / ratio && phase.abs() > 0.01 {
         result.warnings.push(format!(
             "the coordinate is not measured from hanging: the mechanism hangs at {phase:.4} rad, which the fit takes into account"
         ));

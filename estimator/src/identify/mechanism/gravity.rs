@@ -7,13 +7,12 @@ use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
 use crate::estimate::EstimateError;
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::identify::linear::LinearFit;
 
-/// Evidence (log-likelihood ratio less the BIC penalty) that a gravity moment must bring. 10 is "very strong" (Kass and
-/// Raftery 1995).
+/// Least evidence for a gravity moment: twice the log-likelihood ratio, less the BIC penalty.
+/// Source: Kass & Raftery 1995: above 10 it is "very strong".
 const EVIDENCE: f64 = 10.0;
-/// Least size of the value in standard errors from zero.
-const CLEAR_T: f64 = 4.0;
 /// Smallest range of the angle in which sine and line can differ, rad.
 const MIN_RANGE_RAD: f64 = 0.3;
 
@@ -106,18 +105,18 @@ pub fn decide(pieces: &[Piece], base: &[Term], known: &Known) -> Result<Gravity,
     Ok(Gravity::Present(if phased > alone + EVIDENCE { any } else { hanging }))
 }
 
-/// True if the terms from `base` on differ from zero by [`CLEAR_T`] standard errors. Sine and cosine count together,
+/// True if the terms from `base` on differ from zero by [`CLEARLY_SIGNIFICANT`] standard errors. Sine and cosine count together,
 /// because over a short arc either may stand for part of the other.
 fn stands_out(fit: &LinearFit, base: usize) -> bool {
     let p = fit.values.len();
-    if (base..p).any(|i| fit.t_value(i).abs() > CLEAR_T) {
+    if (base..p).any(|i| fit.t_value(i).abs() > CLEARLY_SIGNIFICANT) {
         return true;
     }
     let extra = p - base;
     let covariance = fit.covariance.view((base, base), (extra, extra)).into_owned();
     let values = nalgebra::DVector::from_column_slice(&fit.values[base..]);
     let distance = covariance.try_inverse().map_or(0.0, |inverse| (values.transpose() * inverse * &values)[(0, 0)]);
-    distance > CLEAR_T * CLEAR_T + 2.0 * CLEAR_T
+    distance > CLEARLY_SIGNIFICANT * CLEARLY_SIGNIFICANT + 2.0 * CLEARLY_SIGNIFICANT
 }
 
 /// Smallest and largest angle over the usable samples.

@@ -29,6 +29,7 @@ pub use world::{Prediction, measured, path_of, predict, world};
 use crate::constraint;
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::HELD_OUT;
 use gravity::Gravity;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -37,9 +38,6 @@ use parameters::{CLOCK_TOLERANCE, Known, Term};
 use regress::{Shown, System, shown};
 use report::Material;
 pub use signals::{Piece, Raw};
-
-/// Share of each recording's end that the quality figures hold out.
-const HELD_OUT: f64 = 0.3;
 
 /// Coordinate and force of one recording, as recorded; of a tool's along `path`, or along its own where none is given.
 pub fn raw(recording: &Recording, path: Option<&MechanismPath>) -> Result<Raw, EstimateError> {

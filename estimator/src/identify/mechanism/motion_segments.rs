@@ -5,12 +5,13 @@ use super::signals::{MIN_SAMPLES, Raw};
 use crate::signal::noise::{quantum, white_noise_under_fast_motion};
 use std::ops::Range;
 
-/// Samples are looked at in windows of this length, s, of this many samples at least.
-const WINDOW_S: f64 = 0.1;
+/// Length of the windows in which samples are looked at, s.
+const STANDING_WINDOW_S: f64 = 0.1;
+/// Least number of samples of such a window.
 const LEAST_WINDOW: usize = 8;
-/// A window stands if its halves and its samples differ by no more than this many times their noise.
-const NOISES: f64 = 4.0;
-/// Fewer windows in a row are no standstill, but a turn of the motion.
+/// Largest difference between the halves of a window that stands, and between its samples, in multiples of their noise.
+const STANDING_NOISES: f64 = 4.0;
+/// Least number of windows in a row that are a standstill; fewer are a turn of the motion.
 const LEAST_WINDOWS: usize = 3;
 
 /// The recordings without their standstills, each moving segment by itself, and whether there was any standstill. They
@@ -43,7 +44,7 @@ fn part(raw: &Raw, range: Range<usize>) -> Raw {
 fn ranges(raw: &Raw) -> Vec<Range<usize>> {
     let n = raw.position.len();
     let period_s = (raw.time_s[n - 1] - raw.time_s[0]) / n.saturating_sub(1).max(1) as f64;
-    let length = ((WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW);
+    let length = ((STANDING_WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW);
     let noise = white_noise_under_fast_motion(&raw.position).max(0.5 * quantum(&raw.position));
     let stands: Vec<bool> = raw.position.chunks_exact(length).map(|window| is_still(window, noise)).collect();
     let mut moving = Vec::new();
@@ -71,8 +72,9 @@ fn is_still(window: &[f64], noise: f64) -> bool {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (early, late) = window.split_at(window.len() / 2);
     let middle = mean(window);
-    let allowed = NOISES * noise * (4.0 / window.len() as f64).sqrt();
-    (mean(early) - mean(late)).abs() <= allowed && window.iter().all(|q| (q - middle).abs() <= (NOISES + 1.0) * noise)
+    let allowed = STANDING_NOISES * noise * (4.0 / window.len() as f64).sqrt();
+    (mean(early) - mean(late)).abs() <= allowed
+        && window.iter().all(|q| (q - middle).abs() <= (STANDING_NOISES + 1.0) * noise)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::report::{OBJECT, push_known};
 use super::signals::{Piece, Raw};
 use crate::estimate::{Fit, Parameter};
 
-/// Forces that differ by less, as a share of the largest, differ by rounding.
+/// Largest relative difference of two forces by rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The force that stands in every sample of all recordings; `None` where it changes.

@@ -78,9 +78,9 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
     }
 }
 
-/// Larger distance of a tool from its path when the object is held again, as a factor and as a share of the path's
-/// extent.
+/// Largest distance of a tool from its path when the object is held again, in multiples of the usual one.
 const WORSE: f64 = 3.0;
+/// Addition to this distance, as a share of the path's extent.
 const SPARE: f64 = 0.005;
 
 /// Largest distance of a recording of the same object, in the same frame, from the path that was found in `like`, m.

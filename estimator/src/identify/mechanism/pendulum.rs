@@ -4,18 +4,18 @@
 use super::parameters::Term;
 use super::signals::{Piece, Raw};
 use crate::identify::bootstrap::block_bootstrap_within;
+use crate::identify::limits::MOST_FIT_ROWS;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};
 use std::ops::Range;
 
 /// Largest number of segments that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
-/// Largest number of samples in the fit; longer records are thinned.
-const MAX_SAMPLES: usize = 4000;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
-const STEP_SHARE: f64 = 0.005;
+const INNER_STEP_SHARE: f64 = 0.005;
+/// Largest number of Gauss-Newton steps.
 const ITERATIONS: usize = 25;
-/// The refined motion must follow the measured one to this share of its size, or the regression stands.
+/// Largest distance of the refined motion from the measured one, as a share of its size; beyond, the regression stands.
 const ACCEPTED_SHARE: f64 = 0.05;
 
 /// Measured samples of one segment.
@@ -86,7 +86,7 @@ fn runs(raws: &[Raw], pieces: &[Piece]) -> Option<Vec<Run>> {
         return None;
     }
     let total: usize = pieces.iter().map(|p| p.motion.len()).sum();
-    let every = total.div_ceil(MAX_SAMPLES).max(1);
+    let every = total.div_ceil(MOST_FIT_ROWS).max(1);
     let make = |(k, piece): (usize, &Piece)| {
         let raw = if raws.len() == 1 { &raws[0] } else { &raws[k] };
         // The ends of the filtered signals are the weakest: begin where they are good.
@@ -116,7 +116,7 @@ fn effects(terms: &[Term], ratios: &[f64]) -> Vec<Effect> {
 fn simulate(terms: &[Term], ratios: &[f64], state: &[f64], run: &Run) -> Vec<f64> {
     let effects = effects(terms, ratios);
     let fastest = ratios.iter().fold(1.0_f64, |m, r| m.max(r.abs().sqrt()));
-    let largest_step = STEP_SHARE / fastest;
+    let largest_step = INNER_STEP_SHARE / fastest;
     let mut motion = Motion { position: state[0], velocity: state[1], ..Motion::default() };
     let mut time = run.time_s.first().copied().unwrap_or(0.0);
     run.time_s

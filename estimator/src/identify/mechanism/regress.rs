@@ -6,26 +6,27 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
 use nalgebra::DMatrix;
 
-/// Part of a column that no other column explains, below which two terms merge.
+/// Part of a column that no other column explains, as a share, below which two terms merge.
 const DISTINCT: f64 = 0.05;
-/// Filtered direction of motion from which on a sample counts as away from a reversal.
+/// Least filtered direction of motion of a sample away from a reversal, of 1.
 const STEADY_DIRECTION: f64 = 0.98;
-/// Smaller share of the moving time that must lie in each direction for a reversal to count.
+/// Least share of the moving time in each direction for a reversal to count.
 const REVERSAL_SHARE: f64 = 0.02;
-/// The same as a share of the way.
+/// Least share of the way in each direction for a reversal to count.
 const REVERSAL_WAY: f64 = 0.01;
-/// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
+/// Standard deviation of the place of a reversal between two samples, in samples.
+/// Derived: 1/√12, that of an even spread over one sample.
 const SKEW_SAMPLES: f64 = 0.29;
-/// Slower than about this share of the usual speed a mechanism may stick.
-const SLOW_SHARE: f64 = 0.015;
-/// Rounds of weighting.
-const ROUNDS: usize = 3;
+/// Share of its usual speed below which a mechanism or joint may stick.
+pub(super) const STICKING_SHARE: f64 = 0.015;
+/// Number of rounds of weighting.
+pub(super) const WEIGHTING_ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
 const UNSEEN_STOP: f64 = 0.4;
 /// Decay rate of the reach of the filter, per period of its cut-off. It lies between its main lobe and its ringing
 /// (2.4), where masses of generated recordings with many stops have no bias and the errors are least.
 const REACH: f64 = 4.5;
-/// The velocity must exceed its noise by this much to be a motion.
+/// Least velocity of a motion, in multiples of the velocity's noise.
 const MOTION_RATIO: f64 = 2.0;
 
 /// Regressors, target and weights of a fit, over the usable samples of all segments.
@@ -85,7 +86,7 @@ impl System {
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
-        for _ in 0..ROUNDS {
+        for _ in 0..WEIGHTING_ROUNDS {
             weights = self.weights(&fit);
             let Some(weights) = weights.as_deref() else { break };
             fit = least_squares(&self.columns, &self.target, Some(weights))?;
@@ -175,7 +176,7 @@ pub(super) fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
-    let slow = SLOW_SHARE * piece.rms(|m| m.velocity);
+    let slow = STICKING_SHARE * piece.rms(|m| m.velocity);
     // A mechanism that sticks resists with anything up to its friction, and a stop that is shorter than the filter's
     // own time looks like a smooth reversal. The filtered error of such a moment reaches as far as the filter does. All
     // samples within that time share it: one error that comes back so often counts so often.

@@ -5,7 +5,9 @@ use super::parameters::{Known, Term};
 use super::regress::Shown;
 use crate::estimate::{Correlated, Fit, Parameter};
 use crate::identify::bootstrap::Resampled;
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::LinearFit;
+use crate::identify::long_run_variance::HALF_INTERVAL;
 use haptics::law::Coordinate;
 use nalgebra::DMatrix;
 
@@ -13,11 +15,9 @@ use nalgebra::DMatrix;
 pub const OBJECT: &str = "mechanism";
 /// Angle at which a mechanism with a gravity moment hangs, rad.
 pub const PHASE: &str = "gravity_phase_rad";
-/// A value counts when its effect is known to better than this share of the force, or when it is this many errors from zero.
-const EFFECT_SHARE: f64 = 0.2;
-const CLEAR_T: f64 = 3.0;
-/// Everything has a mass: one whose 95 % interval holds none at all was not shown.
-const SOME_MASS_T: f64 = 1.96;
+/// Largest uncertainty of the force by the error of one value, as a share of the force. A value with a larger one is
+/// shown only if it is significant.
+pub(super) const EFFECT_SHARE: f64 = 0.2;
 
 /// Input of the report.
 pub struct Material<'a> {
@@ -71,14 +71,15 @@ impl Material<'_> {
             return Parameter::unidentified(OBJECT, name, self.samples(), "the motion does not excite it; vary it");
         };
         let (value, error) = (self.fit.values[i], self.fit.std_errors[i]);
-        let vague = error * self.effect[i] > EFFECT_SHARE * self.force_rms && value.abs() < CLEAR_T * error;
+        let vague = error * self.effect[i] > EFFECT_SHARE * self.force_rms && value.abs() < SIGNIFICANT * error;
         if vague || !error.is_finite() {
             let why =
                 format!("its value is uncertain by {error:.3}, too much against the noise; excite it harder or longer");
             return Parameter::unidentified(OBJECT, name, self.samples(), &why);
         }
-        if term == Term::Inertia && value < SOME_MASS_T * error {
-            let why = if value < -SOME_MASS_T * error {
+        // Everything has a mass: one whose 95 % interval holds none at all was not shown.
+        if term == Term::Inertia && value < HALF_INTERVAL * error {
+            let why = if value < -HALF_INTERVAL * error {
                 format!("it comes out at {value:.1e} ± {error:.1e}: check the sign of the force column")
             } else {
                 format!("it comes out at {value:.1e} ± {error:.1e}, which may as well be none; accelerate harder")

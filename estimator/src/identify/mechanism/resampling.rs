@@ -7,7 +7,7 @@
 use crate::signal::derive::{even_period, interpolate, interpolate_cubic};
 use crate::signal::noise::{white_noise_under_fast_motion, white_noise_uneven};
 
-/// Samples nearer to each other than this share of the grid's period are taken as one: a slope between them is noise.
+/// Share of the grid's period within which samples are taken as one: a slope between them is noise.
 const TOGETHER: f64 = 0.3;
 
 /// Recorded times and the even grid of one segment.

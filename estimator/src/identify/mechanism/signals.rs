@@ -11,12 +11,14 @@ use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
 use std::f64::consts::TAU;
 
-/// Fewest samples of a segment without a gap.
+/// Least number of samples of a segment without a gap.
 pub const MIN_SAMPLES: usize = 24;
 /// Step in periods above which a segment ends.
 const GAP_PERIODS: f64 = 10.0;
-/// Acceleration noise that is let through, as a share of the acceleration itself: biases the inertia by its square, 0.1 %.
-const ACCELERATION_NOISE: f64 = 0.03;
+/// Noise that a filter lets through on a derivative, as a share of the derivative: the noise biases the inertia by the
+/// square of this share.
+/// Derived: the square root of a bias of 0.1 %.
+pub(super) const DERIVATIVE_NOISE: f64 = 0.03;
 /// Largest ratio of the cut-off to the fastest motion that matters: further up there is noise only.
 const CUTOFF_OVER_MOTION_MAX: f64 = 100.0;
 /// Least ratio of the cut-off to the fastest motion that matters.
@@ -295,12 +297,12 @@ fn choose_cutoff(position: &[f64], sigma: f64, rate_hz: f64) -> Choice {
         let noise = derived_noise(sigma, rate_hz, cutoff, 2);
         let clean = clean_rms(&acceleration[inner.clone()], noise);
         let speed = clean_rms(&velocity[inner], derived_noise(sigma, rate_hz, cutoff, 1));
-        if fallback == bottom && derived_noise(sigma, rate_hz, cutoff, 1) <= ACCELERATION_NOISE * speed {
+        if fallback == bottom && derived_noise(sigma, rate_hz, cutoff, 1) <= DERIVATIVE_NOISE * speed {
             fallback = cutoff;
         }
         // The frequency at which most of the motion takes place.
         let motion_hz = clean / (TAU * speed.max(f64::MIN_POSITIVE));
-        let quiet = noise <= ACCELERATION_NOISE * clean && cutoff <= CUTOFF_OVER_MOTION_MAX * motion_hz;
+        let quiet = noise <= DERIVATIVE_NOISE * clean && cutoff <= CUTOFF_OVER_MOTION_MAX * motion_hz;
         let as_low_as_can_be = cutoff < CUTOFF_OVER_MOTION * motion_hz && clean > 2.0 * noise;
         if clean > 0.0 && (quiet || as_low_as_can_be) {
             return choice(cutoff, true);

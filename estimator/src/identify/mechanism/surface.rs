@@ -1,6 +1,7 @@
 //! A tool that presses on a surface: the content of the fit beside the constraint.
 
 use crate::estimate::{Constraint, ConstraintKind, Fit, Parameter};
+use crate::identify::long_run_variance::HALF_INTERVAL;
 use haptics::recording::Recording;
 
 /// The object's name.
@@ -31,7 +32,7 @@ fn parameters(recording: &Recording, found: &Constraint) -> Vec<Parameter> {
     let stiffness = match seen {
         // A 95 % interval of the give is the stiffness's in inverse.
         Some((interval, value)) => {
-            let error = (1.0 / interval.interval_n_m.0 - 1.0 / value) / 1.96 * value * value;
+            let error = (1.0 / interval.interval_n_m.0 - 1.0 / value) / HALF_INTERVAL * value * value;
             let how = "depth over the push, hand and pad in series";
             Parameter::identified(SURFACE, "stiffness_N_m", value, error, n, how)
         }

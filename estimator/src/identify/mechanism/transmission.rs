@@ -6,6 +6,7 @@
 
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::limits::SIGNIFICANT;
 use crate::identify::linear::least_squares;
 use haptics::recording::Recording;
 
@@ -13,19 +14,19 @@ use haptics::recording::Recording;
 const OBJECT: &str = "transmission";
 /// The output's columns.
 const OUTPUTS: [(&str, &str, &str); 2] = [("q_out_rad", "q_rad", "rad"), ("q_out_m", "q_m", "m")];
-/// Half gaps that are tried first, and how often the best one is closed in on.
+/// Number of half gaps that are tried first.
 const TRIES: usize = 40;
+/// Number of steps of the golden section about the best one.
+/// Derived: 0.618²⁴ = 1e-5 of the bracket remains.
 const CLOSER: usize = 24;
-/// The largest half gap, as a share of the input's way.
+/// Largest half gap, as a share of the input's way.
 const LARGEST: f64 = 0.25;
 /// Largest number of samples in the fit: slow motions are sampled far too often.
 const ROWS: usize = 3000;
-/// The share of the recording in which the gap's side is not known yet.
+/// Share of the recording in which the gap's side is not known yet.
 const SETTLING: f64 = 0.02;
-/// The input must turn round this often to show a gap.
+/// Least number of reversals of the input that show a gap.
 const REVERSALS: usize = 2;
-/// Standard errors from zero from which a value counts as seen.
-const SEEN: f64 = 3.0;
 
 /// A value with its standard error by covariance and by resampling.
 #[derive(Clone, Copy)]
@@ -65,7 +66,7 @@ pub(super) fn parameters(recordings: &[Recording]) -> Vec<Parameter> {
     let mut all = Vec::new();
     let mut push = |name: &str, values: Vec<Value>, text: &str| {
         if let Some(Value { best: value, error, resampled }) = together(&values) {
-            all.push(if error * SEEN < value.abs() {
+            all.push(if error * SIGNIFICANT < value.abs() {
                 Parameter::identified(OBJECT, name, value, error, used, &how(text)).with_bootstrap(resampled)
             } else {
                 let why = format!("{value:.2e} ± {error:.2e} {unit} cannot be told from none");

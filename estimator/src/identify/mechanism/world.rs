@@ -55,9 +55,10 @@ fn effects(fit: &Fit) -> Vec<Effect> {
     effects
 }
 
-/// A direction of motion this certain is one.
+/// Least size of a direction of motion that is certain, of 1.
 const MOVES: f64 = 0.99;
-/// Dry friction is told to a tenth of itself where a stop or a turn leaves this share of its square open, as the fit weighs its samples.
+/// Share of the square of dry friction that a stop or a turn leaves open at most, as the fit weighs its samples.
+/// Derived: 0.1²; the friction is then told to a tenth of itself.
 const LEFT_OPEN: f64 = 0.01;
 
 /// Prediction of the laws for a measured motion.

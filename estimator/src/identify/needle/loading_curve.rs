@@ -5,14 +5,10 @@
 
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
+use crate::identify::limits::{GOLDEN_STEPS, SEARCH_STEPS};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::object::MembraneLaw;
 use nalgebra::{DMatrix, DVector};
-
-/// Steps of the coarse search for the surface.
-const COARSE: usize = 60;
-/// Steps of the golden section after it.
-const FINE: usize = 40;
 
 /// One sample of the loading: which offset it has, its depth, m, and its force, N.
 #[derive(Clone, Copy, Debug)]
@@ -106,10 +102,10 @@ pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
 fn fit_with(points: &[Point], holds: usize, cubic: bool) -> Result<Loading, EstimateError> {
     let (low, high) =
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.depth_m), h.max(p.depth_m)));
-    let at = |k: f64| low + (high - low) * k / COARSE as f64;
+    let at = |k: f64| low + (high - low) * k / SEARCH_STEPS as f64;
     let cost = |surface: f64| solve(points, holds, cubic, surface).map_or(f64::INFINITY, |(_, cost)| cost);
-    let costs: Vec<f64> = (0..COARSE).map(|k| cost(at(k as f64))).collect();
-    let best = (0..COARSE).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0) as f64;
+    let costs: Vec<f64> = (0..SEARCH_STEPS).map(|k| cost(at(k as f64))).collect();
+    let best = (0..SEARCH_STEPS).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0) as f64;
     let surface_m = golden(&cost, at((best - 1.0).max(0.0)), at(best + 1.0));
     let Some((values, _)) = solve(points, holds, cubic, surface_m) else {
         return Err(EstimateError::Other("the needle's pushes do not show a curve of force over depth".to_owned()));
@@ -161,7 +157,7 @@ fn solve(points: &[Point], holds: usize, cubic: bool, surface_m: f64) -> Option<
 /// The smallest value of a function with one valley between `low` and `high`.
 fn golden(cost: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..FINE {
+    for _ in 0..GOLDEN_STEPS {
         let (a, b) = (high - share * (high - low), low + share * (high - low));
         if cost(a) < cost(b) { high = b } else { low = a }
     }

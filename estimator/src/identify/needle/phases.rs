@@ -6,19 +6,18 @@ use super::signals::Along;
 use super::strokes::{Push, quiet_force};
 use crate::constraint::existence::FALSE_ALARMS;
 use crate::estimate::{Existence, Phase, StrokePhase};
+use crate::identify::limits::MOST_FIT_ROWS;
 use crate::identify::linear::least_squares;
-use crate::identify::long_run_variance::student_quantile_975;
+use crate::identify::long_run_variance::{HALF_INTERVAL, student_quantile_975};
 use crate::signal::task::{smooth, times};
 use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
-/// Depth below which force over depth means nothing, m.
+/// Least depth at which force over depth has a meaning, m.
 const LEAST_DEPTH_M: f64 = 2e-4;
-/// The needle is drawn out once it has come back by this, m.
+/// Way back of a needle from which it is drawn out, m.
 const BACK_M: f64 = 0.3e-3;
-/// Largest number of samples in the test.
-const MOST_ROWS: usize = 4000;
 
 /// Phases of every push, in order of time.
 pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Recording) -> Vec<StrokePhase> {
@@ -69,7 +68,7 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
 pub fn existence(along: &Along, pushes: &[Push], loading: &Loading) -> Option<Existence> {
     let loaded = |i: usize| pushes.iter().any(|p| p.samples.contains(&i)) && along.depth_m[i] > loading.surface_m;
     let held: Vec<usize> = along.holds.iter().flat_map(Clone::clone).collect();
-    let rows: Vec<usize> = held.iter().copied().step_by((held.len() / MOST_ROWS).max(1)).collect();
+    let rows: Vec<usize> = held.iter().copied().step_by((held.len() / MOST_FIT_ROWS).max(1)).collect();
     let outside = |i: usize| along.depth_m[i] < loading.surface_m;
     let rows: Vec<usize> = rows.into_iter().filter(|&i| loaded(i) || outside(i)).collect();
     let inside: Vec<f64> = rows.iter().map(|&i| f64::from(u8::from(loaded(i)))).collect();
@@ -79,7 +78,7 @@ pub fn existence(along: &Along, pushes: &[Push], loading: &Loading) -> Option<Ex
         return None;
     }
     let freedom = (0.4 * fit.effective_samples.powf(2.0 / 3.0)).max(3.0);
-    let error = fit.std_errors[0] / (student_quantile_975(freedom) / 1.96).max(1.0);
+    let error = fit.std_errors[0] / (student_quantile_975(freedom) / HALF_INTERVAL).max(1.0);
     let student = StudentsT::new(0.0, 1.0, freedom).ok()?;
     let p_value = 2.0 * (1.0 - student.cdf(fit.values[0].abs() / error.max(f64::MIN_POSITIVE)));
     let rms = (force.iter().zip(&inside).map(|(f, i)| i * (f - fit.values[1]).powi(2)).sum::<f64>()

@@ -8,19 +8,19 @@ use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;
 
-/// Largest distance of a force on the loading curve, in multiples of its noise, or as a share of it: slow filters bend
-/// the curve a little.
+/// Largest distance of a force on the loading curve, in multiples of its noise.
 const ON_CURVE_NOISES: f64 = 4.0;
+/// Largest distance of a force on the loading curve, as a share of it: slow filters bend the curve a little.
 const ON_CURVE: f64 = 0.02;
-/// Lead of the puncture on the curve by a filter that force and place went through, s, if there is one.
+/// Delay of a filter that force and place may have gone through, s: it makes the puncture lead on the curve.
 const FILTER_S: f64 = 2e-3;
-/// Time over which the speed of a push before the puncture is taken, s; at least one step between samples.
-const BEFORE_S: f64 = 0.02;
-/// The place of a puncture on the curve is as uncertain as this share of the force's noise.
+/// Time before the puncture over which the speed of a push is taken, s; at least one step between samples.
+const SPEED_BEFORE_S: f64 = 0.02;
+/// Uncertainty of a puncture's place on the curve, as a share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
-/// Drag, and a hole that is not the same both ways, as a share of the friction.
+/// Error of the friction by drag, and by a hole that is not the same both ways, as a share of the friction.
 const HOLE_SHARE: f64 = 0.05;
-/// The level of the force on the way to the sheet is known to this share of its noise at best.
+/// Least error of the level of the force on the way to the sheet, as a share of the force's noise.
 const LEVEL_NOISE: f64 = 0.08;
 
 /// One puncture, all in N: the force, its errors by the curve (by covariance and by resampling), and its own.
@@ -63,7 +63,7 @@ impl Sheet {
             measured(*i) > curve - (ON_CURVE_NOISES * along.noise_n).max(ON_CURVE * curve)
         };
         let at = (peak..fallen).rev().find(is_on_curve).unwrap_or(peak);
-        let back = ((BEFORE_S / along.period_s.max(1e-9)) as usize).max(1);
+        let back = ((SPEED_BEFORE_S / along.period_s.max(1e-9)) as usize).max(1);
         let first = at.saturating_sub(back).max(push.samples.start).min(at.saturating_sub(1));
         let step_m = ((depth(at) - depth(first)) / (at - first).max(1) as f64).max(0.0);
         let (before, after) = (self.loading.force_n(depth(at)), self.loading.force_n(depth(at) + step_m));

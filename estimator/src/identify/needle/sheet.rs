@@ -5,6 +5,8 @@ use super::phases;
 use super::signals::Along;
 use super::strokes::Push;
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Sided, Yielding};
+use crate::identify::long_run_variance::HALF_INTERVAL;
+use crate::identify::pads::HAND_N_M;
 use haptics::Vec2;
 use haptics::recording::Recording;
 
@@ -17,13 +19,10 @@ pub const HELD: &str = "held_force_N";
 /// Error of a place by geometry and log, m: seats, resolution.
 const PLACE_ERROR_M: f64 = 1e-5;
 
-/// Stiffness of a hand whose pads' give is not seen, N/m.
-const HAND_N_M: f64 = 1000.0;
-
-/// Samples are averaged to points where that leaves at least so many.
+/// Least number of points to which samples are averaged.
 const LEAST_POINTS: usize = 60;
 
-/// Fewer samples of loading show no curve.
+/// Least number of samples of loading that show a curve.
 pub(super) const LEAST_LOADING: usize = 20;
 
 /// The loading curve with its change by the pads' unknown give.
@@ -111,7 +110,7 @@ impl Sheet {
         let k = self.loading.stiffness_n_m;
         let error = self.error(self.loading.around.std_errors[self.loading.stiffness_at()], |l| l.stiffness_n_m);
         let hand = if along.give_m_n.0 > 0.0 { 1.0 / along.give_m_n.0 } else { HAND_N_M };
-        let interval = ((k - 1.96 * error).max(0.0), Some(k + 1.96 * error));
+        let interval = ((k - HALF_INTERVAL * error).max(0.0), Some(k + HALF_INTERVAL * error));
         (k > 0.0).then_some(Yielding { stiffness_n_m: Some(k), interval_n_m: interval, manipulator_n_m: hand })
     }
 

@@ -1,6 +1,7 @@
 //! Signals of a needle recording along the needle's way: depth, force, and the segments in which it is held.
 
 use crate::estimate::EstimateError;
+use crate::identify::limits::CONTACT_NOISES;
 use crate::identify::pads::SHEAR_GIVE;
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
@@ -8,20 +9,19 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least grip, as a share of the strongest one.
+/// Least grip of a hold, as a share of the strongest grip.
 const GRIP_SHARE: f64 = 0.15;
-/// Least grip, in multiples of its noise.
-const GRIP_NOISES: f64 = 8.0;
-/// Share of the largest forces whose mean direction is that of the needle, and least number of those samples.
+/// Share of the largest forces whose mean direction is that of the needle.
 const STRONGEST: f64 = 0.02;
+/// Least number of the samples of that mean direction.
 const LEAST_STRONG: usize = 5;
-/// Forces below this many times their noise show nothing.
-const FORCE_NOISES: f64 = 12.0;
-/// Points of the loading curve are means over this time, s: a hand moves on by a tenth of a millimetre meanwhile.
+/// Least force that shows the needle's direction, in multiples of its noise.
+const DIRECTION_NOISES: f64 = 12.0;
+/// Time over which points of the loading curve are averaged, s: a hand moves on by a tenth of a millimetre meanwhile.
 const CALM_S: f64 = 0.005;
-/// Holds of fewer samples are none.
+/// Least number of samples of a hold.
 const LEAST_HOLD: usize = 30;
-/// The pads give when width follows grip this clearly (value over its error).
+/// Slope of width over grip, in standard errors, from which the pads' give is seen.
 const PADS_SEEN: f64 = 8.0;
 
 /// The recording along the needle.
@@ -114,7 +114,7 @@ fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f
 /// Segments of samples with a grip.
 fn holds(grip: &[f64]) -> Vec<Range<usize>> {
     let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let least = (GRIP_SHARE * most).max(GRIP_NOISES * white_noise(grip));
+    let least = (GRIP_SHARE * most).max(CONTACT_NOISES * white_noise(grip));
     let mut found: Vec<Range<usize>> = Vec::new();
     for (i, _) in grip.iter().enumerate().filter(|(_, g)| **g > least) {
         match found.last_mut() {
@@ -141,7 +141,7 @@ fn direction(force: &[Vec2], held: &dyn Fn(usize) -> bool) -> Option<Vec2> {
     let most = ((STRONGEST * sizes.len() as f64) as usize).max(LEAST_STRONG);
     // A stiff sheet that is pressed fast, or once among many strokes, is felt in fewer samples.
     let counts = std::iter::successors(Some(most), |count| Some(count / 2)).take_while(|count| *count >= LEAST_STRONG);
-    let stands_out = |mean: &Vec2| mean.norm() > FORCE_NOISES * noise && mean.norm() > 0.0;
+    let stands_out = |mean: &Vec2| mean.norm() > DIRECTION_NOISES * noise && mean.norm() > 0.0;
     counts.map(mean).find(stands_out).map(|mean| mean.normalize())
 }
 

@@ -2,26 +2,25 @@
 //! puncture.
 
 use super::signals::Along;
+use crate::identify::limits::CONTACT_NOISES;
 use std::ops::Range;
 
 /// Least reversal of the motion, as a share of its whole range.
-const TURN_SHARE: f64 = 0.05;
+const STROKE_TURN_SHARE: f64 = 0.05;
 /// Least reversal of the motion, m.
 const TURN_M: f64 = 2e-4;
-/// Places closer than this are the same hole, m.
+/// Largest distance of two places of the same hole, m.
 const SAME_PLACE_M: f64 = 1e-3;
-/// Beyond an earlier dent by this much, the sheet is untouched again, m.
+/// Distance beyond an earlier dent from which the sheet is untouched again, m.
 pub const BEYOND_DENT_M: f64 = 1e-4;
 /// Share of its peak below which the force of a needle that is through falls.
 const FALLEN: f64 = 0.6;
 /// Largest return of the needle meanwhile, as a share of its depth in the sheet: the force of a released press falls
 /// with its depth.
 const DRAWN_BACK: f64 = 0.1;
-/// A force above this many times the noise is the sheet's.
-const TOUCHES: f64 = 8.0;
 /// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 const LAST_PART: usize = 4;
-/// Peaks below this share of the strongest force are no push.
+/// Least peak of a push, as a share of the strongest force.
 const PUSH_SHARE: f64 = 0.15;
 
 /// One push.
@@ -50,11 +49,11 @@ struct Place {
 /// All pushes, first to last; pushes into a hole that is there already are left out.
 pub fn pushes(along: &Along) -> Vec<Push> {
     let (low, high) = extremes(&along.depth_m, &along.holds);
-    let turn_m = (TURN_SHARE * (high - low)).max(TURN_M);
+    let turn_m = (STROKE_TURN_SHARE * (high - low)).max(TURN_M);
     let outside_n = quiet_force(along);
     let strongest_n =
         along.holds.iter().flat_map(Clone::clone).map(|i| along.force_n[i] - outside_n).fold(0.0, f64::max);
-    let least_n = (PUSH_SHARE * strongest_n).max(8.0 * along.noise_n);
+    let least_n = (PUSH_SHARE * strongest_n).max(CONTACT_NOISES * along.noise_n);
     let mut places: Vec<Place> = Vec::new();
     let mut found = Vec::new();
     for (hold, range) in along.holds.iter().enumerate() {
@@ -134,7 +133,7 @@ fn strokes(depth: &[f64], range: &Range<usize>, turn_m: f64) -> Vec<Range<usize>
 /// First touch of the sheet: the force rises out of quiet. A tool that is taken only then shows another force before,
 /// which is not the sheet's: it is less than a push (`least_n`).
 fn touched(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> Option<usize> {
-    let touches = |i: &usize| force(*i) > TOUCHES * along.noise_n;
+    let touches = |i: &usize| force(*i) > CONTACT_NOISES * along.noise_n;
     let quiet = stroke.clone().take_while(|i| force(*i) < least_n).find(|i| !touches(i)).unwrap_or(stroke.start);
     (quiet..stroke.end).find(touches)
 }
@@ -148,7 +147,7 @@ fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64,
     let mut near: Vec<f64> = (touched - (touched - stroke.start) / LAST_PART..touched).map(force).collect();
     near.sort_by(f64::total_cmp);
     let Some(level) = near.get(near.len() / 2).copied() else { return stroke.start };
-    let other = |i: &usize| (force(*i) - level).abs() > TOUCHES * along.noise_n;
+    let other = |i: &usize| (force(*i) - level).abs() > CONTACT_NOISES * along.noise_n;
     let before = stroke.start..touched - (touched - stroke.start) / LAST_PART;
     before.rev().find(other).map_or(stroke.start, |i| i + 1)
 }
@@ -173,7 +172,7 @@ fn puncture(
             return Some((peak, i));
         }
         // A push that was released this far begins again.
-        if force(i) < TOUCHES * along.noise_n {
+        if force(i) < CONTACT_NOISES * along.noise_n {
             peak = i;
         }
     }

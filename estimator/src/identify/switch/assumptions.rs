@@ -1,6 +1,6 @@
 //! Assumptions about geometry and pads in reading the samples of a switch.
 
-/// A knob does not turn farther from the top of its arc than this sine.
+/// Largest sine of a knob's angle from the top of its arc.
 const FARTHEST_SINE: f64 = 0.95;
 
 /// Give of a pad, and the arc on which the knob moves.

@@ -14,6 +14,7 @@ mod throw_curve;
 
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::{Resampled, median_error_of_few};
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::identify::pads::EVEN;
 use assumptions::Assumptions;
 use haptics::recording::Recording;
@@ -25,23 +26,24 @@ use throw_curve::{Stop, Throw};
 pub const OBJECT: &str = "switch";
 /// Length of the lever that is assumed, in travels of the knob.
 pub const LEVER_TRAVELS: f64 = 1.9;
-/// One over that is taken as evenly likely within this share.
+/// Relative uncertainty of the inverse of the lever's length.
+/// Derived: evenly likely within half of itself.
 const LEVER_SPREAD: f64 = 0.5 * EVEN;
-/// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
+/// The pads' share of the give at the stops, and its error.
+/// Derived: evenly likely between 0.4 and 1.
 const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
-/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of the 95 % range, and its
-/// error.
+/// Stiffness of a pad in terms of that at the stops, and its error.
+/// Derived: the middle of the 95 % range of 1/share, 1.02 … 2.41, and its half width over 1.96, for shares as in
+/// `PAD_SHARE`.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
 /// Uncertainty of the place of a touch on the knob's round side, m.
 const TOUCHED_M: f64 = 3e-5;
 /// Uncertainty of the resting place of a knob held by friction, m.
 const RESTING_M: f64 = 5e-5;
-/// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
+/// Share of the least force of a touch, over the rise, by which a finger moves the knob before the touch is seen.
 const UNSEEN_TOUCH: f64 = 0.15;
-/// A touch is seen late by up to this share of the way between two samples.
-const STEP_SHARE: f64 = 0.7;
-/// A peak counts from this many standard errors of rise and fall.
-const PEAK_SEEN: f64 = 4.0;
+/// Largest delay of a touch, as a share of the way between two samples.
+const TOUCH_STEP_SHARE: f64 = 0.7;
 
 /// Fits one recording.
 pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
@@ -95,14 +97,15 @@ struct Captured {
 impl Curves {
     fn of(signals: &Signals, reading: &Assumptions) -> Result<Self, EstimateError> {
         let seen = [signals.seen(0, reading), signals.seen(1, reading)];
-        let peaked = |w: &Throw| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
+        let peaked =
+            |w: &Throw| w.around.t_value(1) > CLEARLY_SIGNIFICANT && w.around.t_value(2) < -CLEARLY_SIGNIFICANT;
         let ways = [throw_curve::throw(&seen[0])?.filter(peaked), throw_curve::throw(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
             reading: *reading,
             top_m: signals.middle_m,
             ways,
-            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
+            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(TOUCH_STEP_SHARE * signals.step_m),
             stops: [throw_curve::stop(&seen[0])?, throw_curve::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
             width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),

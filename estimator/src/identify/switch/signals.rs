@@ -14,11 +14,12 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Samples are averaged over this half window, s.
+/// Half of the window over which samples are averaged, s.
 const CALM_HALF_S: f64 = 0.004;
-/// Speed and acceleration come from parabolas over this half window, s: a knob that falls over runs away within some 20 ms.
+/// Half of the window of the parabolas for speed and acceleration, s. A knob that falls over runs away within 20 ms.
 const MOVING_HALF_S: f64 = 0.010;
-/// A knob is taken to move across with at least this share of its speed along the arc.
+/// Least share of its speed along the arc with which a knob moves across.
+/// Derived: √(1 − 0.95²), the cosine at the farthest sine.
 const LEAST_COSINE: f64 = 0.31;
 /// Least force of a touching finger, as a share of its strongest force.
 const TOUCH_SHARE: f64 = 0.03;
@@ -26,13 +27,13 @@ const TOUCH_SHARE: f64 = 0.03;
 const TOUCH_NOISES: f64 = 5.0;
 /// Least force on a stop, as a share of its largest value there: the knob lies there, and no friction carries it.
 const STOP_SHARE: f64 = 0.3;
-/// A stop was pressed when the force there came to this many times the least one that counts as a touch.
+/// Force on a pressed stop, in multiples of the least force of a touch.
 const STOP_TOUCHES: f64 = 2.0;
-/// After a turn the force goes over from one curve to the other within less than this way, m.
+/// Way after a turn within which the force goes over from one curve to the other, m.
 const SETTLED_M: f64 = 0.8e-3;
-/// A turn of the motion counts from this share of its range.
-const TURN_SHARE: f64 = 0.1;
-/// The hand is fast in the samples above this share.
+/// Least size of a turn of the motion, as a share of its range.
+const THROW_TURN_SHARE: f64 = 0.1;
+/// Share of the samples that are slower than a fast hand.
 const FAST_SHARE: f64 = 0.9;
 /// Share of the samples among which a finger at rest is looked for.
 const QUIET_SHARE: f64 = 0.25;
@@ -128,7 +129,7 @@ impl Signals {
                 recording.name
             )));
         }
-        let strokes = strokes(&mean, TURN_SHARE * (high - low));
+        let strokes = strokes(&mean, THROW_TURN_SHARE * (high - low));
         let height_m = [left_height_m, right_height_m].iter().flatten().sum::<f64>()
             / [left_height_m, right_height_m].iter().flatten().count().max(1) as f64;
         let zero_error_n = left_zero_n.max(right_zero_n);

@@ -3,24 +3,21 @@
 use super::signals::{Sample, Seen};
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::{Resampled, block_bootstrap};
+use crate::identify::limits::{GOLDEN_STEPS, LEAST_LINE_ROWS, SEARCH_STEPS};
 use crate::identify::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares};
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of the search for the peak, and of the golden section after it.
-const SEARCH: usize = 60;
-const FINE: usize = 40;
 /// Largest number of samples in the fit.
-const MOST_ROWS: usize = 6000;
+const MOST_THROW_ROWS: usize = 6000;
 /// Column of the rate, which that of the acceleration follows.
+/// Derived: the fifth column, after level, rise, fall, and place.
 const RATE: usize = 4;
-/// Fewest samples that show a rise and a fall.
-const LEAST_ROWS: usize = 24;
+/// Least number of samples that show a rise and a fall.
+const LEAST_THROW_ROWS: usize = 24;
 /// Force by speed and mass of a knob on its way down that is not in the curve, N (one standard deviation).
 const FALLING_N: f64 = 0.025;
-/// The same up to the peak, where it moves slowly, N.
+/// Force by speed and mass of a slow knob up to the peak that is not in the curve, N (one standard deviation).
 const MOVING_N: f64 = 0.02;
-/// Fewest that show a stop.
-const LEAST_STOP: usize = 8;
 
 /// Rise and fall. Regressors of `around`: force at the peak, rise, fall, place of the peak. If they can be told from
 /// the curve there follow the terms of the knob's own motion: damping, mass.
@@ -74,10 +71,10 @@ impl Throw {
 /// `None` when too little is seen, or no fall after a rise.
 pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
     let count = seen.way.len();
-    if count < LEAST_ROWS {
+    if count < LEAST_THROW_ROWS {
         return Ok(None);
     }
-    let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_ROWS)).collect();
+    let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_THROW_ROWS)).collect();
     let still = throw_with(&rows, None)?;
     let Some(moving) = throw_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Throw::assumed_slow)) };
     // At one speed all the time, or in few samples, the force of the motion cannot be told from the curve.
@@ -89,12 +86,12 @@ pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
 fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>, EstimateError> {
     let moving = noise.is_some();
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s.at_m), h.max(s.at_m)));
-    let at = |k: usize| low + (high - low) * k as f64 / SEARCH as f64;
+    let at = |k: usize| low + (high - low) * k as f64 / SEARCH_STEPS as f64;
     let cost = |place: f64| solve(rows, place, moving).map_or(f64::INFINITY, |(_, cost)| cost);
-    let best = (1..SEARCH).min_by(|&a, &b| cost(at(a)).total_cmp(&cost(at(b)))).unwrap_or(1);
+    let best = (1..SEARCH_STEPS).min_by(|&a, &b| cost(at(a)).total_cmp(&cost(at(b)))).unwrap_or(1);
     let (mut left, mut right) = (at(best - 1), at(best + 1));
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..FINE {
+    for _ in 0..GOLDEN_STEPS {
         let (a, b) = (right - share * (right - left), left + share * (right - left));
         if cost(a) < cost(b) { right = b } else { left = a }
     }
@@ -134,10 +131,10 @@ fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>,
 
 /// `None` when no stop was pressed. Place over force, not the other way round: places are the noisy ones on a hard stop.
 pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
-    if seen.stop.len() < LEAST_STOP {
+    if seen.stop.len() < LEAST_LINE_ROWS {
         return Ok(None);
     }
-    let rows: Vec<Sample> = seen.stop.iter().copied().step_by(seen.stop.len().div_ceil(MOST_ROWS)).collect();
+    let rows: Vec<Sample> = seen.stop.iter().copied().step_by(seen.stop.len().div_ceil(MOST_THROW_ROWS)).collect();
     let force: Vec<f64> = rows.iter().map(|s| s.force_n).collect();
     let place: Vec<f64> = rows.iter().map(|s| s.at_m).collect();
     let columns = [vec![1.0; rows.len()], force];
@@ -150,7 +147,8 @@ pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
 
 /// Peak, rise and fall for a given place (and, for a knob that is `moving`, damping and mass beside them), and the sum of squares.
 fn solve(rows: &[Sample], place: f64, moving: bool) -> Option<(DVector<f64>, f64)> {
-    // Millimetres, so that all columns are of one size.
+    /// Millimetres in a metre: all columns are then of one size.
+    /// Derived: 1 m / 1 mm.
     const MILLI: f64 = 1e3;
     let count = if moving { 5 } else { 3 };
     let (mut normal, mut right, mut power) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count), 0.0);

@@ -1,27 +1,26 @@
 //! Free flight, from the first sample to the first blow.
 
-use super::pose::Track;
+use super::pose::{LEAST_OF_PARABOLA, Track};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Time at the beginning that shows undisturbed flight, s.
 const FIRST_S: f64 = 0.068;
 /// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
-const REACH_S: f64 = 0.020;
+const BLOW_REACH_S: f64 = 0.020;
 /// Deviation of a flight from its parabola, in multiples of the usual one, above which it is left out.
 const BENT: f64 = 3.0;
 /// Least change of the second difference by a blow, in multiples of its usual scatter.
 const BLOW_NOISES: f64 = 5.0;
 /// Least change of the velocity by a blow, m/s.
 const BLOW_M_S: f64 = 0.15;
-/// Samples left out before a blow.
+/// Number of samples left out before a blow.
 const GUARD: usize = 1;
-/// A shorter flight tells nothing, s; a parabola with two samples more than it has numbers is the least that can be judged.
-const LEAST_S: f64 = 0.047;
-const LEAST: usize = 5;
+/// Least duration of a flight that is judged, s.
+const LEAST_FLIGHT_S: f64 = 0.047;
 
 /// Samples of the shortest flight that tells something.
 pub(crate) fn least(track: &Track) -> usize {
-    LEAST.max(track.steps(LEAST_S) + 1)
+    LEAST_OF_PARABOLA.max(track.steps(LEAST_FLIGHT_S) + 1)
 }
 
 /// Parameters common to all flights.
@@ -103,7 +102,7 @@ fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) ->
 
 /// The same for one flight, by the residuals of its samples, and the number of free ones; `None` if none is.
 fn by_sample(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
-    /// Neighbours are no more alike than this.
+    /// Largest correlation of neighbouring residuals.
     const MOST_ALIKE: f64 = 0.9;
     let left: Vec<DVector<f64>> = blocks.iter().map(|(a, b)| b - a * values).collect();
     let rss: f64 = left.iter().map(DVector::norm_squared).sum();
@@ -135,7 +134,7 @@ fn rows(track: &Track, n: usize, axis: usize, turned: bool) -> Block {
 /// Samples of the flight at the beginning.
 pub(crate) fn end(track: &Track) -> usize {
     let points = &track.points;
-    let reach = track.steps(REACH_S);
+    let reach = track.steps(BLOW_REACH_S);
     // Three second differences at least: their median is then no blow.
     let first = (track.steps(FIRST_S) + 1).max(2 * reach + 3);
     if points.len() < first + reach + 1 {

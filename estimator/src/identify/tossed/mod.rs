@@ -11,6 +11,7 @@ pub(crate) mod slide;
 
 use super::mechanism::path;
 use crate::estimate::{Fit, Parameter};
+use crate::identify::limits::SIGNIFICANT;
 use flight::Fall;
 use haptics::recording::Recording;
 use pose::Track;
@@ -22,8 +23,6 @@ const BODY: &str = "body";
 const LIKE_GRAVITY: f64 = 0.2;
 /// Share of the recordings that must begin with a fall.
 const FALLING_SHARE: f64 = 0.5;
-/// Standard errors of a scale from 1 from which it is said to be off.
-const OFF: f64 = 3.0;
 
 /// Estimates from recordings of one thrown body.
 pub(crate) struct Tossed {
@@ -100,7 +99,7 @@ pub fn fit(recordings: &[Recording]) -> Option<Fit> {
     let why = "it needs the places of the corners, which the recording does not have";
     parameters.push(Parameter::unidentified(BODY, "restitution", samples, why));
     let mut warnings = Vec::new();
-    if (fall.down_m_s2 - gravity).abs() > OFF * fall.error_m_s2 {
+    if (fall.down_m_s2 - gravity).abs() > SIGNIFICANT * fall.error_m_s2 {
         warnings.push(format!(
             "the body falls with {:.3} ± {:.3} m/s² and not {gravity}: lengths are recorded {:+.1} % off, or the clock {:+.1} %",
             fall.down_m_s2,

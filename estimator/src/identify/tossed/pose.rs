@@ -4,6 +4,10 @@ use crate::identify::mechanism::path;
 use haptics::recording::Recording;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
+/// Least number of samples of a parabola that can be judged.
+/// Derived: its three numbers and two samples more.
+pub(super) const LEAST_OF_PARABOLA: usize = 5;
+
 /// One recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Track {
@@ -44,7 +48,7 @@ impl Track {
 
     /// Samples that come nearest to a time, one at least: the event has a duration, whatever the rate.
     pub(crate) fn steps(&self, seconds: f64) -> usize {
-        /// More than any track has: a clock that stands has no end of samples in a second.
+        /// Largest number of steps; more than any track has, for a clock that stands.
         const MOST: f64 = 1e9;
         (seconds / self.step_s()).round().clamp(1.0, MOST) as usize
     }
@@ -71,10 +75,17 @@ impl Track {
     /// Noise of a velocity, m/s, and of a level component of the angular velocity, rad/s, as [`Self::velocity`] and [`Self::spin`] tell them. Out of
     /// third differences of the height and second ones of the orientation: flight, sliding and rest have none but by noise.
     pub(crate) fn slope_noise(&self, reach: usize) -> (f64, f64) {
-        /// Root sums of squares of the differences' weights, and medians of a normal's size in one and in two dimensions.
+        /// Root sum of squares of the weights of a third difference.
+        /// Derived: √(1² + 3² + 3² + 1²) = √20.
         const THIRD: f64 = 4.472;
+        /// Root sum of squares of the weights of a second difference.
+        /// Derived: √(1² + 2² + 1²) = √6.
         const SECOND: f64 = 2.449;
+        /// Median size of a normal variable with unit variance.
+        /// Derived: Φ⁻¹(0.75).
         const SIZE_OF_ONE: f64 = 0.6745;
+        /// Median size of two independent normal variables with unit variance.
+        /// Derived: √(2 ln 2), of the Rayleigh distribution.
         const SIZE_OF_TWO: f64 = 1.1774;
         let n = self.points.len();
         let z = |i: usize| self.points[i].z;

@@ -1,33 +1,37 @@
 //! Sliding flat: height and orientation stay, the speed falls evenly.
 
-use super::pose::Track;
+use super::pose::{LEAST_OF_PARABOLA, Track};
 use crate::signal::derive::polynomial;
 use nalgebra::Vector3;
 
 /// Time on either side over which velocities are taken, s.
-const REACH_S: f64 = 0.0135;
-/// Slower than this it may stick or creep, m/s.
+const VELOCITY_REACH_S: f64 = 0.0135;
+/// Least speed of a slide, m/s: a slower body may stick or creep.
 const SLOW_M_S: f64 = 0.05;
-/// Turning faster than this it rolls or spins, rad/s.
+/// Largest angular velocity of a slide, rad/s: a faster body rolls or spins.
 const TURNING_RAD_S: f64 = 0.6;
 /// Largest speed of rising or falling in a flat slide, m/s.
 const RISING_M_S: f64 = 0.03;
 /// Largest range of heights in a slide, m.
 const LEVEL_M: f64 = 2e-3;
-/// Limits by noise: in multiples of its effect, but at most `LOOSER` times the plain limits.
-const NOISES: f64 = 3.5;
+/// Limits of a flat slide by noise, in multiples of its effect.
+const SLIDE_NOISES: f64 = 3.5;
+/// Largest ratio of these limits to the plain ones.
 const LOOSER: f64 = 2.0;
-/// Its edge turns no faster than this share of the speed: friction then still goes against the speed, all but 4 % of it.
+/// Largest speed of the edge's spin, as a share of the body's speed: friction then still goes against the speed, all
+/// but 4 % of it.
+/// Derived: 0.25 · 0.4² = 4 %.
 const SPINNING: f64 = 0.4;
-/// Distance of the contact from a body's axis, in half widths: between that of an even pressure (0.8) and four corners
-/// (1.4) of a cube. If those are unknown it is in m: hands throw bodies about a decimetre wide.
+/// Distance of the contact from a body's axis, in half widths of a cube.
+/// Derived: the middle of that of an even pressure (0.8) and four corners (1.4).
 const FOOT: f64 = 1.1;
+/// Distance of the contact from the axis of a body of unknown width, m.
+/// Derived: 1.1 half widths of a body about a decimetre wide, as hands throw them.
 const FOOT_M: f64 = 0.055;
-/// Relative difference between the two of the friction that does not go against the speed.
+/// Relative difference, between an even pressure and four corners, of the friction that does not go against the speed.
 const FOOT_ERROR: f64 = 0.6;
-/// A shorter slide tells nothing, samples and s.
-const LEAST: usize = 5;
-const LEAST_S: f64 = 0.05;
+/// Least duration of a slide that is judged, s.
+const LEAST_SLIDE_S: f64 = 0.05;
 
 /// One slide.
 #[derive(Clone, Debug)]
@@ -68,11 +72,11 @@ struct Flat {
 /// The slides of all tracks. `half_width_m`: of a cube, where it is known.
 pub(crate) fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> {
     let noise = |which: fn((f64, f64)) -> f64| {
-        let mut all: Vec<f64> = tracks.iter().map(|t| which(t.slope_noise(t.steps(REACH_S)))).collect();
+        let mut all: Vec<f64> = tracks.iter().map(|t| which(t.slope_noise(t.steps(VELOCITY_REACH_S)))).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(0.0)
     };
-    let limit = |plain: f64, noise: f64| plain.max(NOISES * noise).min(LOOSER * plain);
+    let limit = |plain: f64, noise: f64| plain.max(SLIDE_NOISES * noise).min(LOOSER * plain);
     let flat = Flat {
         foot_m: half_width_m.map_or(FOOT_M, |half| FOOT * half),
         rising_m_s: limit(RISING_M_S, noise(|n| n.0)),
@@ -84,7 +88,7 @@ pub(crate) fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> 
 
 /// Speed of the edge's spin relative to the speed of the middle at a sample; `None` if the body does not slide flat.
 fn spinning(track: &Track, i: usize, flat: &Flat) -> Option<f64> {
-    let reach = track.steps(REACH_S);
+    let reach = track.steps(VELOCITY_REACH_S);
     let (velocity, spin) = (track.velocity(i, reach), track.spin(i, reach));
     let speed = velocity.x.hypot(velocity.y);
     let spinning = flat.foot_m * spin.z.abs() / speed;
@@ -97,7 +101,7 @@ fn spinning(track: &Track, i: usize, flat: &Flat) -> Option<f64> {
 
 fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
     let n = track.points.len();
-    let reach = track.steps(REACH_S);
+    let reach = track.steps(VELOCITY_REACH_S);
     if n <= 2 * reach {
         return Vec::new();
     }
@@ -129,7 +133,7 @@ fn direct(spinning: f64) -> f64 {
 
 /// The way along the mean direction, as a parabola.
 fn slide(track: &Track, first: usize, end: usize, spins: &[Option<f64>]) -> Option<Slide> {
-    if end < first + LEAST || track.time_s[end - 1] - track.time_s[first] < LEAST_S {
+    if end < first + LEAST_OF_PARABOLA || track.time_s[end - 1] - track.time_s[first] < LEAST_SLIDE_S {
         return None;
     }
     let (points, time) = (&track.points[first..end], &track.time_s[first..end]);

@@ -1,8 +1,9 @@
 //! Both joints of a chain as recorded: rates from one light filter, and every regressor of the model through one more.
 
 use crate::estimate::EstimateError;
+use crate::identify::mechanism::regress::STICKING_SHARE;
 use crate::identify::mechanism::resampling::Resampled;
-use crate::identify::mechanism::signals::{direction, noise_blur, saturated, uninterrupted};
+use crate::identify::mechanism::signals::{DERIVATIVE_NOISE, direction, noise_blur, saturated, uninterrupted};
 use crate::signal::derive::stencil;
 use crate::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};
 use haptics::law::object::{TWO_LINK, TwoLinkMotion};
@@ -13,11 +14,7 @@ use std::f64::consts::TAU;
 pub const ANGLES: [&str; 2] = ["q1_rad", "q2_rad"];
 /// Torques.
 pub const TORQUES: [&str; 2] = ["tau1_Nm", "tau2_Nm"];
-/// Noise that is let through on a rate, as a share of it: far below the noise after the second filter.
-const RATE_NOISE: f64 = 0.03;
-/// Slower than this share of its usual rate a joint may stick.
-const SLOW_SHARE: f64 = 0.015;
-/// Rows a period of the cut-off: neighbours repeat each other.
+/// Number of rows in a period of the cut-off: closer neighbours repeat each other.
 const ROWS_A_PERIOD: f64 = 4.0;
 
 /// One segment of a recording without a gap.
@@ -85,7 +82,8 @@ pub fn joints(recording: &Recording, index: usize) -> Result<Vec<Joints>, Estima
             let direction = [0, 1].map(|j: usize| direction(rate_rad_s[j], blur[j]));
             TwoLinkMotion { angle_rad: pair(&smooth, i), rate_rad_s, direction }
         });
-        let slow = |j: usize| move |v: &f64| 1.0 / (1.0 + (v / (SLOW_SHARE * rms[j]).max(f64::MIN_POSITIVE)).powi(2));
+        let slow =
+            |j: usize| move |v: &f64| 1.0 / (1.0 + (v / (STICKING_SHARE * rms[j]).max(f64::MIN_POSITIVE)).powi(2));
         Joints {
             recording: index,
             motion: motion.collect(),
@@ -110,7 +108,7 @@ fn light(position: &[Vec<f64>; 2], noise: [f64; 2], rate_hz: f64) -> f64 {
             position.iter().map(|p| root_mean_square(&stencil(&low_pass(p, rate_hz, *cutoff_hz), 1.0 / rate_hz).0));
         let left = noise.iter().map(|n| n * derivative_noise(rate_hz, *cutoff_hz, 1).sqrt());
         // A joint that stands still shows nothing but noise.
-        loudest.zip(left).any(|(rate, noise)| noise <= RATE_NOISE * rate)
+        loudest.zip(left).any(|(rate, noise)| noise <= DERIVATIVE_NOISE * rate)
     };
     let ladder = std::iter::successors(Some(highest), |c| Some(c * 0.8)).take_while(|c| *c > lowest);
     ladder.into_iter().find(quiet).unwrap_or(lowest.min(highest))

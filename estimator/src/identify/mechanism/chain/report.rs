@@ -2,18 +2,20 @@
 
 use super::solve::{FIRM, MODEL, Row, Solution};
 use crate::estimate::{Parameter, Quality};
+use crate::identify::limits::SIGNIFICANT;
+use crate::identify::mechanism::report::EFFECT_SHARE;
 use haptics::law::object::TWO_LINK;
 
 /// The object's name in the results.
 pub const OBJECT: &str = "chain";
 
-/// Fewer recordings cannot show by leaving one out how far they agree.
+/// Least number of recordings that show by leaving one out how far they agree.
 pub const LEAST_FOR_JACKKNIFE: usize = 4;
-/// A number whose error is more than this share of the usual torque, and that is not clear of zero, is not shown.
-const VAGUE_SHARE: f64 = 0.2;
-const CLEAR_T: f64 = 3.0;
-/// Length of the first link: the coupling over the second link's moment.
+/// Index of the coupling; over the second link's moment it is the length of the first link.
+/// Derived: position in [`TWO_LINK`].
 const COUPLING: usize = 2;
+/// Index of the second link's moment.
+/// Derived: position in [`TWO_LINK`].
 const MOMENT: usize = 5;
 
 /// The chosen solution with the sources of its errors.
@@ -58,8 +60,8 @@ impl Seen<'_> {
         let rms = |of: &dyn Fn(&Row) -> f64| {
             (self.best.rows.iter().map(|r| of(r).powi(2)).sum::<f64>() / samples.max(1) as f64).sqrt()
         };
-        let vague = error * rms(&|r| r.columns[k]) > VAGUE_SHARE * rms(&|r| r.torque);
-        if !error.is_finite() || vague && fit.values[k].abs() < CLEAR_T * error {
+        let vague = error * rms(&|r| r.columns[k]) > EFFECT_SHARE * rms(&|r| r.torque);
+        if !error.is_finite() || vague && fit.values[k].abs() < SIGNIFICANT * error {
             let why = format!("it is uncertain by {error:.2e}, too much against the torques; move faster or longer");
             return Parameter::unidentified(OBJECT, name, samples, &why);
         }
@@ -85,7 +87,7 @@ impl Seen<'_> {
         let own = value.abs() * (a * a + b * b - 2.0 * both).max(0.0).sqrt();
         let error = self.error(own, &length);
         // A quotient of two numbers of which the lower one is next to nothing is anything.
-        if value <= CLEAR_T * error {
+        if value <= SIGNIFICANT * error {
             let why =
                 format!("it is uncertain by {error:.2e} m: gravity hardly pulls at the second link in this plane");
             return Parameter::unidentified(OBJECT, NAME, samples, &why);

@@ -3,21 +3,26 @@
 use super::joints::{JointRows, Joints};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
+use crate::identify::mechanism::regress::WEIGHTING_ROUNDS;
 use haptics::law::object::TWO_LINK;
 
-/// Numbers of the model.
+/// Number of parameters of the model.
+/// Derived: length of [`TWO_LINK`].
 pub const MODEL: usize = TWO_LINK.len();
-/// Parameters that must not depend on the cut-off: inertias and gravity. The model is least true for friction.
+/// Indices of the parameters that must not depend on the cut-off: inertias and gravity. The model is least true for
+/// friction.
+/// Derived: positions in [`TWO_LINK`].
 pub const FIRM: [usize; 5] = [0, 1, 2, 4, 5];
-/// The Coulomb friction of each joint.
+/// Indices of the Coulomb friction of each joint.
+/// Derived: positions in [`TWO_LINK`].
 const DRY: [usize; 2] = [7, 9];
-/// From one cut-off to the next.
-const STEP: f64 = std::f64::consts::SQRT_2;
-/// The lowest cut-off lies this far below the motion, the highest this far below the light filter.
+/// Ratio of a cut-off to the one below it.
+/// Derived: half an octave, √2.
+const CUTOFF_STEP: f64 = std::f64::consts::SQRT_2;
+/// Lowest cut-off, as a share of the frequency of the motion.
 const BELOW_MOTION: f64 = 0.5;
+/// Highest cut-off, as a share of that of the light filter.
 const BELOW_LIGHT: f64 = 1.0 / 3.0;
-/// Rounds of weighting.
-const ROUNDS: usize = 3;
 
 /// One row of the regression.
 #[derive(Clone, Debug)]
@@ -76,7 +81,7 @@ pub fn tried(pieces: &[Joints], held: &[[bool; 2]]) -> Result<Vec<Solution>, Est
     motion.sort_by(f64::total_cmp);
     let lowest = BELOW_MOTION * motion.get(motion.len() / 2).copied().unwrap_or(1.0);
     let highest = BELOW_LIGHT * pieces.iter().map(|p| p.light_hz).fold(f64::INFINITY, f64::min);
-    let ladder = std::iter::successors(Some(lowest), |c| Some(c * STEP)).take_while(|c| *c <= highest);
+    let ladder = std::iter::successors(Some(lowest), |c| Some(c * CUTOFF_STEP)).take_while(|c| *c <= highest);
     ladder.map(|cutoff_hz| solve(pieces, held, cutoff_hz, |_| true)).collect()
 }
 
@@ -111,7 +116,7 @@ pub fn solve(
     }
     let torque: Vec<f64> = rows.iter().map(|r| r.torque).collect();
     let mut fit = least_squares(&columns, &torque, None)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..WEIGHTING_ROUNDS {
         let weights = weights(&rows, &fit, &zeros, count);
         fit = least_squares(&columns, &torque, Some(&weights))?;
     }
