@@ -113,7 +113,11 @@ pub fn fits_without_states(session: &Session) -> bool {
 
 /// Sets states of the shown recording by hand.
 pub fn set_states(session: &mut Session, change: &Change) {
-    let (Some(found), Some(prepared)) = (session.segmentation(), session.document.prepared()) else { return };
+    let (Some(found), Some(prepared)) =
+        (session.calibration.segmentation(session.document.current), session.document.prepared())
+    else {
+        return;
+    };
     if let Some(segments) = changed(found, &prepared.times, change) {
         session.calibration.choice.segments.insert(session.document.current, Arc::new(segments));
         show_segments(session);
@@ -128,7 +132,9 @@ pub fn forget_states(session: &mut Session, ctx: &egui::Context) {
 
 /// Shows what was set by hand, before the fit has followed.
 pub(crate) fn show_segments(session: &mut Session) {
-    let (Some(prepared), Some(found)) = (session.document.prepared().cloned(), session.segmentation().cloned()) else {
+    let (Some(prepared), Some(found)) =
+        (session.document.prepared().cloned(), session.calibration.segmentation(session.document.current).cloned())
+    else {
         return;
     };
     let Some(segments) = session.calibration.choice.segments.get(&session.document.current) else { return };
@@ -145,7 +151,7 @@ mod tests {
     use crate::ui::tests::{STACK, session};
 
     fn place(session: &Session, interval: usize) -> (f64, f64, SystemState) {
-        let found = &session.segmentation().expect("segmented").states[interval];
+        let found = &session.calibration.segmentation(session.document.current).expect("segmented").states[interval];
         (found.t0, found.t1, found.state)
     }
 
@@ -153,14 +159,17 @@ mod tests {
     fn a_boundary_moves_and_the_fit_follows_it() {
         let mut session = session(STACK.clone());
         let lifted = SystemState::HoldAboveGround;
-        let states = &session.segmentation().expect("segmented").states;
+        let states = &session.calibration.segmentation(session.document.current).expect("segmented").states;
         let carry = states.iter().position(|i| i.state == lifted).expect("carried");
         let (t0, t1, _) = place(&session, carry);
         let before =
             session.calibration.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
         set_states(&mut session, &Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
         let (_, now, _) = place(&session, carry);
-        assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
+        assert!(
+            (now - t0 - 0.5 * (t1 - t0)).abs() < 0.02
+                && session.calibration.segmentation(session.document.current).is_some_and(|s| s.by_hand)
+        );
         assert_eq!(place(&session, carry + 1).0, now, "no hole");
         let after =
             crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice).expect("fits");
@@ -185,15 +194,22 @@ mod tests {
     #[test]
     fn stretches_are_split_renamed_and_joined() {
         let mut session = session(STACK.clone());
-        let count = session.segmentation().expect("segmented").states.len();
+        let count = session.calibration.segmentation(session.document.current).expect("segmented").states.len();
         let (t0, t1, state) = place(&session, 0);
         set_states(&mut session, &Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
         set_states(&mut session, &Change::State { interval: 1, state: SystemState::NoState });
         assert_eq!((place(&session, 0).2, place(&session, 1).2), (state, SystemState::NoState));
-        assert_eq!(session.segmentation().expect("segmented").states.len(), count + 1);
+        assert_eq!(
+            session.calibration.segmentation(session.document.current).expect("segmented").states.len(),
+            count + 1
+        );
         set_states(&mut session, &Change::Join { interval: 0 });
         assert_eq!(place(&session, 0), (t0, t1, state));
         set_states(&mut session, &Change::Split { interval: 0, at_s: t1 + 100.0 });
-        assert_eq!(session.segmentation().expect("segmented").states.len(), count, "outside: nothing happens");
+        assert_eq!(
+            session.calibration.segmentation(session.document.current).expect("segmented").states.len(),
+            count,
+            "outside: nothing happens"
+        );
     }
 }

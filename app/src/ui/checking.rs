@@ -1,7 +1,7 @@
 //! Checks of a diagnosis on held-out recordings.
 
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::jobs::no_change;
+use super::session::{Session, change};
 use crate::ui::checked::{CHECK, Checked, On, check_now};
 
 /// Checks the answer in the background.

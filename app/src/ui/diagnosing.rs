@@ -1,7 +1,6 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
-use super::jobs::change;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::refits::replay_forces;
 use crate::ui::trainer::choice::{Compare, WorldChoice};
@@ -56,7 +55,7 @@ pub(crate) fn extended(session: &mut Session, ctx: &egui::Context, worlds: Resul
             let recordings = session.document.recordings.clone();
             session.jobs.start(ctx, SIMULATE_EXTENDED, "Replaying in the extended world", move |_| {
                 let replays = replay_forces(&worlds.after, &recordings);
-                change(|session: &mut Session, _| session.diagnosing.replays = replays)
+                change(|session, _| session.diagnosing.replays = replays)
             });
         }
         Err(problem) => session.diagnosing.worlds_problem = Some(problem),

@@ -93,6 +93,11 @@ pub struct Diagnosing {
 }
 
 impl Diagnosing {
+    /// Replay of a recording through the world with what the diagnosis found.
+    pub fn replay(&self, recording: usize) -> Option<&Replayed> {
+        self.replays.get(recording)?.as_ref()
+    }
+
     /// Forgets everything but the question.
     pub fn forget(&mut self) {
         *self = Self { from: self.from, shows_atlas: self.shows_atlas, ..Self::default() };

@@ -2,8 +2,8 @@
 
 use super::files::{SAVE, saved};
 use super::guided::Guided;
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::jobs::no_change;
+use super::session::{Session, change};
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;

@@ -1,7 +1,7 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::jobs::{Answer, JobKind, Jobs, change, no_change};
-use super::session::Session;
+use super::jobs::{Answer, JobKind, Jobs, no_change};
+use super::session::{Session, change};
 use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
@@ -175,7 +175,7 @@ fn dialog_of(title: &str, filters: &[(&str, &[&str])]) -> rfd::FileDialog {
 
 /// The answer of a job that has written a file.
 pub fn saved(path: PathBuf) -> Answer<Session> {
-    change(move |session: &mut Session, _| session.messages.say_saved(&path))
+    change(move |session, _| session.messages.say_saved(&path))
 }
 
 /// Writes the shown recording and its sidecar.

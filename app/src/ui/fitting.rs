@@ -1,7 +1,6 @@
 //! From the loaded recordings to a fit and its replay, in the background, and again whenever the user changes how.
 
-use super::jobs::change;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::refits::{FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge, replay_all};
 use estimator::pipeline::Analysis;
@@ -79,11 +78,11 @@ pub(crate) fn fitted(session: &mut Session, ctx: &egui::Context, analysis: Analy
     let (recordings, fitted) = (session.document.recordings.clone(), Arc::clone(&analysis));
     session.jobs.start(ctx, JUDGE, "", move |_| {
         let enough = judge(&fitted, &recordings);
-        change(|session: &mut Session, _| session.calibration.enough = enough)
+        change(|session, _| session.calibration.enough = enough)
     });
     let recordings = session.document.recordings.clone();
     session.jobs.start(ctx, SIMULATE, "Replaying in the fitted world", move |_| {
         let replays = replay_all(&analysis.world, &recordings);
-        change(|session: &mut Session, _| session.calibration.replays = replays)
+        change(|session, _| session.calibration.replays = replays)
     });
 }

@@ -1,8 +1,7 @@
 //! Doing an experiment in Train: beginning, watching, ending it.
 
-use super::jobs::change;
 use super::recorder::RECORD;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::ui::experimenting;
 use crate::ui::guided::Phase;
 use std::path::PathBuf;

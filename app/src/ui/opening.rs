@@ -1,9 +1,9 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{Answer, Ticket, change, no_change};
+use super::jobs::{Answer, Ticket, no_change};
 use super::prepare::Prepared;
 use super::project::Source;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
@@ -29,7 +29,7 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
         Err(LogError::Cancelled { .. }) => no_change(),
         Err(error) if state::mends(&error) => {
             let why = sentence(&error.to_string());
-            change(move |session: &mut Session, ctx| {
+            change(move |session, ctx| {
                 session.document.path_field = path.display().to_string();
                 map_columns_of(session, ctx, &path, Some(why));
             })
@@ -57,7 +57,7 @@ pub fn open_world(session: &mut Session, ctx: &egui::Context, path: &Path) {
     let path = path.to_path_buf();
     session.jobs.start(ctx, LOAD, "", move |_| {
         let world = crate::worlds::find(&path).map_err(|error| sentence(&format!("{error:#}")))?;
-        change(|session: &mut Session, _| session.training.opened_world = Some(Box::new(world)))
+        change(|session, _| session.training.opened_world = Some(Box::new(world)))
     });
 }
 

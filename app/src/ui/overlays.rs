@@ -1,10 +1,10 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::jobs::{JobKind, change};
+use super::jobs::JobKind;
 use super::plots::choices::Overlaid;
 use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
-use super::session::Session;
+use super::session::{Session, change};
 use estimator::segment::SystemState;
 use estimator::signal::lag::lag;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn find_likeliest(session: &mut Session, ctx: &egui::Context, likeliest: &Li
     // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
     session.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
         let found = most_alike(&fixed, &moved).ok();
-        change(move |session: &mut Session, _| {
+        change(move |session, _| {
             session.plots.likeliest.insert(pair, found);
         })
     });

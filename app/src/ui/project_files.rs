@@ -1,9 +1,9 @@
 //! Opening and saving projects.
 
 use super::files::{SAVE, SAVE_PROJECT, ask, saved};
-use super::jobs::{Answer, Ticket, change, no_change};
+use super::jobs::{Answer, Ticket, no_change};
 use super::prepare::Prepared;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::experimenting;
 use crate::ui::file_kind::LOAD;

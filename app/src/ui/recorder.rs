@@ -3,8 +3,8 @@
 
 use super::files::saved;
 use super::icons::Icon;
-use super::jobs::{JobKind, change};
-use super::session::Session;
+use super::jobs::JobKind;
+use super::session::{Session, change};
 use super::widgets::{primary_button, recording_light, remark};
 use super::{messages, theme};
 use crate::recorder::{Status, folder};
@@ -112,7 +112,7 @@ pub fn look_for_unfinished(ctx: &egui::Context, session: &mut Session) {
     let Some(folder) = session.training.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
     session.jobs.start(ctx, RECOVER, "", move |_| {
         let unfinished = folder::unfinished(&folder);
-        change(|session: &mut Session, _| session.document.unfinished = unfinished)
+        change(|session, _| session.document.unfinished = unfinished)
     });
 }
 

@@ -1,8 +1,8 @@
 //! The video of the hand that belongs to a recording: reading it, its picture at the cursor, and where it lies in time.
 
-use super::jobs::{change, no_change};
+use super::jobs::no_change;
 use super::panel_id::PanelId;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::videos::{ALIGN_VIDEO, PICTURE, Shown, State, VIDEO, begins_at, decoded};

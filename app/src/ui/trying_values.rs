@@ -1,8 +1,7 @@
 //! Replaying with tried values, in the background or at once.
 
-use super::jobs::change;
 use super::replayed::Replayed;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::ui::refits::replay_forces;
 use crate::ui::what_if::{WHAT_IF, world};
 
@@ -31,7 +30,7 @@ pub fn follow_what_if(session: &mut Session, ctx: &egui::Context) {
     session.jobs.start(ctx, WHAT_IF, "", move |_| {
         let world = world(&analysis, &choice.given_to_all(&recordings), &values);
         let replays = replay_forces(&world, &recordings);
-        change(|session: &mut Session, _| session.calibration.what_if.take(values, replays))
+        change(|session, _| session.calibration.what_if.take(values, replays))
     });
 }
 
@@ -52,7 +51,7 @@ pub fn shown_curves(session: &Session) -> Option<&Replayed> {
         .replays
         .get(session.document.current)
         .filter(|_| session.calibration.what_if.is_on());
-    tried.and_then(Option::as_ref).or_else(|| session.replay())
+    tried.and_then(Option::as_ref).or_else(|| session.calibration.replay(session.document.current))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Computing the sensitivity, in the background or at once.
 
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::jobs::no_change;
+use super::session::{Session, change};
 use crate::ui::refits::FIT;
 use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;
@@ -28,7 +28,7 @@ pub fn want_sensitivity(session: &mut Session, ctx: &egui::Context) {
     session.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
         let given = choice.given_to_all(&recordings);
         match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-            Some(found) => change(|session: &mut Session, _| session.calibration.sensitivity = Some(Arc::new(found))),
+            Some(found) => change(|session, _| session.calibration.sensitivity = Some(Arc::new(found))),
             None => no_change(),
         }
     });

@@ -469,7 +469,7 @@ impl Action {
 
 /// Positions of subtasks, states and warnings of the shown recording.
 fn places(session: &Session) -> Vec<Action> {
-    let Some(segmentation) = session.segmentation() else { return Vec::new() };
+    let Some(segmentation) = session.calibration.segmentation(session.document.current) else { return Vec::new() };
     let mut places: Vec<Action> = Vec::new();
     let named = session.calibration.analysis.as_ref().is_some_and(|a| decides(a.task));
     for interval in segmentation.states.iter().filter(|_| named) {

@@ -1,12 +1,11 @@
 //! Lessons in Train: watching an expert, practising, the test, and its result. No drawing here.
 
 use crate::text::sentence::sentence;
-use crate::ui::jobs::change;
 use crate::ui::lessons::kept;
 use crate::ui::lessons::state::{Debrief, EXPERT, GRADE, Open, Phase, grade_file};
 use crate::ui::lessons::trace;
 use crate::ui::lessons::trace::Trace;
-use crate::ui::session::Session;
+use crate::ui::session::{Session, change};
 use crate::ui::trainer::live::{Operator, Sensors};
 use crate::ui::workspace::Workspace;
 use estimator::training::lesson::{Lesson, attempt, expert, practise};

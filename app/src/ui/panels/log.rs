@@ -206,7 +206,7 @@ fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a>
         recordings: &session.document.recordings,
         prepared,
         simulated: trying_values::shown_curves(session),
-        extended: session.extended_replay(),
+        extended: session.diagnosing.replay(session.document.current),
         analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
     }
 }

@@ -235,7 +235,7 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
         );
         ui.label(theme::caption(ui, text));
     }
-    if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
+    if let Some(simulation) = session.calibration.replay(session.document.current).and_then(|r| r.simulation.as_ref()) {
         residual(ui, session, simulation);
     } else if session.jobs.is_running(SIMULATE) {
         ui.label(theme::caption(ui, words::REPLAYING_THE_MOTION));

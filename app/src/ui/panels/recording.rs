@@ -271,7 +271,7 @@ fn method(ui: &mut Ui, session: &mut Session) {
 }
 
 fn thresholds(ui: &mut Ui, session: &mut Session) {
-    let used = session.segmentation().map(|s| s.thresholds);
+    let used = session.calibration.segmentation(session.document.current).map(|s| s.thresholds);
     let default = used.unwrap_or(Thresholds { velocity_m_s: 0.05, force_n: 0.05 });
     let mut given = session.calibration.choice.thresholds.is_some();
     let response = ui.checkbox(&mut given, words::THRESHOLDS);

@@ -180,7 +180,8 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
     }
     let analysis = session.calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
-    let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
+    let segmented =
+        session.calibration.segmentation(session.document.current).into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
         if !texts.iter().any(|(t, _)| *t == text) {
             texts.push((text, Vec::new()));

@@ -124,7 +124,7 @@ fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
         ui.label(theme::caption(ui, words::A_NEEDLES_PHASES));
         return;
     }
-    let used = session.segmentation().map(|s| s.thresholds);
+    let used = session.calibration.segmentation(session.document.current).map(|s| s.thresholds);
     let policy = &mut open.draft.thresholds;
     ui.horizontal(|ui| {
         let one = |ui: &mut Ui, label: &str, value: &mut Option<f64>, learned: f64, factor: f64, unit: &str| {

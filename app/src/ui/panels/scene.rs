@@ -142,7 +142,11 @@ impl ScenePanel {
 
     /// Compares the replay with the recording, once per replay.
     fn compare(&mut self, session: &Session, prepared: &Prepared) {
-        let found = session.replay().zip(session.calibration.analysis.as_ref()).filter(|_| session.layers.replay);
+        let found = session
+            .calibration
+            .replay(session.document.current)
+            .zip(session.calibration.analysis.as_ref())
+            .filter(|_| session.layers.replay);
         let Some((replay, analysis)) = found else {
             self.likeness = None;
             return;

@@ -80,7 +80,8 @@ pub struct SegmentsPanel;
 
 impl Panel for SegmentsPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
+        let sequence =
+            session.calibration.segmentation(session.document.current).map(Segmentation::sequence).unwrap_or_default();
         card(
             ui,
             words::STATES_AND_SUBTASKS,
@@ -91,7 +92,7 @@ impl Panel for SegmentsPanel {
                 }
             },
             |ui| {
-                if session.segmentation().is_none() {
+                if session.calibration.segmentation(session.document.current).is_none() {
                     empty_state(ui, (Icon::States, words::NO_STATES_YET), words::NO_STATES_YET_MORE, |_| {});
                     return;
                 }

@@ -66,7 +66,7 @@ fn overview(ui: &mut Ui, session: &mut Session, rect: Rect) {
     let x_of = |t: f64| rect.left() + ((t - first) / (last - first)).clamp(0.0, 1.0) as f32 * rect.width();
     let track = rect.shrink2(vec2(0.0, 3.5));
     ui.painter().rect_filled(track, 3, p.sunken);
-    for interval in session.segmentation().iter().flat_map(|s| &s.states) {
+    for interval in session.calibration.segmentation(session.document.current).iter().flat_map(|s| &s.states) {
         let part = Rect::from_x_y_ranges(x_of(interval.t0)..=x_of(interval.t1), track.y_range());
         ui.painter().rect_filled(part, 0, state_color(dark, interval.state).gamma_multiply(0.75));
     }

@@ -137,7 +137,10 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
             rows.extend(of_constraint(&marked, session.document.cursor_s));
         }
     }
-    if layers.contacts && prepared.tips.is_some() && session.replay().is_some_and(|r| r.film.is_some()) {
+    if layers.contacts
+        && prepared.tips.is_some()
+        && session.calibration.replay(session.document.current).is_some_and(|r| r.film.is_some())
+    {
         rows.push(Row::new(Mark::Ring, ColorRole::Measured, "Contact of the replay, by its force"));
     }
     rows.extend(of_replay(layers, likeness));

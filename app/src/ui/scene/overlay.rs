@@ -34,7 +34,7 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
             state.input.tip_in_world[finger] = tip.position[sample];
             state.tip_force_n[finger] = tip.force.as_ref().map_or_else(Vec2::zeros, |f| f[sample]);
         }
-        if let Some(film) = session.replay().and_then(|r| r.film.as_ref()) {
+        if let Some(film) = session.calibration.replay(session.document.current).and_then(|r| r.film.as_ref()) {
             film.pose(session.document.cursor_s, &mut state);
         }
         options.show_contacts = session.layers.contacts;

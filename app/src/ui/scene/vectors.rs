@@ -69,7 +69,7 @@ pub fn tips(session: &Session, sample: usize) -> Option<[Vec2; 2]> {
 }
 
 fn channel(session: &Session, name: &str, sample: usize) -> Option<f64> {
-    let simulation = session.replay()?.simulation.as_ref()?;
+    let simulation = session.calibration.replay(session.document.current)?.simulation.as_ref()?;
     simulation.predicted.iter().find(|c| c.name == name)?.values.get(sample).copied()
 }
 

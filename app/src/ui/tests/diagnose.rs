@@ -98,7 +98,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     until_done(&mut harness, EXTEND);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
     until_done(&mut harness, SIMULATE_EXTENDED);
-    let replayed = harness.state().session.extended_replay().expect("played through the extended world");
+    let replayed = harness.state().session.diagnosing.replay(0).expect("played through the extended world");
     assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
         world.crank.as_ref().expect("a crank").effects.iter().map(|e| e.law().id()).collect()

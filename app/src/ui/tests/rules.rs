@@ -27,7 +27,8 @@ fn settle(harness: &mut Harness<'_, Session>) {
 }
 
 fn carried_s(session: &Session) -> f64 {
-    let states = session.segmentation().map(|s| s.states.as_slice()).unwrap_or_default();
+    let states =
+        session.calibration.segmentation(session.document.current).map(|s| s.states.as_slice()).unwrap_or_default();
     states.iter().filter(|i| i.state == SystemState::HoldAboveGround).map(|i| i.t1 - i.t0).sum()
 }
 

@@ -45,7 +45,7 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     fitting::refit(&mut harness.state_mut().session, &ctx);
     settle(&mut harness);
     let before = weight(&harness, "block-1");
-    let states = harness.state().session.segmentation().expect("segmented").states.clone();
+    let states = harness.state().session.calibration.segmentation(0).expect("segmented").states.clone();
     let carry = states.iter().position(|i| i.subtask.as_deref() == Some("carry-block-1")).expect("carried");
     let label = format!("Boundary at {} s", crate::text::format::number(states[carry].t1, 2));
     let grip = harness.get_by_label(&label).rect().center();
@@ -58,12 +58,13 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     }
     harness.drop_at(pos2(grip.x - shift, grip.y));
     settle(&mut harness);
-    let moved = harness.state().session.segmentation().expect("segmented").states[carry].t1;
+    let moved = harness.state().session.calibration.segmentation(0).expect("segmented").states[carry].t1;
     assert!(moved < states[carry].t1 - 0.3, "{moved} from {}", states[carry].t1);
     let after = weight(&harness, "block-1");
     assert!(after.1 < before.1, "fewer samples: {} of {}", after.1, before.1);
     assert!(
-        harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.calibration.stale
+        harness.state().session.calibration.segmentation(0).is_some_and(|s| s.by_hand)
+            && !harness.state().session.calibration.stale
     );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
@@ -84,11 +85,14 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
     let ctx = harness.ctx.clone();
     fitting::refit(&mut harness.state_mut().session, &ctx);
     settle(&mut harness);
-    let (all, states) = (samples(&harness), harness.state().session.segmentation().expect("segmented").states.clone());
+    let (all, states) =
+        (samples(&harness), harness.state().session.calibration.segmentation(0).expect("segmented").states.clone());
     let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
     let place = states.iter().filter(|s| s.state == longest.state).position(|s| s.t0 == longest.t0).expect("it is one");
-    let word =
-        crate::text::states::state_of_task(harness.state().session.segmentation().expect("segmented"), longest.state);
+    let word = crate::text::states::state_of_task(
+        harness.state().session.calibration.segmentation(0).expect("segmented"),
+        longest.state,
+    );
     let shown: Vec<_> = harness.get_all_by_role_and_label(egui::Role::Button, word).collect();
     shown[place].click_secondary();
     harness.run_steps(2);
@@ -112,7 +116,7 @@ fn another_value_is_tried_on_the_replay_and_frozen() {
     settle(&mut harness);
     assert!(!harness.state().session.calibration.what_if.is_behind());
     let shown = trying_values::shown_curves(&harness.state().session).expect("curves").curves.clone();
-    let first = harness.state().session.replay().expect("replay").curves.clone();
+    let first = harness.state().session.calibration.replay(0).expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();
     settle(&mut harness);
