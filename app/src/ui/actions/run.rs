@@ -71,6 +71,40 @@ fn with_layouts(action: &Action, app: &mut App) {
 
 fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
+        Action::Open(workspace) => session.workspace = *workspace,
+        Action::Diagnose => {
+            session.workspace = Workspace::Diagnose;
+            diagnosing::diagnose(session, ctx);
+        }
+        Action::Extend => diagnosing::extend_model(session, ctx),
+        Action::Feel => diagnosing::feel(session),
+        Action::Fit => fitting::refit(session, ctx),
+        Action::Rules => session.calibration.rules = editing_rules::open(session),
+        Action::ForgetStates => by_hand::forget_states(session, ctx),
+        Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
+        Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
+        Action::FitWhole => session.calibration.choice.only_s = None,
+        Action::Undo => undoing::undo(session),
+        Action::Redo => undoing::redo(session),
+        Action::Play | Action::ToStart | Action::ToEnd | Action::ShowAll | Action::Select(_) | Action::GoTo { .. } => {
+            with_document(action, session)
+        }
+        Action::TrainCalibrated
+        | Action::Assistant
+        | Action::StartOver
+        | Action::Answer(..)
+        | Action::Lesson(_)
+        | Action::Watch
+        | Action::Practise
+        | Action::TakeTest
+        | Action::PractiseOnThis
+        | Action::Record => with_training(action, ctx, session),
+        _ => with_files(action, ctx, session),
+    }
+}
+
+fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
+    match action {
         Action::OpenLog => files::ask(ctx, &mut session.jobs, files::OPEN_LOG),
         Action::AddLog => files::ask(ctx, &mut session.jobs, files::ADD_LOG),
         Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
@@ -85,20 +119,29 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
         Action::Reload => follow::reload(session, ctx),
         Action::MapColumns => opening::map_columns(session, ctx, None),
-        Action::Undo => undoing::undo(session),
-        Action::Redo => undoing::redo(session),
-        Action::Fit => fitting::refit(session, ctx),
-        Action::Rules => session.calibration.rules = editing_rules::open(session),
-        Action::ForgetStates => by_hand::forget_states(session, ctx),
-        Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
-        Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
-        Action::FitWhole => session.calibration.choice.only_s = None,
-        Action::Diagnose => {
-            session.workspace = Workspace::Diagnose;
-            diagnosing::diagnose(session, ctx);
+        // Actions of the window.
+        _ => {}
+    }
+}
+
+fn with_document(action: &Action, session: &mut Session) {
+    match action {
+        Action::Play => session.document.toggle_play(),
+        Action::ToStart => session.document.seek(f64::NEG_INFINITY),
+        Action::ToEnd => session.document.seek(f64::INFINITY),
+        Action::ShowAll => {
+            if let Some(prepared) = session.document.prepared() {
+                session.document.view_s = prepared.span();
+            }
         }
-        Action::Extend => diagnosing::extend_model(session, ctx),
-        Action::Feel => diagnosing::feel(session),
+        Action::Select(index) => session.document.select(*index),
+        Action::GoTo { from_s, to_s, .. } => session.document.look_at(*from_s, *to_s),
+        _ => {}
+    }
+}
+
+fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
+    match action {
         Action::TrainCalibrated => {
             session.training.train_calibrated = true;
             session.workspace = Workspace::Train;
@@ -113,18 +156,6 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::PractiseOnThis => practising::practise_on_this(session, ctx),
         Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),
-        Action::Play => session.document.toggle_play(),
-        Action::ToStart => session.document.seek(f64::NEG_INFINITY),
-        Action::ToEnd => session.document.seek(f64::INFINITY),
-        Action::ShowAll => {
-            if let Some(prepared) = session.document.prepared() {
-                session.document.view_s = prepared.span();
-            }
-        }
-        Action::Select(index) => session.document.select(*index),
-        Action::GoTo { from_s, to_s, .. } => session.document.look_at(*from_s, *to_s),
-        Action::Open(workspace) => session.workspace = *workspace,
-        // Actions of the window.
         _ => {}
     }
 }
