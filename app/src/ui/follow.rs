@@ -18,12 +18,12 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
             Err(problem) => job_failed(session, problem),
         }
     }
-    super::recorder::follow(ctx, session);
+    super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
     guiding::follow_experiment(session, ctx);
     trainees::follow_history(session);
     practising::follow_lesson(session, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-    undoing::note_changes(session, now_s, held);
+    undoing::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
     fitting::follow_choice(session, ctx);
     trying_values::follow_what_if(session, ctx);
 }
@@ -41,9 +41,14 @@ fn job_failed(session: &mut Session, problem: String) {
 pub fn reload(session: &mut Session, ctx: &egui::Context) {
     match session.document.path.clone() {
         Some(_) if session.document.sources.len() > 1 => {
-            project_files::restore(session, ctx, project_files::project_of(session));
+            project_files::restore(
+                &mut session.messages,
+                &mut session.jobs,
+                ctx,
+                project_files::project_of(session.workspace, &session.document, &session.calibration, &session.plots),
+            );
         }
-        Some(path) => opening::open(session, ctx, &path),
+        Some(path) => opening::open(&mut session.document, &mut session.jobs, ctx, &path),
         None => session.messages.fail("There is no file to reload: open a log first."),
     }
 }

@@ -27,7 +27,7 @@ pub fn save(ctx: &egui::Context, jobs: &mut Jobs<Session>, mapping: &Mapping) {
         change(move |session, ctx| {
             session.mapping = None;
             session.messages.say_saved(&sidecar);
-            opening::open_with(session, ctx, &path, Some(sidecar));
+            opening::open_with(&mut session.document, &mut session.jobs, ctx, &path, Some(sidecar));
         })
     });
 }

@@ -93,13 +93,13 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     let mut session = Session::new();
     session.document.meta.clone_from(&options.meta);
     session.document.task_hint.clone_from(&options.task);
-    recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
+    recorder::look_for_unfinished(&cc.egui_ctx, &session.training.trainer, &mut session.jobs);
     if let Some(world) = &options.world {
-        opening::open_world(&mut session, &cc.egui_ctx, world);
+        opening::open_world(&mut session.jobs, &cc.egui_ctx, world);
     }
     if let Some(log) = &options.log {
         session.workspace = workspace::Workspace::Calibrate;
-        opening::open(&mut session, &cc.egui_ctx, log);
+        opening::open(&mut session.document, &mut session.jobs, &cc.egui_ctx, log);
     }
     let mut app = app::App::new(session);
     if let Some(folder) = eframe::storage_dir("touchstone") {

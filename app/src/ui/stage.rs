@@ -284,7 +284,7 @@ fn with_video(session: &mut Session, input: &PictureInput) {
         (None, Some(log)) => session.document.videos.of_log(log, &session.document.recordings),
         (None, None) => {}
     }
-    showing_video::read_video_now(session);
+    showing_video::read_video_now(&mut session.document);
 }
 
 /// The lifting force over the height, where both are known; else what the window begins with.

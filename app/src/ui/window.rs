@@ -46,12 +46,12 @@ impl App {
         if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() && self.dock.naming.is_none()
         {
             search::keys(ui, self);
-            super::keys::handle(ui, &mut self.session);
+            super::keys::handle(ui, self.session.workspace, &mut self.session.document);
         }
         dropped_files(&ctx, &mut self.session);
         self.session.document.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
-        super::recorder::unfinished(ui, &mut self.session);
+        super::recorder::unfinished(ui, &mut self.session.document, &mut self.session.jobs);
         restore::offer(ui, self);
         messages::banners(ui, &mut self.session);
         self.arranging(ui);
@@ -186,7 +186,10 @@ impl App {
 
     /// Undo and redo buttons, if there is a change to undo or redo.
     fn undo_buttons(&mut self, ui: &mut Ui) {
-        let (undo, redo) = (undoing::can_undo(&self.session), undoing::can_redo(&self.session));
+        let (undo, redo) = (
+            undoing::can_undo(&self.session.document, &self.session.calibration, &self.session.plots),
+            undoing::can_redo(&self.session.document, &self.session.calibration, &self.session.plots),
+        );
         if !undo && !redo || self.session.workspace == Workspace::Train {
             return;
         }

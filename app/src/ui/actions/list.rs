@@ -420,8 +420,13 @@ impl Action {
             Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.calibration.can_train(), "This world has nothing for the hand."))
             }
-            Self::Undo => need(undoing::can_undo(session), "Nothing was changed."),
-            Self::Redo => need(undoing::can_redo(session), "Nothing was taken back."),
+            Self::Undo => {
+                need(undoing::can_undo(&session.document, &session.calibration, &session.plots), "Nothing was changed.")
+            }
+            Self::Redo => need(
+                undoing::can_redo(&session.document, &session.calibration, &session.plots),
+                "Nothing was taken back.",
+            ),
             Self::ForgetStates => need(
                 session.calibration.choice.segments.contains_key(&session.document.current),
                 "No state was set by hand.",

@@ -110,7 +110,14 @@ fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
         Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
         Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
         Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
-        Action::OpenRecent(path) => opening::open_any(session, ctx, path),
+        Action::OpenRecent(path) => opening::open_any(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            path,
+        ),
         Action::SaveProject => project_files::save_project(session, ctx),
         Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
         Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
@@ -118,7 +125,7 @@ fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
         Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
         Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
         Action::Reload => follow::reload(session, ctx),
-        Action::MapColumns => opening::map_columns(session, ctx, None),
+        Action::MapColumns => opening::map_columns(&session.document, &mut session.jobs, ctx, None),
         // Actions of the window.
         _ => {}
     }
@@ -154,8 +161,14 @@ fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Practise => practising::practise_lesson(session),
         Action::TakeTest => practising::test_lesson(session),
         Action::PractiseOnThis => practising::practise_on_this(session, ctx),
-        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
-        Action::Record => crate::ui::recorder::start(session),
+        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(
+            ctx,
+            &mut session.document,
+            &mut session.training.trainer,
+            &mut session.messages,
+            &mut session.jobs,
+        ),
+        Action::Record => crate::ui::recorder::start(&mut session.training.trainer, &mut session.messages),
         _ => {}
     }
 }

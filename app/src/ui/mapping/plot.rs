@@ -3,6 +3,7 @@
 use super::preview::Seen;
 use crate::text::format;
 use crate::ui::icons::Icon;
+use crate::ui::jobs::Jobs;
 use crate::ui::mapping::state::{Mapping, View};
 use crate::ui::plots::axes::{marks, time_axis, value_axis};
 use crate::ui::plots::decimate::decimate;
@@ -16,8 +17,8 @@ use haptics::Vec2;
 use render::ColorRole;
 
 /// Draws the preview.
-pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
-    let stale = mapping.preview.is_stale(&session.jobs);
+pub fn preview(ui: &mut Ui, mapping: &mut Mapping, jobs: &Jobs<Session>) {
+    let stale = mapping.preview.is_stale(jobs);
     sheet(ui).inner_margin(space::M).show(ui, |ui| {
         ui.set_min_size(ui.available_size());
         // As tall as the headings of the cards beside it.

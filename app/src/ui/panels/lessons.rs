@@ -74,7 +74,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
         Some(Wish::Test) => practising::test_lesson(session),
         Some(Wish::Back) => practising::back_to_brief(session),
         Some(Wish::End(answer)) => practising::end_lesson(session, &ctx, answer),
-        Some(Wish::OpenLog(path)) => opening::open(session, &ctx, &path),
+        Some(Wish::OpenLog(path)) => opening::open(&mut session.document, &mut session.jobs, &ctx, &path),
         Some(Wish::Progress) => session.wanted_pane = Some(PanelId::PROGRESS),
         None => {}
     }

@@ -6,9 +6,11 @@ use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
 use crate::text::format::number;
+use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
+use crate::ui::jobs::Jobs;
 use crate::ui::overlays;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
@@ -118,10 +120,10 @@ impl Panel for LogPanel {
                 return;
             }
             let Some(prepared) = session.document.prepared().cloned() else {
-                nothing_loaded(ui, session);
+                nothing_loaded(ui, &mut session.workspace, &mut session.jobs);
                 return;
             };
-            header(ui, session, &prepared);
+            header(ui, &session.document, &mut session.plots, &prepared);
             overlay_legend(ui, session);
             // Taken out of the session for as long as both are read.
             let mut plots = std::mem::take(&mut session.plots);
@@ -135,7 +137,7 @@ impl Panel for LogPanel {
             }
             session.plots = plots;
             band(ui, session, area);
-            transport(ui, session, area);
+            transport(ui, &mut session.document, &session.calibration, area);
         });
     }
 }
@@ -153,29 +155,29 @@ impl Place {
     }
 }
 
-fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
+fn nothing_loaded(ui: &mut Ui, workspace: &mut Workspace, jobs: &mut Jobs<Session>) {
     let text = words::NO_RECORDING_YET_MORE;
     empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
         if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+            files::ask(ui.ctx(), jobs, files::OPEN_LOG);
         }
         if ui.link(words::OR_RECORD_ONE).clicked() {
-            session.workspace = Workspace::Train;
+            *workspace = Workspace::Train;
         }
     });
 }
 
-fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
+fn header(ui: &mut Ui, document: &Document, plots: &mut PlotChoices, prepared: &Arc<Prepared>) {
     ui.horizontal_wrapped(|ui| {
         // As tall as the tallest, so that the rest is centred.
         ui.set_min_height(HEADER);
         ui.label(theme::heading(words::LOG));
         ui.add_space(space::S);
         let choices = [(LogView::Time, words::TIME, words::CURVES_OVER_TIME), (LogView::Xy, "XY", words::XY_MORE)];
-        segmented(ui, &mut session.plots.view, &choices);
-        if session.plots.view == LogView::Time {
-            chips(ui, &mut session.plots, prepared);
-            overlay_menu(ui, session);
+        segmented(ui, &mut plots.view, &choices);
+        if plots.view == LogView::Time {
+            chips(ui, plots, prepared);
+            overlay_menu(ui, document, plots);
             if ui.available_size_before_wrap().x > 360.0 {
                 ui.add_space(space::L);
                 ui.label(theme::caption(ui, words::WHEEL_ZOOMS_RIGHT));
@@ -238,16 +240,17 @@ fn under_hand(plots: &PlotChoices, clockless: bool) -> (Option<(String, bool)>, 
 /// Shifts the dragged recording. Returns the time of a curve that was only clicked.
 fn shifting(
     ui: &Ui,
-    session: &mut Session,
+    document: &mut Document,
+    jobs: &mut Jobs<Session>,
     plots: &mut PlotChoices,
     grasp: Option<Grasp>,
     area: Rangef,
 ) -> Option<f64> {
     plots.pointed = if let Some(Grasp::Over(place) | Grasp::Takes(place, _)) = grasp { Some(place) } else { None };
-    let clockless = session.document.prepared().is_some_and(|p| p.clockless());
-    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.document.current, clockless)) {
-        session.document.playing = false;
-        overlays::find_likeliest(session, ui.ctx(), &plots.likeliest, recording);
+    let clockless = document.prepared().is_some_and(|p| p.clockless());
+    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, document.current, clockless)) {
+        document.playing = false;
+        overlays::find_likeliest(document, jobs, ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
         plots.take_back();
@@ -258,7 +261,7 @@ fn shifting(
     let clicked = plots.let_go();
     let x = ui.input(|i| i.pointer.latest_pos()).filter(|_| clicked)?.x;
     let share = f64::from((x - area.min) / area.span().max(1.0));
-    Some(session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0))
+    Some(document.view_s.0 + share * (document.view_s.1 - document.view_s.0))
 }
 
 impl LogPanel {
@@ -323,7 +326,7 @@ impl LogPanel {
                 (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
                 grasp = grasp.or(outcome.grasp);
             }
-            seek = seek.or(shifting(ui, session, plots, grasp, area));
+            seek = seek.or(shifting(ui, &mut session.document, &mut session.jobs, plots, grasp, area));
             if let Some(view) = view_s {
                 session.document.view_s = view;
             }

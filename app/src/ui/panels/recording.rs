@@ -116,12 +116,19 @@ fn source(ui: &mut Ui, session: &mut Session) {
         let named = !session.document.path_field.trim().is_empty();
         if enter && named {
             let path = PathBuf::from(session.document.path_field.trim());
-            opening::open_any(session, &ctx, &path);
+            opening::open_any(
+                &mut session.document,
+                &mut session.wanted_pane,
+                &mut session.messages,
+                &mut session.jobs,
+                &ctx,
+                &path,
+            );
         }
         let named = named || session.document.path.is_some();
         let hint = words::MAP_MORE;
         if ui.add_enabled(named, egui::Button::new((Icon::Columns, words::MAP))).on_hover_text(hint).clicked() {
-            opening::map_columns(session, &ctx, None);
+            opening::map_columns(&session.document, &mut session.jobs, &ctx, None);
         }
     });
     let Some(prepared) = session.document.prepared().cloned() else {
@@ -309,13 +316,13 @@ impl RecordingPanel {
         }
         ui.label(theme::caption(ui, words::SAVE_LOG));
         if save_line(ui, session, &mut self.log, (files::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
-            files::save_log(ui.ctx(), session, &self.log);
+            files::save_log(ui.ctx(), &session.document, &session.calibration, &mut session.jobs, &self.log);
         }
         ui.label(theme::caption(ui, words::SAVE_WORLD));
         let fitted = session.calibration.analysis.is_some();
         if save_line(ui, session, &mut self.world, (files::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted)
         {
-            files::save_world(ui.ctx(), session, &self.world);
+            files::save_world(ui.ctx(), &session.calibration, &mut session.jobs, &self.world);
         }
         ui.label(theme::caption(ui, words::SAVE_REPORT));
         let is_file = !session.document.sources.is_empty();
@@ -326,7 +333,13 @@ impl RecordingPanel {
             (files::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
             is_file,
         ) {
-            files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
+            files::save_report(
+                ui.ctx(),
+                &session.document,
+                &session.calibration,
+                &mut session.jobs,
+                PathBuf::from(self.report.trim()),
+            );
         }
     }
 }

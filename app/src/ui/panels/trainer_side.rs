@@ -95,7 +95,15 @@ impl Panel for TrainerSide {
                 super::compare::compare(ui, session);
                 world(ui, session);
                 operator(ui, session);
-                plain_card(ui, words::RECORDING, |ui| recorder::controls(ui, session));
+                plain_card(ui, words::RECORDING, |ui| {
+                    recorder::controls(
+                        ui,
+                        &mut session.document,
+                        &mut session.training.trainer,
+                        &mut session.messages,
+                        &mut session.jobs,
+                    )
+                });
             }
             forces(ui, &session.training.trainer);
             super::assistant::assistant(ui, session);

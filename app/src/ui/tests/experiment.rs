@@ -48,7 +48,8 @@ pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'
     let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     let path = saved(recording, folder);
-    opening::open(&mut harness.state_mut().session, &ctx, &path);
+    let session = &mut harness.state_mut().session;
+    opening::open(&mut session.document, &mut session.jobs, &ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
         s.calibration.analysis.is_some() && quiet(s)

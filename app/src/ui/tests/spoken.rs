@@ -37,7 +37,13 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());
-    showing_video::open_video(&mut video, std::path::Path::new("none.mp4"));
+    showing_video::open_video(
+        &mut video.document,
+        &mut video.wanted_pane,
+        &mut video.messages,
+        &mut video.jobs,
+        std::path::Path::new("none.mp4"),
+    );
     let found = [
         unnamed("XY", xy, |_| {}),
         unnamed("video", video, |_| {}),

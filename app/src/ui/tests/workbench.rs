@@ -193,7 +193,15 @@ fn a_project_brings_back_what_was_done() {
     estimator::log::write_meta(&STACK, &log).expect("written");
     let mut harness = harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    opening::open_any(&mut harness.state_mut().session, &ctx, &log);
+    let session = &mut harness.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &log,
+    );
     settle(&mut harness);
     let session = &mut harness.state_mut().session;
     session.calibration.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
@@ -203,7 +211,15 @@ fn a_project_brings_back_what_was_done() {
     settle(&mut harness);
     let mut other = super::harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = other.ctx.clone();
-    opening::open_any(&mut other.state_mut().session, &ctx, &file);
+    let session = &mut other.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &file,
+    );
     settle(&mut other);
     let session = &other.state().session;
     assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
@@ -228,7 +244,15 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     app.tour = crate::ui::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
-    opening::open_any(&mut first.state_mut().session, &ctx, &log);
+    let session = &mut first.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &log,
+    );
     settle(&mut first);
     first.state_mut().session.calibration.choice.only_s = Some((1.0, 9.0));
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();

@@ -191,7 +191,7 @@ fn long_names_of_channels_and_recordings_can_be_read() {
     for view in [LogView::Time, LogView::Xy] {
         for only in [false, true] {
             let mut session = like(&full);
-            overlays::toggle_overlay(&mut session, 1);
+            overlays::toggle_overlay(&mut session.plots, 1);
             session.plots.view = view;
             let mut app = App::new(session);
             for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::RESULTS].iter().filter(|_| only) {
