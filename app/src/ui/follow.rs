@@ -24,8 +24,8 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     practising::follow_lesson(session, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
     undoing::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
-    fitting::follow_choice(session, ctx);
-    trying_values::follow_what_if(session, ctx);
+    fitting::follow_choice(&session.document, &mut session.calibration, &mut session.jobs, ctx);
+    trying_values::follow_what_if(&session.document, &session.calibration, &mut session.jobs, ctx);
 }
 
 /// A job has failed.

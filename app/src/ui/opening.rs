@@ -88,7 +88,7 @@ fn loaded(session: &mut Session, ctx: &egui::Context, path: PathBuf, recordings:
     session.document.path = Some(path);
     match mute {
         Some(why) => map_columns(&session.document, &mut session.jobs, ctx, Some(why)),
-        None => fitting::refit(session, ctx),
+        None => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
     }
 }
 

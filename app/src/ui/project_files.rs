@@ -110,7 +110,7 @@ pub(crate) fn opened_project(
     if let Some(path) = session.document.project_path.clone() {
         session.document.recent.note(&path);
     }
-    fitting::refit(session, ctx);
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx);
 }
 
 /// Adds the recordings of another file to those that are open, and fits all of them together.

@@ -130,7 +130,7 @@ pub fn guided(input: &PictureInput) -> anyhow::Result<Session> {
 /// The sensitivity of the force to the parameters.
 pub fn sensitivity(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        wanting_sensitivity::look_at_sensitivity(session);
+        wanting_sensitivity::look_at_sensitivity(&session.document, &mut session.calibration);
         Ok(())
     })
 }
@@ -154,7 +154,7 @@ pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
 /// The open rules of the task.
 pub fn rules(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.calibration.rules = editing_rules::open(session);
+        session.calibration.rules = editing_rules::open(&session.document, &session.calibration, &mut session.messages);
         Ok(())
     })
 }
@@ -302,7 +302,7 @@ fn against_each_other(session: &mut Session) {
 fn what_is_left(session: &mut Session) {
     let Some(prepared) = session.document.prepared().cloned() else { return };
     for group in &prepared.groups {
-        let comparable = can_compare(trying_values::shown_curves(session), group);
+        let comparable = can_compare(trying_values::shown_curves(&session.document, &session.calibration), group);
         let choice = session.plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
@@ -318,9 +318,9 @@ fn try_another_value(session: &mut Session) {
     let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
     let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
     let name = parameter.full_name();
-    trying_values::try_value(session, &name, parameter.value.map(|v| 1.2 * v));
+    trying_values::try_value(&mut session.calibration, &name, parameter.value.map(|v| 1.2 * v));
     session.calibration.selected_parameter = Some(name);
-    trying_values::try_now(session);
+    trying_values::try_now(&session.document, &mut session.calibration);
 }
 
 /// Diagnoses and extends the model at once, without the window's jobs.

@@ -53,7 +53,7 @@ fn put_back(session: &mut Session, Undoable { choice, overlaid }: Undoable) {
     let segments_differ = session.calibration.choice.segments != choice.segments;
     session.calibration.choice = choice;
     if segments_differ {
-        by_hand::show_segments(session);
+        by_hand::show_segments(&session.document, &mut session.calibration);
     }
 }
 

@@ -66,7 +66,7 @@ impl Bench {
         match chaos.rng.random_range(0..6) {
             0 => project_files::add_log(session, ctx, &path),
             1 => undoing::undo(session),
-            2 => fitting::refit(session, ctx),
+            2 => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
             3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),
             _ => opening::open_any(

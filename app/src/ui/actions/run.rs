@@ -78,9 +78,14 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         }
         Action::Extend => diagnosing::extend_model(session, ctx),
         Action::Feel => diagnosing::feel(session),
-        Action::Fit => fitting::refit(session, ctx),
-        Action::Rules => session.calibration.rules = editing_rules::open(session),
-        Action::ForgetStates => by_hand::forget_states(session, ctx),
+        Action::Fit => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
+        Action::Rules => {
+            session.calibration.rules =
+                editing_rules::open(&session.document, &session.calibration, &mut session.messages)
+        }
+        Action::ForgetStates => {
+            by_hand::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx)
+        }
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,

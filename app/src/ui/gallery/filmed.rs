@@ -21,8 +21,8 @@ const ASIDE_RAD: [f32; 2] = [0.7, 0.18];
 /// Films the shown recording about the time cursor.
 pub fn filmed(session: &mut Session, file: &Path) -> anyhow::Result<VideoSource> {
     let prepared = session.document.prepared().cloned().context("there is no recording to film")?;
-    let world = scene_world(session, &prepared);
-    let mut camera = camera_for(session, &prepared);
+    let world = scene_world(&session.calibration, &prepared);
+    let mut camera = camera_for(&session.document, &session.calibration, &prepared);
     camera.orbit(ASIDE_RAD[0], ASIDE_RAD[1]);
     let (middle_s, begins_at_s) = (session.document.cursor_s, session.document.cursor_s - 0.5 * LENGTH_S);
     let mut headless = Headless::new()?;

@@ -136,7 +136,7 @@ impl Panel for LogPanel {
                 job.if_given_up(|session, _| session.plots.give_up());
             }
             session.plots = plots;
-            band(ui, session, area);
+            band(ui, &mut session.document, &mut session.calibration, &session.jobs, area);
             transport(ui, &mut session.document, &session.calibration, area);
         });
     }
@@ -207,7 +207,7 @@ fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a>
     Sources {
         recordings: &session.document.recordings,
         prepared,
-        simulated: trying_values::shown_curves(session),
+        simulated: trying_values::shown_curves(&session.document, &session.calibration),
         extended: session.diagnosing.replay(session.document.current),
         analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
     }

@@ -3,7 +3,9 @@
 use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
 use crate::ui::lessons::practising;
@@ -78,18 +80,18 @@ impl Panel for ResultsPanel {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             self.parameters.ui(ui, session);
-            super::parameter_editor::selected(ui, session);
-            super::measured::of_recording(ui, session);
-            constraints(ui, session);
-            warnings(ui, session);
+            super::parameter_editor::selected(ui, &mut session.calibration);
+            super::measured::of_recording(ui, &session.calibration);
+            constraints(ui, &session.calibration);
+            warnings(ui, &mut session.document, &session.calibration);
             train_with_it(ui, session);
             diagnose(ui, session);
         });
     }
 }
 
-fn constraints(ui: &mut Ui, session: &Session) {
-    let Some(analysis) = session.calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
+fn constraints(ui: &mut Ui, calibration: &Calibration) {
+    let Some(analysis) = calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
         return;
     };
     plain_card(ui, words::CONSTRAINTS, |ui| {
@@ -172,16 +174,15 @@ fn facts(constraint: &Constraint) -> Vec<String> {
     facts
 }
 
-fn warnings(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.document.prepared().cloned() else { return };
+fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration) {
+    let Some(prepared) = document.prepared().cloned() else { return };
     let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for warning in &prepared.recording.warnings {
         texts.push((sentence(&warning.text), places(&prepared, warning)));
     }
-    let analysis = session.calibration.analysis.clone();
+    let analysis = calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
-    let segmented =
-        session.calibration.segmentation(session.document.current).into_iter().flat_map(|s| s.warnings.iter());
+    let segmented = calibration.segmentation(document.current).into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
         if !texts.iter().any(|(t, _)| *t == text) {
             texts.push((text, Vec::new()));
@@ -204,12 +205,12 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             ui.scope(|ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 remark(ui, Icon::Doubt, text);
-                jump = jump.or(go_there(ui, &places, session.document.cursor_s, prepared.clockless()));
+                jump = jump.or(go_there(ui, &places, document.cursor_s, prepared.clockless()));
             });
         }
     });
     if let Some((from, to)) = jump {
-        session.document.look_at(from, to);
+        document.look_at(from, to);
     }
 }
 

@@ -4,6 +4,7 @@ use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use crate::text::format::{number, significant};
+use crate::ui::calibration::Calibration;
 use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::likeness::Likeness;
@@ -123,7 +124,7 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
     let layers = session.layers;
     let mut rows = Vec::new();
     if layers.path {
-        rows.extend(paths(session, prepared));
+        rows.extend(paths(&session.calibration, prepared));
     }
     if layers.forces_on_path {
         rows.push(Row::new(Mark::Arrow, ColorRole::Measured, format!("Force of the hand, {}", scale(prepared))));
@@ -133,7 +134,7 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
         rows.push(Row::new(Mark::Arrow, ColorRole::Constraint, text));
     }
     if layers.constraints {
-        for marked in markers::of(session, prepared) {
+        for marked in markers::of(&session.document, &session.calibration, prepared) {
             rows.extend(of_constraint(&marked, session.document.cursor_s));
         }
     }
@@ -147,8 +148,8 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
     rows
 }
 
-fn paths(session: &Session, prepared: &Prepared) -> Vec<Row> {
-    if follows_fingers(session, prepared) {
+fn paths(calibration: &Calibration, prepared: &Prepared) -> Vec<Row> {
+    if follows_fingers(calibration, prepared) {
         let row = |finger, text| Row::new(Mark::Line, ColorRole::Finger(finger), text);
         return vec![row(0, "Path of the left finger"), row(1, "Path of the right finger")];
     }

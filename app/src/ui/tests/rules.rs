@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
 
 fn open(mut session: Session) -> Harness<'static, Session> {
-    session.calibration.rules = editing_rules::open(&mut session);
+    session.calibration.rules = editing_rules::open(&session.document, &session.calibration, &mut session.messages);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         follow::poll(session, &ctx);
@@ -87,6 +87,6 @@ fn a_built_in_name_is_not_taken_and_every_kind_of_task_is_drawn() {
 #[test]
 fn a_recording_of_unknown_task_has_no_rules_and_says_so() {
     let mut session = super::empty();
-    assert!(editing_rules::open(&mut session).is_none());
+    assert!(editing_rules::open(&session.document, &session.calibration, &mut session.messages).is_none());
     assert!(session.messages.banners[0].text.contains("choose one"), "{:?}", session.messages.banners);
 }

@@ -33,7 +33,7 @@ fn with_constraint(constraint: Constraint) -> Session {
 
 fn markers(session: &Session) -> Vec<ConstraintMarker> {
     let prepared = session.document.prepared().expect("shown").clone();
-    options_for(session, &prepared, &scene_world(session, &prepared)).1.constraints
+    options_for(session, &prepared, &scene_world(&session.calibration, &prepared)).1.constraints
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn the_force_that_a_crank_bears_points_along_its_radius() {
     let mut session = session(CRANK.clone());
     session.layers = SceneLayers { unexplained: true, ..session.layers };
     let prepared = session.document.prepared().expect("shown").clone();
-    let world = scene_world(&session, &prepared);
+    let world = scene_world(&session.calibration, &prepared);
     let options = options_for(&session, &prepared, &world).1;
     let center = world.crank.as_ref().expect("a crank").center_m;
     assert!(options.force_vectors.len() > 20);

@@ -42,7 +42,8 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     let mut harness = window(STACK.clone());
     // The first fit tells how quick fits are.
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
     let before = weight(&harness, "block-1");
     let states = harness.state().session.calibration.segmentation(0).expect("segmented").states.clone();
@@ -83,7 +84,8 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
         fit.parameter("mechanism", "mass_kg").expect("told").samples
     };
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
     let (all, states) =
         (samples(&harness), harness.state().session.calibration.segmentation(0).expect("segmented").states.clone());
@@ -106,16 +108,20 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
 fn another_value_is_tried_on_the_replay_and_frozen() {
     let mut harness = window(CRANK.clone());
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
     harness.get_by_label("crank.weight_N").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Crank · weight").is_some());
     let fitted = weight(&harness, "crank").0;
-    trying_values::try_value(&mut harness.state_mut().session, "crank.weight_N", Some(2.0 * fitted));
+    trying_values::try_value(&mut harness.state_mut().session.calibration, "crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
     assert!(!harness.state().session.calibration.what_if.is_behind());
-    let shown = trying_values::shown_curves(&harness.state().session).expect("curves").curves.clone();
+    let shown = trying_values::shown_curves(&harness.state().session.document, &harness.state().session.calibration)
+        .expect("curves")
+        .curves
+        .clone();
     let first = harness.state().session.calibration.replay(0).expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();

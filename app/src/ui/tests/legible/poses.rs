@@ -63,7 +63,7 @@ fn workspaces_with_nothing_in_them_can_be_read() {
 fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut found = String::new();
     let mut full = diagnosed(RIPPLED.clone());
-    wanting_sensitivity::look_at_sensitivity(&mut full);
+    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
         for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
@@ -81,7 +81,7 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
 fn every_panel_alone_can_be_read() {
     let mut found = String::new();
     let mut full = session(STACK.clone());
-    wanting_sensitivity::look_at_sensitivity(&mut full);
+    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in WORKSPACES {
         for pane in list::of(workspace) {
             let mut app = in_workspace(like(&full), workspace);
