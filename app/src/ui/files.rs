@@ -185,7 +185,16 @@ pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>
     jobs.start(ctx, DIALOG, "", move |_| {
         let asked = Instant::now();
         match dialog_of("Recordings of the same object", LOGS_AND_ALL).pick_files() {
-            Some(paths) => change(|session, ctx| checking::check(session, ctx, On::Files(paths))),
+            Some(paths) => change(|session, ctx| {
+                checking::check(
+                    &session.document,
+                    &session.calibration,
+                    &mut session.diagnosing,
+                    &mut session.jobs,
+                    ctx,
+                    On::Files(paths),
+                )
+            }),
             None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
             None => no_change(),
         }

@@ -19,7 +19,7 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
         }
     }
     super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
-    guiding::follow_experiment(session, ctx);
+    guiding::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
     trainees::follow_history(session);
     practising::follow_lesson(session, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));

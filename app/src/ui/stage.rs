@@ -365,11 +365,17 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
     let guided = experiments::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
-    experimenting::take_guided(session, guided);
+    experimenting::take_guided(
+        &mut session.workspace,
+        &mut session.experiments,
+        &mut session.training.trainer,
+        &mut session.messages,
+        guided,
+    );
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    guiding::begin_experiment(session);
-    guiding::follow_rings(session, 8.2);
+    guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 8.2);
     session.experiments.scratch = Some(folder);
     Ok(())
 }

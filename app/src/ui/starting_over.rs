@@ -11,7 +11,7 @@ use crate::ui::message_list::Tone;
 /// attempt that counts is removed, which is said.
 pub fn start_over(session: &mut Session) {
     if session.experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided::Phase::Going(_))) {
-        guiding::begin_experiment(session);
+        guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
         session.messages.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
         return;
     }

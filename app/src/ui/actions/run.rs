@@ -74,10 +74,27 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Open(workspace) => session.workspace = *workspace,
         Action::Diagnose => {
             session.workspace = Workspace::Diagnose;
-            diagnosing::diagnose(session, ctx);
+            diagnosing::diagnose(
+                &session.document,
+                &session.calibration,
+                &mut session.diagnosing,
+                &mut session.jobs,
+                ctx,
+            );
         }
-        Action::Extend => diagnosing::extend_model(session, ctx),
-        Action::Feel => diagnosing::feel(session),
+        Action::Extend => diagnosing::extend_model(
+            &session.document,
+            &session.calibration,
+            &session.diagnosing,
+            &mut session.jobs,
+            ctx,
+        ),
+        Action::Feel => diagnosing::feel(
+            &mut session.workspace,
+            &session.diagnosing,
+            &mut session.training.trainer,
+            &mut session.messages,
+        ),
         Action::Fit => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
         Action::Rules => {
             session.calibration.rules =

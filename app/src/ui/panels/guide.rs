@@ -69,11 +69,11 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
     });
     let ctx = ui.ctx().clone();
     if begin {
-        guiding::begin_experiment(session);
+        guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
     } else if add {
         guiding::add_followed(session, &ctx);
     } else if leave {
-        guiding::leave_experiment(session);
+        guiding::leave_experiment(&mut session.experiments, &mut session.training.trainer);
     }
 }
 

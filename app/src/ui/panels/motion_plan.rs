@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = if experimenting::path_of_tool(session).is_some() {
+    let hint = if experimenting::path_of_tool(&session.document, &session.calibration).is_some() {
         words::SAVE_TOOL_MORE
     } else {
         words::SAVE_COORDINATE_MORE

@@ -242,7 +242,13 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
-                diagnosing::diagnose(session, &ctx);
+                diagnosing::diagnose(
+                    &session.document,
+                    &session.calibration,
+                    &mut session.diagnosing,
+                    &mut session.jobs,
+                    &ctx,
+                );
             }
         }
     });

@@ -122,7 +122,7 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.training.trainer.compare = Some(diagnosing::comparison(&session).expect("a crank can be felt"));
+    session.training.trainer.compare = Some(diagnosing::comparison(&session.diagnosing).expect("a crank can be felt"));
     session.training.trainer.operator = Operator::Scripted;
     session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
@@ -231,7 +231,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    let why = diagnosing::comparison(session).expect_err("nothing to hold");
+    let why = diagnosing::comparison(&session.diagnosing).expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
@@ -245,7 +245,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
 fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
-    diagnosing::diagnose(&mut session, &ctx);
+    diagnosing::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
     session.give_up(&ctx, DIAGNOSE);
     assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);

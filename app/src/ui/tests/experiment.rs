@@ -186,11 +186,11 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     assert!(harness.query_by_label("Touch nothing.").is_some());
     let session = &mut harness.state_mut().session;
     let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
-    guiding::follow_rings(session, 3.0);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.run_steps(2);
     assert!(harness.query_by_label("Take hold.").is_some());
     let session = &mut harness.state_mut().session;
-    guiding::follow_rings(session, all_s);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, all_s);
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
@@ -226,7 +226,8 @@ fn an_experiment_that_is_left_keeps_no_file() {
     assert!(harness.query_by_label_contains("SIMULATED object, as if gravity tilt").is_some());
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
-    guiding::follow_rings(&mut harness.state_mut().session, 3.0);
+    let session = &mut harness.state_mut().session;
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
     harness.run_steps(3);
     let session = &harness.state().session;
