@@ -155,7 +155,7 @@ pub const SAVE_HISTORY: Dialog = Dialog {
     title: "Save the attempts",
     filters: &[],
     saves_as: Some("attempts.csv"),
-    then: |session, _, path| trainees::export_history(session, path),
+    then: |session, _, path| trainees::export_history(&session.training.learning, path),
 };
 
 /// Opens a file dialog on a thread of its own.

@@ -20,8 +20,8 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     }
     super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
     guiding::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
-    trainees::follow_history(session);
-    practising::follow_lesson(session, ctx);
+    trainees::follow_history(&mut session.training.learning, &mut session.messages);
+    practising::follow_lesson(&mut session.training, &mut session.jobs, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
     undoing::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
     fitting::follow_choice(&session.document, &mut session.calibration, &mut session.jobs, ctx);

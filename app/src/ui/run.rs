@@ -106,7 +106,12 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
         let fresh = options.log.is_none() && options.world.is_none();
         app.keep(&folder, fresh);
         if let Some(database) = crate::history::attempt::of_user() {
-            trainees::open_history(&mut app.session, &cc.egui_ctx, database);
+            trainees::open_history(
+                &mut app.session.training.learning,
+                &mut app.session.messages,
+                &cc.egui_ctx,
+                database,
+            );
         }
     }
     app

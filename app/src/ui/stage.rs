@@ -193,17 +193,17 @@ pub fn lessons(_: &PictureInput) -> anyhow::Result<Session> {
 /// A lesson that is practised with the mouse, half done.
 pub fn practice(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    practising::practise_lesson(&mut session);
-    pointer::follow_expert(&mut session, PRACTICE_S);
+    practising::practise_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, PRACTICE_S);
     Ok(session)
 }
 
 /// The result of an attempt at a lesson.
 pub fn debrief(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    practising::test_lesson(&mut session);
-    pointer::follow_expert(&mut session, 60.0);
-    practising::end_lesson_now(&mut session, None);
+    practising::test_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, 60.0);
+    practising::end_lesson_now(&mut session.training, &mut session.messages, None);
     Ok(session)
 }
 
@@ -223,7 +223,11 @@ fn with_lessons() -> anyhow::Result<Session> {
 fn in_lesson() -> anyhow::Result<Session> {
     let mut session = with_lessons()?;
     let lesson = session.training.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
-    practising::open_lesson_now(&mut session, &lesson.context("the lesson of two blocks is missing")?);
+    practising::open_lesson_now(
+        &mut session.training,
+        &mut session.messages,
+        &lesson.context("the lesson of two blocks is missing")?,
+    );
     Ok(session)
 }
 

@@ -176,13 +176,22 @@ fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
             session.workspace = Workspace::Train;
         }
         Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
-        Action::StartOver => starting_over::start_over(session),
-        Action::Answer(index, _) => practising::end_lesson(session, ctx, Some(*index)),
-        Action::Lesson(title) => practising::open_lesson_titled(session, ctx, title),
-        Action::Watch => practising::watch_lesson(session),
-        Action::Practise => practising::practise_lesson(session),
-        Action::TakeTest => practising::test_lesson(session),
-        Action::PractiseOnThis => practising::practise_on_this(session, ctx),
+        Action::StartOver => {
+            starting_over::start_over(&mut session.experiments, &mut session.training, &mut session.messages)
+        }
+        Action::Answer(index, _) => practising::end_lesson(&mut session.training, &mut session.jobs, ctx, Some(*index)),
+        Action::Lesson(title) => practising::open_lesson_titled(
+            &mut session.workspace,
+            &mut session.training,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            title,
+        ),
+        Action::Watch => practising::watch_lesson(&mut session.training, &mut session.messages),
+        Action::Practise => practising::practise_lesson(&mut session.training, &mut session.messages),
+        Action::TakeTest => practising::test_lesson(&mut session.training, &mut session.messages),
+        Action::PractiseOnThis => practising::practise_on_this(&session.calibration, &mut session.jobs, ctx),
         Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(
             ctx,
             &mut session.document,

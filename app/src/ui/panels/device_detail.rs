@@ -115,7 +115,7 @@ fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
     about(ui, session, spec);
     limits(ui, &session.training.trainer, spec);
     force_test(ui, &mut session.training.trainer, spec);
-    super::passivity::passivity(ui, session);
+    super::passivity::passivity(ui, &mut session.training.trainer, &mut session.messages);
 }
 
 /// Draws the live values of the device and its timing.

@@ -270,7 +270,7 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
             let hint = words::PRACTISE_ON_THIS_MORE;
             if ui.button((Icon::Lesson, words::PRACTISE_ON_THIS)).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
-                practising::practise_on_this(session, &ctx);
+                practising::practise_on_this(&session.calibration, &mut session.jobs, &ctx);
             }
         });
     });
