@@ -1,9 +1,13 @@
 //! Following what happens between frames: the answers of jobs, and the features that watch something.
 
 use super::session::Session;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
+use crate::ui::experiments::Experiments;
 use crate::ui::fitting;
 use crate::ui::guiding;
 use crate::ui::lessons::practising;
+use crate::ui::message_list::Messages;
 use crate::ui::opening;
 use crate::ui::project_files;
 use crate::ui::trainees;
@@ -15,7 +19,13 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     for answer in session.jobs.poll() {
         match answer {
             Ok(change) => change(session, ctx),
-            Err(problem) => job_failed(session, problem),
+            Err(problem) => job_failed(
+                &session.document,
+                &mut session.calibration,
+                &mut session.experiments,
+                &mut session.messages,
+                problem,
+            ),
         }
     }
     super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
@@ -29,12 +39,18 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
 }
 
 /// A job has failed.
-fn job_failed(session: &mut Session, problem: String) {
-    session.experiments.asks_again = false;
-    if !session.document.recordings.is_empty() && session.calibration.analysis.is_none() {
-        session.calibration.fit_problem = Some(problem.clone());
+fn job_failed(
+    document: &Document,
+    calibration: &mut Calibration,
+    experiments: &mut Experiments,
+    messages: &mut Messages,
+    problem: String,
+) {
+    experiments.asks_again = false;
+    if !document.recordings.is_empty() && calibration.analysis.is_none() {
+        calibration.fit_problem = Some(problem.clone());
     }
-    session.messages.fail(problem);
+    messages.fail(problem);
 }
 
 /// Reads the same log again.

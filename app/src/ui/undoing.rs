@@ -1,10 +1,9 @@
 //! Taking changes back, and bringing them back.
 
-use super::session::Session;
 use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
-use crate::ui::message_list::Tone;
+use crate::ui::message_list::{Messages, Tone};
 use crate::ui::plots::choices::PlotChoices;
 use crate::ui::undo::{Undoable, difference};
 
@@ -27,33 +26,38 @@ pub fn can_redo(document: &Document, calibration: &Calibration, plots: &PlotChoi
 }
 
 /// Undoes the last change.
-pub fn undo(session: &mut Session) {
-    let now = Undoable::of(&session.calibration.choice, &session.plots);
-    if let Some(before) = session.document.undo.undoer.undo(&now).cloned() {
-        session.messages.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
-        put_back(session, before);
+pub fn undo(document: &mut Document, calibration: &mut Calibration, plots: &mut PlotChoices, messages: &mut Messages) {
+    let now = Undoable::of(&calibration.choice, plots);
+    if let Some(before) = document.undo.undoer.undo(&now).cloned() {
+        messages.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
+        put_back(document, calibration, plots, before);
     }
 }
 
 /// Brings back what was taken back.
-pub fn redo(session: &mut Session) {
-    let now = Undoable::of(&session.calibration.choice, &session.plots);
-    if let Some(after) = session.document.undo.undoer.redo(&now).cloned() {
-        session.messages.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
-        put_back(session, after);
+pub fn redo(document: &mut Document, calibration: &mut Calibration, plots: &mut PlotChoices, messages: &mut Messages) {
+    let now = Undoable::of(&calibration.choice, plots);
+    if let Some(after) = document.undo.undoer.redo(&now).cloned() {
+        messages.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
+        put_back(document, calibration, plots, after);
     }
 }
 
-fn put_back(session: &mut Session, Undoable { choice, overlaid }: Undoable) {
-    session.plots.overlaid = overlaid;
-    if let (Some(rules), true) = (session.calibration.rules.as_mut(), session.calibration.choice.own != choice.own) {
+fn put_back(
+    document: &Document,
+    calibration: &mut Calibration,
+    plots: &mut PlotChoices,
+    Undoable { choice, overlaid }: Undoable,
+) {
+    plots.overlaid = overlaid;
+    if let (Some(rules), true) = (calibration.rules.as_mut(), calibration.choice.own != choice.own) {
         rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
         rules.untried = true;
     }
-    let segments_differ = session.calibration.choice.segments != choice.segments;
-    session.calibration.choice = choice;
+    let segments_differ = calibration.choice.segments != choice.segments;
+    calibration.choice = choice;
     if segments_differ {
-        by_hand::show_segments(&session.document, &mut session.calibration);
+        by_hand::show_segments(document, calibration);
     }
 }
 
@@ -61,6 +65,7 @@ fn put_back(session: &mut Session, Undoable { choice, overlaid }: Undoable) {
 mod tests {
     use super::*;
     use crate::ui::prepare::Prepared;
+    use crate::ui::session::Session;
     use estimator::segment::Method;
     use haptics::recording::Recording;
     use std::sync::Arc;
@@ -91,15 +96,15 @@ mod tests {
             can_undo(&session.document, &session.calibration, &session.plots)
                 && !can_redo(&session.document, &session.calibration, &session.plots)
         );
-        undo(&mut session);
+        undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         assert_eq!((session.calibration.choice.method, session.calibration.choice.only_s), (Method::Hmm, None));
         assert!(session.messages.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
-        undo(&mut session);
+        undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         assert_eq!(session.calibration.choice.method, Method::Threshold);
         assert!(!can_undo(&session.document, &session.calibration, &session.plots));
-        undo(&mut session);
-        redo(&mut session);
-        redo(&mut session);
+        undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+        redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+        redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         assert_eq!(session.calibration.choice.only_s, Some((1.0, 2.0)));
         assert!(!can_redo(&session.document, &session.calibration, &session.plots));
     }
@@ -114,7 +119,7 @@ mod tests {
             note_changes(&mut session.document, &session.calibration, &session.plots, now, true);
         }
         wait(&mut session.document, &session.calibration, &session.plots, now);
-        undo(&mut session);
+        undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         assert_eq!(session.calibration.choice.only_s, None);
     }
 
@@ -130,7 +135,7 @@ mod tests {
             }
         }
         wait(&mut session.document, &session.calibration, &session.plots, now);
-        undo(&mut session);
+        undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         assert_eq!(session.calibration.choice.only_s, None);
         assert!(!can_undo(&session.document, &session.calibration, &session.plots));
     }

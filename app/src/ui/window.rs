@@ -16,6 +16,7 @@ use crate::ui::message_list::Tone;
 use crate::ui::opening;
 use crate::ui::tour_progress::Tour;
 use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
@@ -53,18 +54,18 @@ impl App {
         self.top_bar(ui);
         super::recorder::unfinished(ui, &mut self.session.document, &mut self.session.jobs);
         restore::offer(ui, self);
-        messages::banners(ui, &mut self.session);
+        messages::banners(ui, &mut self.session.messages);
         self.arranging(ui);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
             self.session.training.trainer.trial.abort();
         }
         if self.session.mapping.is_some() {
-            rest(ui, &mut self.session);
+            rest(ui, &mut self.session.training.trainer);
             super::mapping::dialog::show(ui, &mut self.session);
         } else {
             if !matches!(self.session.workspace, Workspace::Train | Workspace::Devices) {
-                rest(ui, &mut self.session);
+                rest(ui, &mut self.session.training.trainer);
             }
             CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
                 self.dock.ui(ui, &mut self.panels, &mut self.session);
@@ -194,10 +195,20 @@ impl App {
             return;
         }
         if icon_button(ui, Icon::Redo, redo, "Redo").on_hover_text("Redo (Ctrl+Shift+Z)").clicked() {
-            undoing::redo(&mut self.session);
+            undoing::redo(
+                &mut self.session.document,
+                &mut self.session.calibration,
+                &mut self.session.plots,
+                &mut self.session.messages,
+            );
         }
         if icon_button(ui, Icon::Undo, undo, "Undo").on_hover_text("Undo (Ctrl+Z)").clicked() {
-            undoing::undo(&mut self.session);
+            undoing::undo(
+                &mut self.session.document,
+                &mut self.session.calibration,
+                &mut self.session.plots,
+                &mut self.session.messages,
+            );
         }
     }
 
@@ -250,12 +261,12 @@ impl eframe::App for App {
 }
 
 /// The trainer while the user looks elsewhere: a running recording goes on, everything else rests.
-fn rest(ui: &Ui, session: &mut Session) {
-    if session.training.trainer.is_recording() {
-        session.training.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+fn rest(ui: &Ui, trainer: &mut Trainer) {
+    if trainer.is_recording() {
+        trainer.update(f64::from(ui.input(|i| i.stable_dt)));
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     } else {
-        session.training.trainer.pause();
+        trainer.pause();
     }
 }
 

@@ -65,7 +65,12 @@ impl Bench {
         let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
         match chaos.rng.random_range(0..6) {
             0 => project_files::add_log(session, ctx, &path),
-            1 => undoing::undo(session),
+            1 => undoing::undo(
+                &mut session.document,
+                &mut session.calibration,
+                &mut session.plots,
+                &mut session.messages,
+            ),
             2 => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
             3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),

@@ -5,6 +5,7 @@ use crate::ui::app::App;
 use crate::ui::by_hand;
 use crate::ui::diagnosing;
 use crate::ui::dock::name_field::Naming;
+use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
 use crate::ui::fitting;
 use crate::ui::follow;
@@ -106,10 +107,14 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,
-        Action::Undo => undoing::undo(session),
-        Action::Redo => undoing::redo(session),
+        Action::Undo => {
+            undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages)
+        }
+        Action::Redo => {
+            undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages)
+        }
         Action::Play | Action::ToStart | Action::ToEnd | Action::ShowAll | Action::Select(_) | Action::GoTo { .. } => {
-            with_document(action, session)
+            with_document(action, &mut session.document)
         }
         Action::TrainCalibrated
         | Action::Assistant
@@ -153,18 +158,18 @@ fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
     }
 }
 
-fn with_document(action: &Action, session: &mut Session) {
+fn with_document(action: &Action, document: &mut Document) {
     match action {
-        Action::Play => session.document.toggle_play(),
-        Action::ToStart => session.document.seek(f64::NEG_INFINITY),
-        Action::ToEnd => session.document.seek(f64::INFINITY),
+        Action::Play => document.toggle_play(),
+        Action::ToStart => document.seek(f64::NEG_INFINITY),
+        Action::ToEnd => document.seek(f64::INFINITY),
         Action::ShowAll => {
-            if let Some(prepared) = session.document.prepared() {
-                session.document.view_s = prepared.span();
+            if let Some(prepared) = document.prepared() {
+                document.view_s = prepared.span();
             }
         }
-        Action::Select(index) => session.document.select(*index),
-        Action::GoTo { from_s, to_s, .. } => session.document.look_at(*from_s, *to_s),
+        Action::Select(index) => document.select(*index),
+        Action::GoTo { from_s, to_s, .. } => document.look_at(*from_s, *to_s),
         _ => {}
     }
 }

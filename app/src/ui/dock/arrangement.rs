@@ -46,7 +46,7 @@ impl Dock {
         mine.show_only_what_has_contents(session);
         let room = ui.available_size();
         if !mine.moved {
-            layout::suit(&mut mine.tree, workspace, room, session);
+            layout::suit(&mut mine.tree, workspace, room, &session.calibration, session.training.comfort);
         }
         let mut tiling = Tiling { panels, session, arranging, edited: false };
         Frame::new().inner_margin(Margin::same(layout::GAP as i8)).show(ui, |ui| mine.tree.ui(&mut tiling, ui));

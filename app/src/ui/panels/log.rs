@@ -6,6 +6,8 @@ use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
 use crate::text::format::number;
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::gallery::sample::Sample;
@@ -129,7 +131,9 @@ impl Panel for LogPanel {
             let mut plots = std::mem::take(&mut session.plots);
             let area = match plots.view {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
-                LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
+                LogView::Xy => {
+                    self.xy(ui, &mut session.document, &session.calibration, &session.diagnosing, &mut plots, &prepared)
+                }
             };
             let job = plots.derived.settle(ui.ctx(), &mut session.jobs, |session| &mut session.plots.derived);
             if let Some(job) = job {
@@ -202,14 +206,19 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
 }
 
 /// Sources of the shown recording's curves.
-fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
-    let analysis = session.calibration.analysis.as_ref();
+fn sources<'a>(
+    document: &'a Document,
+    calibration: &'a Calibration,
+    diagnosing: &'a Diagnosing,
+    prepared: &'a Arc<Prepared>,
+) -> Sources<'a> {
+    let analysis = calibration.analysis.as_ref();
     Sources {
-        recordings: &session.document.recordings,
+        recordings: &document.recordings,
         prepared,
-        simulated: trying_values::shown_curves(&session.document, &session.calibration),
-        extended: session.diagnosing.replay(session.document.current),
-        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
+        simulated: trying_values::shown_curves(document, calibration),
+        extended: diagnosing.replay(document.current),
+        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(document.current)?.as_ref()?))),
     }
 }
 
@@ -266,13 +275,22 @@ fn shifting(
 
 impl LogPanel {
     /// Draws one signal against another. Returns the horizontal extent of the slider below.
-    fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
+    fn xy(
+        &mut self,
+        ui: &mut Ui,
+        document: &mut Document,
+        calibration: &Calibration,
+        diagnosing: &Diagnosing,
+        plots: &mut PlotChoices,
+        prepared: &Arc<Prepared>,
+    ) -> Rangef {
         let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
-        let times = (session.document.view_s, session.document.cursor_s);
-        let (area, seek) = xy_view(ui, &mut self.xy, plots, &sources(session, prepared), times, height);
+        let times = (document.view_s, document.cursor_s);
+        let (area, seek) =
+            xy_view(ui, &mut self.xy, plots, &sources(document, calibration, diagnosing, prepared), times, height);
         if let Some(time) = seek {
-            session.document.playing = false;
-            session.document.seek(time);
+            document.playing = false;
+            document.seek(time);
         }
         area
     }
@@ -287,7 +305,8 @@ impl LogPanel {
     ) -> Rangef {
         let left = ui.max_rect().left() + GUTTER;
         let mut area = Rangef::new(left, ui.max_rect().right());
-        let places = places(&sources(session, prepared), plots, prepared);
+        let places =
+            places(&sources(&session.document, &session.calibration, &session.diagnosing, prepared), plots, prepared);
         if places.is_empty() {
             return area;
         }
@@ -303,7 +322,7 @@ impl LogPanel {
             let (mut seek, mut view_s, mut grasp) = (None, None, None);
             for (index, place) in places.iter().enumerate() {
                 let group = &prepared.groups[place.group];
-                let sources = sources(session, prepared);
+                let sources = sources(&session.document, &session.calibration, &session.diagnosing, prepared);
                 let last = index + 1 == places.len();
                 let input = RowInput {
                     index,

@@ -72,7 +72,7 @@ impl RemoteCard {
                 None => Ok(()),
             };
             let choice = Choice::Hand(HandDevice::Udp);
-            chosen = row(ui, session, choice.clone(), ready);
+            chosen = row(ui, &session.training.trainer, choice.clone(), ready);
             let trainer = &session.training.trainer;
             let runs = trainer.operator == Operator::You && trainer.hand == HandDevice::Udp;
             if runs && self.in_use.as_ref().is_some_and(|used| *used != remote) {

@@ -8,6 +8,7 @@ use crate::ui::diagnosing;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
+use crate::ui::jobs::Jobs;
 use crate::ui::lessons::practising;
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
@@ -15,6 +16,7 @@ use crate::ui::plots::doubts::places;
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::theme::{self, palette, space};
+use crate::ui::training::Training;
 use crate::ui::widgets::{card, plain_card, primary_button, remark};
 use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Ui};
@@ -84,7 +86,7 @@ impl Panel for ResultsPanel {
             super::measured::of_recording(ui, &session.calibration);
             constraints(ui, &session.calibration);
             warnings(ui, &mut session.document, &session.calibration);
-            train_with_it(ui, session);
+            train_with_it(ui, &mut session.workspace, &session.calibration, &mut session.training, &mut session.jobs);
             diagnose(ui, session);
         });
     }
@@ -254,8 +256,14 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn train_with_it(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
+fn train_with_it(
+    ui: &mut Ui,
+    workspace: &mut Workspace,
+    calibration: &Calibration,
+    training: &mut Training,
+    jobs: &mut Jobs<Session>,
+) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
     if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
         return;
     }
@@ -264,13 +272,13 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
             if primary_button(ui, true, (Icon::Touch, words::TRAIN_IN_THIS_WORLD)).clicked() {
-                session.training.train_calibrated = true;
-                session.workspace = Workspace::Train;
+                training.train_calibrated = true;
+                *workspace = Workspace::Train;
             }
             let hint = words::PRACTISE_ON_THIS_MORE;
             if ui.button((Icon::Lesson, words::PRACTISE_ON_THIS)).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
-                practising::practise_on_this(&session.calibration, &mut session.jobs, &ctx);
+                practising::practise_on_this(calibration, jobs, &ctx);
             }
         });
     });

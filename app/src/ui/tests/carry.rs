@@ -80,7 +80,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     harness.run_steps(2);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     assert_eq!((session.workspace, settled(&harness)), (Workspace::Diagnose, pair("mass-change", "force-drift")));

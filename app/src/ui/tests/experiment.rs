@@ -8,6 +8,7 @@ use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
 use crate::ui::guiding;
+use crate::ui::jobs::Jobs;
 use crate::ui::opening;
 use crate::ui::session::Session;
 use crate::ui::trainer::choice::WorldChoice;
@@ -31,8 +32,8 @@ fn saved(recording: &Recording, folder: &Path) -> PathBuf {
     path
 }
 
-pub(super) fn quiet(session: &Session) -> bool {
-    !session.jobs.is_busy()
+pub(super) fn quiet(jobs: &Jobs<Session>) -> bool {
+    !jobs.is_busy()
 }
 
 /// The ambiguous recording, opened from a file and diagnosed.
@@ -52,7 +53,7 @@ pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'
     opening::open(&mut session.document, &mut session.jobs, &ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.calibration.analysis.is_some() && quiet(s)
+        s.calibration.analysis.is_some() && quiet(&s.jobs)
     });
     harness.state_mut().session.workspace = Workspace::Diagnose;
     harness.run_steps(2);
@@ -113,7 +114,7 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     assert_eq!(simulated_object(&session.document.recordings[1].recording), Some("as if gravity tilt"));
@@ -151,7 +152,7 @@ fn a_loaded_recording_of_the_experiment_settles_the_question() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     assert_eq!(
         (settled_beside_friction(&harness), verdict(&harness)),
@@ -200,7 +201,7 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     let known = &session.document.recordings[1].recording.meta.known;
@@ -255,7 +256,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     assert!(harness.query_by_label("Plan of the motion, 22 s").is_some());
     harness.get_by_role_and_label(Role::Button, "Save the plan").click();
     harness.run_steps(2);
-    until(&mut harness, "the plan", |app| quiet(&app.session));
+    until(&mut harness, "the plan", |app| quiet(&app.session.jobs));
     let plan = std::fs::read_to_string(folder.path().join("recordings/plan-1.csv")).expect("written");
     assert!(plan.starts_with("t_s,q_rad\n"), "{}", &plan[..40]);
     // The real one, moved as the answer asks by the generator's own hand.
@@ -268,7 +269,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     experimenting::add_experiment(&mut harness.state_mut().session, &ctx, &path);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     assert_eq!(settled(&harness), pair("eccentric-mass", "gravity-tilt"));
 }

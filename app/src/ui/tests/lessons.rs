@@ -5,9 +5,10 @@ use crate::ui::app::App;
 use crate::ui::lessons::pointer;
 use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Debrief, Phase};
-use crate::ui::session::Session;
+use crate::ui::message_list::Messages;
 use crate::ui::trainees;
 use crate::ui::trainer::live::Operator;
+use crate::ui::training::Training;
 use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -24,15 +25,15 @@ fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
 }
 
 /// Does an open lesson's test with the mouse; the answer to a question is that of the world that stands there.
-fn attempted(session: &mut Session) -> Debrief {
-    practising::test_lesson(&mut session.training, &mut session.messages);
-    pointer::follow_expert(&mut session.training, 120.0);
-    let open = session.training.lessons.open.as_ref().expect("open");
+fn attempted(training: &mut Training, messages: &mut Messages) -> Debrief {
+    practising::test_lesson(training, messages);
+    pointer::follow_expert(training, 120.0);
+    let open = training.lessons.open.as_ref().expect("open");
     let answer = open.lesson.question.as_ref().map(|_| open.variant);
-    practising::end_lesson_now(&mut session.training, &mut session.messages, answer);
-    match session.training.lessons.open.as_ref().map(|open| &open.phase) {
+    practising::end_lesson_now(training, messages, answer);
+    match training.lessons.open.as_ref().map(|open| &open.phase) {
         Some(Phase::Debrief(debrief)) => (**debrief).clone(),
-        other => panic!("{other:?}: {:?}", session.messages.banners),
+        other => panic!("{other:?}: {:?}", messages.banners),
     }
 }
 
@@ -45,7 +46,7 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
     let mut missed = Vec::new();
     for lesson in session.training.lessons.all.clone() {
         practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
-        let debrief = attempted(&mut session);
+        let debrief = attempted(&mut session.training, &mut session.messages);
         if !debrief.grade.completed {
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
         }
@@ -150,7 +151,7 @@ fn a_calibrated_world_becomes_a_lesson() {
     });
     let session = &mut harness.state_mut().session;
     assert_eq!(session.workspace, Workspace::Train);
-    let debrief = attempted(session);
+    let debrief = attempted(&mut session.training, &mut session.messages);
     assert!(debrief.grade.completed, "{:?}", debrief.grade);
     let measured = session.calibration.analysis.as_ref().map(|a| a.world.blocks[0].mass_kg);
     let touched = session.training.trainer.standing_world().blocks.first().map(|b| b.mass_kg);
