@@ -72,7 +72,7 @@ pub fn guide(session: &mut Session, ctx: &egui::Context, stage: Stage) {
                 &mut session.training.trainer,
                 &mut session.messages,
                 guided,
-            )
+            );
         })
     });
 }

@@ -58,7 +58,7 @@ pub const OPEN_LOG: Dialog = Dialog {
             &mut session.jobs,
             ctx,
             &path,
-        )
+        );
     },
 };
 /// A world to train in.
@@ -74,7 +74,7 @@ pub const OPEN_PROJECT: Dialog = Dialog {
     filters: &[("Projects", &["touchstone.json", "json"])],
     saves_as: None,
     then: |session, ctx, path| {
-        project_files::open_project(&mut session.document, &mut session.messages, &mut session.jobs, ctx, &path)
+        project_files::open_project(&mut session.document, &mut session.messages, &mut session.jobs, ctx, &path);
     },
 };
 /// Another recording of the same object.
@@ -103,7 +103,7 @@ pub const OPEN_VIDEO: Dialog = Dialog {
             &mut session.messages,
             &mut session.jobs,
             &path,
-        )
+        );
     },
 };
 /// The place of the project.
@@ -126,7 +126,7 @@ pub const SAVE_LOG: Dialog = Dialog {
     filters: &[],
     saves_as: Some("recording.csv"),
     then: |session, ctx, path| {
-        save_log(ctx, &session.document, &session.calibration, &mut session.jobs, &path.display().to_string())
+        save_log(ctx, &session.document, &session.calibration, &mut session.jobs, &path.display().to_string());
     },
 };
 /// The place of the calibrated world.
@@ -193,7 +193,7 @@ pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>
                     &mut session.jobs,
                     ctx,
                     On::Files(paths),
-                )
+                );
             }),
             None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
             None => no_change(),

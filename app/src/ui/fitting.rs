@@ -26,7 +26,7 @@ pub fn refit(document: &Document, calibration: &mut Calibration, jobs: &mut Jobs
     let job = jobs.start(ctx, FIT, "Fitting", move |_| {
         let analysis = analyse_sharing(&recordings, &shared, &choice)?;
         change(move |session, ctx| {
-            fitted(&session.document, &mut session.calibration, &mut session.jobs, ctx, analysis)
+            fitted(&session.document, &mut session.calibration, &mut session.jobs, ctx, analysis);
         })
     });
     job.if_given_up(|session, _| {

@@ -132,10 +132,10 @@ pub fn open_dropped(session: &mut Session, ctx: &egui::Context, paths: &[PathBuf
         ),
         [a, b] => match (kind_of(a), kind_of(b)) {
             (FileKind::Log, FileKind::Sidecar) => {
-                open_with(&mut session.document, &mut session.jobs, ctx, a, Some(b.clone()))
+                open_with(&mut session.document, &mut session.jobs, ctx, a, Some(b.clone()));
             }
             (FileKind::Sidecar, FileKind::Log) => {
-                open_with(&mut session.document, &mut session.jobs, ctx, b, Some(a.clone()))
+                open_with(&mut session.document, &mut session.jobs, ctx, b, Some(a.clone()));
             }
             _ => open_first(
                 &mut session.document,

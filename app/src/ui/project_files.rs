@@ -34,7 +34,7 @@ pub fn project_of(
         current: document.current,
         cursor_s: document.cursor_s,
         view_s: document.view_s,
-        workspace: workspace,
+        workspace,
         plots: plots.kept(),
     }
 }

@@ -99,22 +99,22 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Fit => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
         Action::Rules => {
             session.calibration.rules =
-                editing_rules::open(&session.document, &session.calibration, &mut session.messages)
+                editing_rules::open(&session.document, &session.calibration, &mut session.messages);
         }
         Action::ForgetStates => {
-            by_hand::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx)
+            by_hand::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx);
         }
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,
         Action::Undo => {
-            undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages)
+            undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         }
         Action::Redo => {
-            undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages)
+            undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         }
         Action::Play | Action::ToStart | Action::ToEnd | Action::ShowAll | Action::Select(_) | Action::GoTo { .. } => {
-            with_document(action, &mut session.document)
+            with_document(action, &mut session.document);
         }
         Action::TrainCalibrated
         | Action::Assistant
@@ -182,7 +182,7 @@ fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
         }
         Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
         Action::StartOver => {
-            starting_over::start_over(&mut session.experiments, &mut session.training, &mut session.messages)
+            starting_over::start_over(&mut session.experiments, &mut session.training, &mut session.messages);
         }
         Action::Answer(index, _) => practising::end_lesson(&mut session.training, &mut session.jobs, ctx, Some(*index)),
         Action::Lesson(title) => practising::open_lesson_titled(

@@ -73,7 +73,7 @@ pub fn practise_on_this(calibration: &Calibration, jobs: &mut Jobs<Session>, ctx
                 &mut session.jobs,
                 ctx,
                 lesson,
-            )
+            );
         })
     });
 }

@@ -76,7 +76,7 @@ impl Panel for DeviceList {
                 chosen = chosen.take().or(row(ui, &session.training.trainer, Choice::Hand(HandDevice::Replay), log));
             });
             chosen = chosen.take().or(self.boards(ui, &session.training.trainer));
-            chosen = chosen.take().or(self.remote.ui(ui, session));
+            chosen = chosen.take().or(self.remote.ui(ui, &mut session.training.trainer));
         });
         if let Some(choice) = chosen {
             take(&session.document, &mut session.training.trainer, &mut session.messages, choice);

@@ -110,11 +110,11 @@ impl Panel for DiagnosePanel {
             match (curves, atlas) {
                 (Some(curves), None) => draw(ui, &mut session.document, &mut session.diagnosing, curves, false),
                 (Some(curves), Some(_)) if !session.diagnosing.shows_atlas => {
-                    draw(ui, &mut session.document, &mut session.diagnosing, curves, true)
+                    draw(ui, &mut session.document, &mut session.diagnosing, curves, true);
                 }
                 // Tasks without a single coordinate have no curves along it.
                 (curves, Some((answer, sheet))) => {
-                    suspects(ui, &mut session.document, &mut session.diagnosing, answer, sheet, curves.is_some())
+                    suspects(ui, &mut session.document, &mut session.diagnosing, answer, sheet, curves.is_some());
                 }
                 (None, None) => nothing(ui, session),
             }
@@ -166,7 +166,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     } else {
         let text = words::ASK_MORE;
         empty_state(ui, (Icon::Diagnose, words::ASK), text, |ui| {
-            begin(ui, &session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs)
+            begin(ui, &session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs);
         });
     }
 }

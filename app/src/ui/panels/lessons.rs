@@ -73,7 +73,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
     let ctx = ui.ctx().clone();
     match wish {
         Some(Wish::Open(lesson)) => {
-            practising::open_lesson(&mut session.training, &mut session.messages, &mut session.jobs, &ctx, &lesson)
+            practising::open_lesson(&mut session.training, &mut session.messages, &mut session.jobs, &ctx, &lesson);
         }
         Some(Wish::Close) => practising::close_lesson(&mut session.training, &mut session.messages),
         Some(Wish::Watch) => practising::watch_lesson(&mut session.training, &mut session.messages),

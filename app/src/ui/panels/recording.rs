@@ -96,14 +96,14 @@ impl Panel for RecordingPanel {
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, words::RECORDING, |ui| {
-                source(ui, &mut session.document, &mut session.wanted_pane, &mut session.messages, &mut session.jobs)
+                source(ui, &mut session.document, &mut session.wanted_pane, &mut session.messages, &mut session.jobs);
             });
             if session.document.prepared().is_some() {
                 plain_card(ui, words::FIT, |ui| {
-                    fit(ui, &session.document, &mut session.calibration, &mut session.messages, &mut session.jobs)
+                    fit(ui, &session.document, &mut session.calibration, &mut session.messages, &mut session.jobs);
                 });
                 plain_card(ui, words::SAVE, |ui| {
-                    self.save(ui, &session.document, &session.calibration, &mut session.jobs)
+                    self.save(ui, &session.document, &session.calibration, &mut session.jobs);
                 });
             }
         });

@@ -18,7 +18,9 @@ use crate::ui::stage;
 use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
 use crate::ui::workspace::Workspace;
-use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use egui::{
+    Align, Align2, FontId, Layout, Pos2, Rangef, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, vec2,
+};
 use egui_extras::{Column, TableBuilder};
 use egui_tiles::ContainerKind;
 use estimator::segment::agreement::Score;
@@ -172,16 +174,7 @@ fn draw_states(
             continue;
         }
         let rect = Rect::from_x_y_ranges(left..=(right - 0.5).max(left + 0.5), band.y_range());
-        let color = state_color(ui.visuals().dark_mode, interval.state);
-        ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
-        let ink = theme::ink_on(color);
-        if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, interval.state), ink) {
-            caption(ui, rect, state_short(interval.state), ink);
-        }
-        let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, interval.state))
-        });
+        let response = draw_state(ui, rect, segmentation, index);
         // Menus and tooltips of hundreds of states would take most of the frame time.
         if !response.hovered() && !response.clicked() && !some_menu_is_open {
             continue;
@@ -220,6 +213,20 @@ fn draw_states(
     }
     let x = x_of(document, band.x_range(), document.cursor_s);
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
+}
+
+/// Draws one state as a box with its name.
+fn draw_state(ui: &Ui, rect: Rect, segmentation: &Segmentation, index: usize) -> Response {
+    let state = segmentation.states[index].state;
+    let color = state_color(ui.visuals().dark_mode, state);
+    ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
+    let ink = theme::ink_on(color);
+    if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, state), ink) {
+        caption(ui, rect, state_short(state), ink);
+    }
+    let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, state)));
+    response
 }
 
 /// Draws text in a box if it fits.

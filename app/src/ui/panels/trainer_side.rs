@@ -111,7 +111,7 @@ impl Panel for TrainerSide {
                         &mut session.training.trainer,
                         &mut session.messages,
                         &mut session.jobs,
-                    )
+                    );
                 });
             }
             forces(ui, &session.training.trainer);

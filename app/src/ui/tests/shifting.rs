@@ -86,10 +86,10 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
     assert!(undoing::can_undo(&harness.state().document, &harness.state().calibration, &harness.state().plots));
-    let session = &mut harness.state_mut();
+    let session = harness.state_mut();
     undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), 0.0);
-    let session = &mut harness.state_mut();
+    let session = harness.state_mut();
     undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), shifted_s);
 }
