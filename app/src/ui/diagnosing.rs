@@ -37,6 +37,13 @@ pub fn diagnose(
     });
 }
 
+/// The recordings are there: asks again if they came for that.
+pub(crate) fn ask_again(session: &mut Session, ctx: &egui::Context) {
+    if std::mem::take(&mut session.experiments.asks_again) {
+        diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, ctx);
+    }
+}
+
 /// Makes the worlds of the base model and of the extended model in the background.
 pub fn extend_model(
     document: &Document,

@@ -10,7 +10,6 @@ use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
 use crate::ui::calibration::Calibration;
-use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::Document;
 use crate::ui::experiments::{
@@ -163,13 +162,6 @@ fn folder_of_recordings(trainer: &Trainer, messages: &mut Messages) -> Option<Pa
 pub fn simulated(document: &Document) -> Vec<&str> {
     let simulated = document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
     simulated.map(|p| p.recording.name.as_str()).collect()
-}
-
-/// The recordings are there: asks again if they came for that.
-pub(crate) fn ask_again(session: &mut Session, ctx: &egui::Context) {
-    if std::mem::take(&mut session.experiments.asks_again) {
-        diagnosing::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, ctx);
-    }
 }
 
 /// A recording of the experiment was written.

@@ -21,6 +21,7 @@ pub mod command_palette;
 mod device_tests;
 pub mod diagnosing;
 pub mod diagnosis_state;
+pub mod dialogs;
 pub mod dock;
 pub mod document;
 pub mod editing_rules;

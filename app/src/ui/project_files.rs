@@ -1,13 +1,13 @@
 //! Opening and saving projects.
 
-use super::files::{SAVE, SAVE_PROJECT, ask, saved};
+use super::files::{Dialog, SAVE, ask, saved};
 use super::jobs::{Answer, Jobs, Ticket, no_change};
 use super::prepare::Prepared;
 use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::calibration::Calibration;
+use crate::ui::diagnosing;
 use crate::ui::document::Document;
-use crate::ui::experimenting;
 use crate::ui::file_kind::LOAD;
 use crate::ui::fitting;
 use crate::ui::message_list::Messages;
@@ -18,6 +18,14 @@ use crate::ui::workspace::Workspace;
 use estimator::log::Watch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// The place of the project.
+pub const SAVE_PROJECT: Dialog = Dialog {
+    title: "Save the project",
+    filters: &[],
+    saves_as: Some("project.touchstone.json"),
+    then: save_project_as,
+};
 
 /// Project that holds all that a session has open.
 pub fn project_of(
@@ -54,7 +62,7 @@ fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
     }
     change(|session, ctx| {
         opened_project(session, ctx, project, recordings);
-        experimenting::ask_again(session, ctx);
+        diagnosing::ask_again(session, ctx);
     })
 }
 

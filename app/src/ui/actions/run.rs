@@ -4,6 +4,7 @@ use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::by_hand;
 use crate::ui::diagnosing;
+use crate::ui::dialogs;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
@@ -132,11 +133,11 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
 
 fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
-        Action::OpenLog => files::ask(ctx, &mut session.jobs, files::OPEN_LOG),
-        Action::AddLog => files::ask(ctx, &mut session.jobs, files::ADD_LOG),
-        Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
-        Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
-        Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
+        Action::OpenLog => files::ask(ctx, &mut session.jobs, dialogs::OPEN_LOG),
+        Action::AddLog => files::ask(ctx, &mut session.jobs, dialogs::ADD_LOG),
+        Action::AddVideo => files::ask(ctx, &mut session.jobs, dialogs::OPEN_VIDEO),
+        Action::OpenWorld => files::ask(ctx, &mut session.jobs, dialogs::OPEN_WORLD),
+        Action::OpenProject => files::ask(ctx, &mut session.jobs, dialogs::OPEN_PROJECT),
         Action::OpenRecent(path) => opening::open_any(
             &mut session.document,
             &mut session.wanted_pane,
@@ -146,11 +147,11 @@ fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
             path,
         ),
         Action::SaveProject => project_files::save_project(session, ctx),
-        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
-        Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
-        Action::SaveWorld => files::ask(ctx, &mut session.jobs, files::SAVE_WORLD),
-        Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
-        Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
+        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, project_files::SAVE_PROJECT),
+        Action::SaveLog => files::ask(ctx, &mut session.jobs, dialogs::SAVE_LOG),
+        Action::SaveWorld => files::ask(ctx, &mut session.jobs, dialogs::SAVE_WORLD),
+        Action::ExportWorld => files::ask(ctx, &mut session.jobs, dialogs::EXPORT_WORLD),
+        Action::Report => files::ask(ctx, &mut session.jobs, dialogs::SAVE_REPORT),
         Action::Reload => follow::reload(session, ctx),
         Action::MapColumns => opening::map_columns(&session.document, &mut session.jobs, ctx, None),
         // Actions of the window.

@@ -6,8 +6,8 @@ use crate::ui::calibration::Calibration;
 use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::checking;
 use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::dialogs;
 use crate::ui::document::Document;
-use crate::ui::files;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
 use crate::ui::session::Session;
@@ -76,7 +76,7 @@ fn ask(
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING_TO_CHECK_ON));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE_FILES).on_hover_text(words::CHOOSE_FILES_MORE).clicked() {
-            files::ask_for_recordings_to_check(&ctx, jobs);
+            dialogs::ask_for_recordings_to_check(&ctx, jobs);
         }
         if busy {
             ui.add(egui::Spinner::new().size(16.0));

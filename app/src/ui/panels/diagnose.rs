@@ -4,6 +4,7 @@ use crate::ui::atlas::Sheet;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
@@ -127,7 +128,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         let text = words::NOTHING_YET_MORE;
         empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+                files::ask(ui.ctx(), &mut session.jobs, dialogs::OPEN_LOG);
             }
             if ui.link(words::RECORD_ONE).clicked() {
                 session.workspace = Workspace::Train;
@@ -145,7 +146,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     } else if let Some(problem) = session.diagnosing.problem.clone() {
         empty_state(ui, (Icon::Doubt, words::CANNOT), &problem, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN_ANOTHER)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+                files::ask(ui.ctx(), &mut session.jobs, dialogs::OPEN_LOG);
             }
             ui.add_space(space::XS);
             start_from(ui, &session.document, &session.calibration, &mut session.diagnosing);

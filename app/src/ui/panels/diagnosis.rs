@@ -7,6 +7,7 @@ use crate::text::sentence::sentence;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::{self, Icon};
@@ -276,7 +277,7 @@ fn feel(ui: &mut Ui, session: &mut Session) {
             );
         }
         if ui.button((Icon::Save, words::SAVE_WORLD)).on_hover_text(words::SAVE_WORLD_MORE).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, files::SAVE_EXTENDED);
+            files::ask(ui.ctx(), &mut session.jobs, dialogs::SAVE_EXTENDED);
         }
     });
     if let Err(problem) = comparison {

@@ -8,6 +8,7 @@ use super::xy::xy_view;
 use crate::text::format::number;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::gallery::sample::Sample;
@@ -163,7 +164,7 @@ fn nothing_loaded(ui: &mut Ui, workspace: &mut Workspace, jobs: &mut Jobs<Sessio
     let text = words::NO_RECORDING_YET_MORE;
     empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
         if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-            files::ask(ui.ctx(), jobs, files::OPEN_LOG);
+            files::ask(ui.ctx(), jobs, dialogs::OPEN_LOG);
         }
         if ui.link(words::OR_RECORD_ONE).clicked() {
             *workspace = Workspace::Train;

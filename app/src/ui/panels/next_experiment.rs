@@ -9,6 +9,7 @@ use crate::text::sentence::sentence;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::diagnosis_state::is_mechanism;
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::experimenting;
 use crate::ui::experiments::{REHEARSE, ROUNDS, Stage};
@@ -218,7 +219,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-            files::ask(&ctx, &mut session.jobs, files::ADD_EXPERIMENT);
+            files::ask(&ctx, &mut session.jobs, dialogs::ADD_EXPERIMENT);
         }
         let path = session.experiments.path_field.trim().to_owned();
         if entered && !path.is_empty() {

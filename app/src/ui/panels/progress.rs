@@ -2,6 +2,7 @@
 
 use crate::history::attempt::Attempt;
 use crate::text::format;
+use crate::ui::dialogs;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
@@ -367,7 +368,7 @@ fn attempts(ui: &mut Ui, learning: &Learning, jobs: &mut Jobs<Session>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let hint = words::SAVE_AS_A_TABLE_MORE;
             if ui.link(words::SAVE_AS_A_TABLE).on_hover_text(hint).clicked() {
-                files::ask(ui.ctx(), jobs, files::SAVE_HISTORY);
+                files::ask(ui.ctx(), jobs, dialogs::SAVE_HISTORY);
             }
         });
     });

@@ -3,6 +3,7 @@
 use crate::text::format;
 use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
@@ -122,7 +123,7 @@ fn source(
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(size, layout, |ui| {
         if icon_button(ui, Icon::Open, true, words::OPEN).on_hover_text(words::OPEN_MORE).clicked() {
-            files::ask(&ctx, jobs, files::OPEN_LOG);
+            files::ask(&ctx, jobs, dialogs::OPEN_LOG);
         }
         let field = TextEdit::singleline(&mut document.path_field).hint_text(words::PATH);
         ui.add(field.desired_width(ui.available_width()))
@@ -330,12 +331,12 @@ impl RecordingPanel {
             "report.html".clone_into(&mut self.report);
         }
         ui.label(theme::caption(ui, words::SAVE_LOG));
-        if save_line(ui, jobs, &mut self.log, (files::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
+        if save_line(ui, jobs, &mut self.log, (dialogs::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
             files::save_log(ui.ctx(), document, calibration, jobs, &self.log);
         }
         ui.label(theme::caption(ui, words::SAVE_WORLD));
         let fitted = calibration.analysis.is_some();
-        if save_line(ui, jobs, &mut self.world, (files::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted) {
+        if save_line(ui, jobs, &mut self.world, (dialogs::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted) {
             files::save_world(ui.ctx(), calibration, jobs, &self.world);
         }
         ui.label(theme::caption(ui, words::SAVE_REPORT));
@@ -344,7 +345,7 @@ impl RecordingPanel {
             ui,
             jobs,
             &mut self.report,
-            (files::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
+            (dialogs::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
             is_file,
         ) {
             files::save_report(ui.ctx(), document, calibration, jobs, PathBuf::from(self.report.trim()));

@@ -3,6 +3,7 @@
 use super::legend;
 use crate::text::format;
 use crate::ui::calibration::Calibration;
+use crate::ui::dialogs;
 use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
 use crate::ui::message_list::Messages;
@@ -191,7 +192,7 @@ fn world_choice(
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link(words::OPEN).clicked() {
-                    files::ask(ui.ctx(), jobs, files::OPEN_WORLD);
+                    files::ask(ui.ctx(), jobs, dialogs::OPEN_WORLD);
                 }
             });
         }

@@ -2,6 +2,7 @@
 
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::icons::Icon;
@@ -106,7 +107,7 @@ fn none(ui: &mut Ui, document: &Document, jobs: &mut Jobs<Session>) {
     let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
     empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
         if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
-            files::ask(ui.ctx(), jobs, files::OPEN_VIDEO);
+            files::ask(ui.ctx(), jobs, dialogs::OPEN_VIDEO);
         }
     });
 }
@@ -120,7 +121,7 @@ fn failed(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, proble
                 showing_video::read_video_again(document);
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
-                files::ask(ui.ctx(), jobs, files::OPEN_VIDEO);
+                files::ask(ui.ctx(), jobs, dialogs::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
                 showing_video::forget_video(document, jobs);

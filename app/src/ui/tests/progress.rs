@@ -4,6 +4,7 @@ use super::thresholds::LAYER;
 use super::{harness, no_driver, until};
 use crate::history::attempt::{Attempt, Conditions};
 use crate::ui::app::App;
+use crate::ui::dialogs;
 use crate::ui::gallery::practice::practice;
 use crate::ui::learning::Practised;
 use crate::ui::panel_id::PanelId;
@@ -85,7 +86,7 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     // A table of everything, where the dialog says.
     let table = folder.path().join("grace.csv");
     let ctx = harness.ctx.clone();
-    let answer = files::answered(files::SAVE_HISTORY, table.clone());
+    let answer = files::answered(dialogs::SAVE_HISTORY, table.clone());
     harness.state_mut().session.jobs.start(&ctx, files::SAVE, "", move |_| answer);
     until(&mut harness, "the table", |app| app.session.messages.banners.iter().any(|b| b.text == "Saved grace.csv."));
     assert_eq!(std::fs::read_to_string(&table).expect("written").lines().count(), 25);
