@@ -2,17 +2,18 @@
 //! program left behind.
 
 use super::files::saved;
-use super::icons::Icon;
 use super::jobs::{JobKind, Jobs};
 use super::session::{Session, change};
-use super::widgets::{primary_button, recording_light, remark};
-use super::{messages, theme};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{primary_button, recording_light, remark};
 use crate::ui::message_list::{Messages, Tone};
+use crate::ui::messages;
 use crate::ui::opening;
 use crate::ui::trainer::live::Trainer;
 use egui::Ui;

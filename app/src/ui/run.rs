@@ -3,11 +3,11 @@
 use crate::tasks::Chosen;
 use crate::ui::app;
 use crate::ui::first_picture;
+use crate::ui::kit::theme;
 use crate::ui::opening;
 use crate::ui::recorder;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::ui::trainees;
 use crate::ui::workspace;
 use anyhow::Context as _;

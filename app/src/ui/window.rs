@@ -1,10 +1,7 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
 use super::dock::panes::Panels;
-use super::icons::Icon;
 use super::session::Session;
-use super::theme::{self, space};
-use super::widgets::{icon_button, segmented};
 use super::{menu, messages, palette, restore, tour};
 use crate::ui::actions::list::Action;
 use crate::ui::actions::search;
@@ -12,6 +9,10 @@ use crate::ui::app::App;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
 use crate::ui::follow;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{icon_button, segmented};
 use crate::ui::message_list::Tone;
 use crate::ui::opening;
 use crate::ui::tour_progress::Tour;

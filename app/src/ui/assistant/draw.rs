@@ -4,11 +4,12 @@
 use super::words::{self, Urgency};
 use crate::ui::assistant::readings::{Circle, Said, said};
 use crate::ui::assistant::state::Assistant;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, role, space};
+use crate::ui::kit::widgets::compact;
 use crate::ui::scene::view::SceneResponse;
-use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::live::Trainer;
 use crate::ui::training::Training;
-use crate::ui::widgets::compact;
 use egui::{
     Align, Color32, CornerRadius, Frame, Layout, Margin, Pos2, Rect, RichText, Shape, Stroke, Ui, UiBuilder, vec2,
 };
@@ -146,7 +147,7 @@ fn plate(ui: &mut Ui, view: &SceneResponse, held: &Held, at_m: Vec2, parts: Assi
                 let (text, urgency) = words::slip(&slip);
                 let color = if urgency == Urgency::Note { p.good } else { ink(ui, urgency) };
                 ui.label(RichText::new(text).size(12.0).color(ink(ui, urgency))).on_hover_text(ABOUT_SLIP);
-                crate::ui::widgets::bar(ui, slip.free, 1.0, None, color);
+                crate::ui::kit::widgets::bar(ui, slip.free, 1.0, None, color);
             }
         });
 }

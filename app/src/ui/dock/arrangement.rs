@@ -178,7 +178,7 @@ mod tests {
         let mut session = Session::new();
         let (mut panels, mut rects) = (Panels::default(), Vec::new());
         let ctx = egui::Context::default();
-        crate::ui::theme::install(&ctx);
+        crate::ui::kit::theme::install(&ctx);
         let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 680.0));
         let input = egui::RawInput { screen_rect: Some(room), ..Default::default() };
         let mut output = ctx.run_ui(input, |ui| {

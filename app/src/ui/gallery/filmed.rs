@@ -1,8 +1,8 @@
 //! The recorded hand as a film: a video for screenshots of the video panel.
 
+use crate::ui::kit::theme;
 use crate::ui::scene::overlay::{camera_for, options_for, scene_world};
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::video::reading::VideoSource;
 use crate::video::writer::Writer;
 use anyhow::Context as _;

@@ -4,13 +4,14 @@ use super::preview::PREVIEW;
 use super::{options, plot, table};
 use crate::text::file_name::name_of;
 use crate::ui::files::SAVE;
-use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{plain_card, primary_button, remark, sheet};
 use crate::ui::mapping::state::Mapping;
 use crate::ui::mapping_actions::save;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{plain_card, primary_button, remark, sheet};
 use egui::{Align, CentralPanel, Frame, Key, Layout, Margin, Panel as Side, RichText, Ui};
 
 /// User's decision in the dialog.

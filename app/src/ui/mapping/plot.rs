@@ -2,15 +2,16 @@
 
 use super::preview::Seen;
 use crate::text::format;
-use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{mix, palette, space};
+use crate::ui::kit::widgets::{compact, fact, remark, sheet};
 use crate::ui::mapping::state::{Mapping, View};
 use crate::ui::plots::axes::{marks, time_axis, value_axis};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, mix, palette, space};
-use crate::ui::widgets::{compact, fact, remark, sheet};
 use egui::{RichText, ScrollArea, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;

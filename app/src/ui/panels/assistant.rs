@@ -1,9 +1,9 @@
 //! Switches of the assistant's parts over the picture.
 
 use crate::ui::assistant::readings;
-use crate::ui::theme;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{call, card};
 use crate::ui::training::Training;
-use crate::ui::widgets::{call, card};
 use egui::Ui;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

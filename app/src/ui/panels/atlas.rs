@@ -6,11 +6,12 @@ use crate::text::format::{self, capitalised};
 use crate::text::sentence::sentence;
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
 use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette, space};
+use crate::ui::kit::widgets::compact;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
-use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::compact;
 use egui::{
     Align, Align2, Color32, FontId, Layout, Pos2, Rect, Response, RichText, ScrollArea, Sense, Shape, Stroke, Ui, pos2,
     vec2,

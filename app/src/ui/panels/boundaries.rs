@@ -5,8 +5,9 @@ use crate::text::states::state_name;
 use crate::ui::by_hand::Change;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
-use crate::ui::theme::{self, palette, state_color};
-use crate::ui::widgets::swatch;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, state_color};
+use crate::ui::kit::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};
 

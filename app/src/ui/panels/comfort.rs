@@ -1,9 +1,10 @@
 //! The comfort card beside the trainer's picture, and the message over the picture while the world is paused.
 
 use crate::ui::comfort::Comfort;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{compact, plain_card};
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

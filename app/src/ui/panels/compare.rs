@@ -1,10 +1,10 @@
 //! The base and the extended world of a diagnosis, to be felt alternately.
 
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card_with_head, compact, key_hint, segmented};
 use crate::ui::message_list::Messages;
-use crate::ui::theme;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
 use egui::{Align, Key, Layout, Ui};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

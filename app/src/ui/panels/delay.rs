@@ -1,10 +1,10 @@
 //! The link between hand and world: its latency, its prediction model, and the resulting picture.
 
 use crate::text::format::{number, with_error};
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card_with_head, fact, segmented};
 use crate::ui::message_list::Messages;
-use crate::ui::theme;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{card_with_head, fact, segmented};
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};
 

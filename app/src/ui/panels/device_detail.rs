@@ -2,16 +2,17 @@
 
 use super::trainer_timing;
 use crate::text::format::{number, short_time};
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::{HandDevice, spec_sentences};
 use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::trainer::trial::Direction;
-use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
 use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;

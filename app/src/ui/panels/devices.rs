@@ -2,15 +2,16 @@
 
 use super::remote::RemoteCard;
 use crate::ui::document::Document;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{card, plain_card};
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::HandDevice;
 use crate::ui::trainer::live::{Operator, Trainer};
-use crate::ui::widgets::{card, plain_card};
 use crate::ui::workspace::Workspace;
 use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, Ui};
 use haptics::device::haply;

@@ -2,16 +2,18 @@
 
 use super::debrief;
 use crate::text::format;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::markdown;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
 use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Lessons, Open, Phase};
-use crate::ui::markdown;
 use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::training::Training;
-use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
 use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;

@@ -3,12 +3,13 @@
 use crate::text::format::{self, Quantity};
 use crate::ui::calibration::Calibration;
 use crate::ui::fit_choice::Stated;
-use crate::ui::icons::Icon;
-use crate::ui::teach;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::tooltips;
+use crate::ui::kit::widgets::{call, card, compact, segmented};
 use crate::ui::trying_values;
 use crate::ui::what_if::residual_rms;
-use crate::ui::widgets::{call, card, compact, segmented};
 use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
@@ -59,7 +60,7 @@ pub fn selected(ui: &mut Ui, calibration: &mut Calibration) {
     let mut close = false;
     let leave = |ui: &mut Ui| close = ui.link(words::CLOSE).clicked();
     card(ui, &heading, leave, |ui| {
-        if let Some(lesson) = teach::parameter(&parameter.name) {
+        if let Some(lesson) = tooltips::parameter(&parameter.name) {
             ui.label(theme::caption(ui, format!("{} {}", lesson.what, lesson.formula)));
             ui.add_space(space::XS);
         }

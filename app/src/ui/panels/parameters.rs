@@ -5,14 +5,17 @@ use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::Jobs;
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::tooltips;
+use crate::ui::kit::widgets::{card, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
 use crate::ui::refits::{FIT, SIMULATE};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card, remark};
-use crate::ui::{stage, teach};
+use crate::ui::stage;
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
@@ -212,7 +215,7 @@ fn is_stated(calibration: &Calibration, parameter: &Parameter) -> Option<(Icon, 
 /// Tooltip: meaning, origin of the value, or the reason why there is none.
 fn explain(ui: &mut Ui, parameter: &Parameter) {
     ui.set_max_width(320.0);
-    if let Some(lesson) = teach::parameter(&parameter.name) {
+    if let Some(lesson) = tooltips::parameter(&parameter.name) {
         ui.label(lesson.what);
         if !lesson.formula.is_empty() {
             ui.label(RichText::new(lesson.formula).italics().color(palette(ui).secondary));

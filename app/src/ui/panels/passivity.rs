@@ -1,12 +1,12 @@
 //! The passivity observer's reading, and the switch of the controller.
 
 use crate::text::format::number;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card, fact, remark};
 use crate::ui::message_list::Messages;
-use crate::ui::theme;
 use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{card, fact, remark};
 use egui::{Align, Layout, Ui};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

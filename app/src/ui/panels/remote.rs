@@ -1,12 +1,13 @@
 //! The devices page, left column: settings of a remote device.
 
 use super::devices::{Choice, row};
-use crate::ui::icons::Icon;
-use crate::ui::theme::{self, space};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{plain_card, remark};
 use crate::ui::trainer::hand::HandDevice;
 use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::trainer::remote::Remote;
-use crate::ui::widgets::{plain_card, remark};
 use egui::{TextEdit, Ui, vec2};
 use haptics::device::udp::{Key, PORT};
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! The scripted operator: its skill level, its deliberate mistake, and replaying it.
 
 use crate::operator;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{call, compact};
 use crate::ui::message_list::Messages;
-use crate::ui::theme;
 use crate::ui::trainer::live::Trainer;
 use crate::ui::trainer::script::Script;
-use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
 

@@ -8,15 +8,16 @@ use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
 use crate::ui::jobs::Jobs;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space, state_color};
+use crate::ui::kit::widgets::{card, compact, empty_state, swatch};
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, palette, space, state_color};
-use crate::ui::widgets::{card, compact, empty_state, swatch};
 use crate::ui::workspace::Workspace;
 use egui::{
     Align, Align2, FontId, Layout, Pos2, Rangef, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, vec2,

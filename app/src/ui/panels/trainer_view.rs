@@ -4,7 +4,10 @@ use super::{guide, lessons, marks, steering};
 use crate::ui::assistant::draw;
 use crate::ui::experiments::Experiments;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, key_hint, sheet};
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
@@ -12,12 +15,10 @@ use crate::ui::scene::rig::Rig;
 use crate::ui::scene::view::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::{HandDevice, Steering};
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::trainer::task::task_hint;
 use crate::ui::training::Training;
-use crate::ui::widgets::{empty_state, key_hint, sheet};
 use crate::ui::workspace::Workspace;
 use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
@@ -126,7 +127,7 @@ pub struct TrainerView {
     /// True if the window had the focus in the previous frame.
     had_focus: bool,
     #[cfg(feature = "sound")]
-    sound: Option<Result<crate::ui::sound::Sound, String>>,
+    sound: Option<Result<crate::ui::kit::sound::Sound, String>>,
 }
 
 impl Default for TrainerView {
@@ -256,7 +257,7 @@ impl TrainerView {
         if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
             return;
         }
-        match self.sound.get_or_insert_with(crate::ui::sound::Sound::open) {
+        match self.sound.get_or_insert_with(crate::ui::kit::sound::Sound::open) {
             Ok(sound) => {
                 sound.follow(training.comfort.loudness(), slip_m_s, excess);
                 if let Some(speed_m_s) = struck_m_s {

@@ -3,9 +3,10 @@
 use crate::text::format;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
-use crate::ui::icons::Icon;
-use crate::ui::theme::{self, palette, space, state_color};
-use crate::ui::widgets::{call, icon_button};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space, state_color};
+use crate::ui::kit::widgets::{call, icon_button};
 use egui::{Pos2, Rangef, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

@@ -5,7 +5,8 @@ use super::curves::{Curve, Layer, NOISE_SWITCH};
 use super::row::{RowInput, RowKind, curve_color};
 use super::title_menu::title_menu;
 use crate::text::format;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
 /// Height of an entry, points.

@@ -2,7 +2,8 @@
 
 use super::row::{PlotCache, RowInput, RowOutcome};
 use super::shift::{Grasp, under};
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
 use egui::{Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use egui_plot::PlotTransform;
 

@@ -2,7 +2,8 @@
 
 use super::choices::{GroupChoice, name};
 use super::row::RowInput;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Sense, Stroke, Ui, vec2};
 use estimator::signal::transform::Transform;

@@ -2,15 +2,16 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
+use crate::ui::kit::theme;
 use crate::ui::panel::Panel;
 use crate::ui::panels::scene::ScenePanel;
 use crate::ui::refits::replay_all;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::likeness::Likeness;
 use crate::ui::scene::overlay::{options_for, scene_world};
+use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
-use crate::ui::{screenshot, theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use estimator::estimate::{Constraint, ConstraintKind, Guide, Touched};
