@@ -3,10 +3,10 @@
 //! The band shows what was set at once; the fit follows when it is made again. What is set stands in the sidecar of a saved recording.
 
 use super::session::Session;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::fitting;
-use crate::ui::jobs::Jobs;
 use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
 use haptics::recording::{Recording, Segment, Task};
 use std::sync::Arc;

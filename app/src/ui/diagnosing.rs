@@ -1,10 +1,10 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
 use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::document::Document;
-use crate::ui::jobs::Jobs;
 use crate::ui::message_list::Messages;
 use crate::ui::refits::replay_forces;
 use crate::ui::trainer::choice::{Compare, WorldChoice};

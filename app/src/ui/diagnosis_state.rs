@@ -2,12 +2,12 @@
 
 use super::atlas::Sheet;
 use super::fit_choice::FitChoice;
-use super::jobs::JobKind;
 use super::prepare::Prepared;
 use super::replayed::Replayed;
 use crate::experiment::rehearse::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::checked::Checked;
 use crate::ui::file_kind::LOAD;
 use crate::ui::plots::residuals::Residuals;

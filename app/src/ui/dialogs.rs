@@ -1,10 +1,10 @@
 //! The file dialogs of the window: the files on offer, and the use of the chosen path.
 
+use crate::ui::background::jobs::Jobs;
 use crate::ui::checked::On;
 use crate::ui::checking;
 use crate::ui::experimenting;
 use crate::ui::files::{self, Dialog, LOGS_AND_ALL};
-use crate::ui::jobs::Jobs;
 use crate::ui::opening;
 use crate::ui::project_files;
 use crate::ui::session::{Session, change};

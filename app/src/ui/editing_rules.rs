@@ -3,10 +3,10 @@
 use super::files::{SAVE, saved};
 use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::fitting;
-use crate::ui::jobs::Jobs;
 use crate::ui::message_list::Messages;
 use crate::ui::refits::SEGMENT;
 use crate::ui::rules::Rules;

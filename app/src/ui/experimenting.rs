@@ -2,20 +2,20 @@
 
 use super::files::{SAVE, saved};
 use super::guided::Guided;
-use super::jobs::no_change;
 use super::session::{Session, change};
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::background::jobs::no_change;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::Document;
 use crate::ui::experiments::{
     Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
 };
-use crate::ui::jobs::Jobs;
 use crate::ui::message_list::{Messages, Tone};
 use crate::ui::project_files;
 use crate::ui::trainer::live::Trainer;

@@ -1,10 +1,10 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::jobs::{Answer, JobKind, Jobs, no_change};
 use super::session::{Session, change};
 use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::{Answer, JobKind, Jobs, no_change};
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::Document;

@@ -2,10 +2,10 @@
 
 use super::recorder::RECORD;
 use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
 use crate::ui::experimenting;
 use crate::ui::experiments::Experiments;
 use crate::ui::guided::Phase;
-use crate::ui::jobs::Jobs;
 use crate::ui::message_list::Messages;
 use crate::ui::trainer::live::Trainer;
 use std::path::PathBuf;

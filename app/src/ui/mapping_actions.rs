@@ -1,8 +1,8 @@
 //! Saving the sidecar that the mapping dialog made.
 
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::files::SAVE;
-use crate::ui::jobs::Jobs;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::opening;
 use crate::ui::session::{Session, change};

@@ -1,11 +1,11 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{Answer, Jobs, Ticket, no_change};
 use super::prepare::Prepared;
 use super::project::Source;
 use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
 use crate::ui::document::Document;
 use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
 use crate::ui::fitting;

@@ -1,10 +1,10 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::jobs::{JobKind, Jobs};
 use super::plots::choices::{Overlaid, PlotChoices};
 use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
 use super::session::{Session, change};
+use crate::ui::background::jobs::{JobKind, Jobs};
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::message_list::Messages;

@@ -1,10 +1,10 @@
 //! Opening and saving projects.
 
 use super::files::{Dialog, SAVE, ask, saved};
-use super::jobs::{Answer, Jobs, Ticket, no_change};
 use super::prepare::Prepared;
 use super::session::{Session, change};
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::document::Document;

@@ -2,11 +2,11 @@
 //! program left behind.
 
 use super::files::saved;
-use super::jobs::{JobKind, Jobs};
 use super::session::{Session, change};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::background::jobs::{JobKind, Jobs};
 use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::kit::icons::Icon;

@@ -5,8 +5,8 @@ use crate::ui::experiments::Experiments;
 use crate::ui::fit_choice::FitChoice;
 use crate::ui::scene::layers::SceneLayers;
 
-use super::jobs::{Answer, JobKind, Jobs};
 use super::prepare::Prepared;
+use crate::ui::background::jobs::{Answer, JobKind, Jobs};
 use crate::ui::file_kind::LOAD;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::PlotChoices;
@@ -88,5 +88,5 @@ impl Session {
 
 /// A change of the session as the answer of a job.
 pub fn change(change: impl FnOnce(&mut Session, &egui::Context) + Send + 'static) -> Answer<Session> {
-    super::jobs::change(change)
+    crate::ui::background::jobs::change(change)
 }

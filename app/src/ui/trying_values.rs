@@ -2,9 +2,9 @@
 
 use super::replayed::Replayed;
 use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
-use crate::ui::jobs::Jobs;
 use crate::ui::refits::replay_forces;
 use crate::ui::what_if::{WHAT_IF, world};
 

@@ -1,10 +1,10 @@
 //! Computing the sensitivity, in the background or at once.
 
-use super::jobs::no_change;
 use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
+use crate::ui::background::jobs::no_change;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
-use crate::ui::jobs::Jobs;
 use crate::ui::refits::FIT;
 use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;

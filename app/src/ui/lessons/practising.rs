@@ -1,8 +1,8 @@
 //! Lessons in Train: watching an expert, practising, the test, and its result. No drawing here.
 
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::jobs::Jobs;
 use crate::ui::lessons::kept;
 use crate::ui::lessons::state::{Debrief, EXPERT, GRADE, Lessons, Open, Phase, grade_file};
 use crate::ui::lessons::trace;

@@ -3,8 +3,8 @@
 use super::preview::PREVIEW;
 use super::{options, plot, table};
 use crate::text::file_name::name_of;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::files::SAVE;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

@@ -1,7 +1,7 @@
 //! Opening the mapping dialog on a log.
 
 use crate::text::file_name::name_of;
-use crate::ui::jobs::Jobs;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::mapping::state::{LOOK, look_now};
 use crate::ui::session::{Session, change};
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::preview::Seen;
 use crate::text::format;
-use crate::ui::jobs::Jobs;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{mix, palette, space};

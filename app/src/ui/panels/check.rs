@@ -2,13 +2,13 @@
 
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::checking;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dialogs;
 use crate::ui::document::Document;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};

@@ -1,13 +1,13 @@
 //! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
 use crate::ui::atlas::Sheet;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
 use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

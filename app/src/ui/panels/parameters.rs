@@ -1,11 +1,11 @@
 //! The fitted parameters: value ± standard error in readable units. Unidentifiable ones are greyed, with the reason.
 
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

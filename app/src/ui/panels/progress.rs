@@ -2,9 +2,9 @@
 
 use crate::history::attempt::Attempt;
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::dialogs;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};

@@ -1,6 +1,7 @@
 //! The left column of the calibration: choice of the recording, its task, refit, save.
 
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
 use crate::ui::dialogs;
@@ -8,7 +9,6 @@ use crate::ui::document::Document;
 use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
 use crate::ui::fitting;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

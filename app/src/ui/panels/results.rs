@@ -3,11 +3,11 @@
 use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

@@ -2,9 +2,9 @@
 
 use super::legend;
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::dialogs;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, role, space};

@@ -2,10 +2,10 @@
 
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::dialogs;
 use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::jobs::Jobs;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

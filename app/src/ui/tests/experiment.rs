@@ -3,12 +3,12 @@
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::experimenting;
 use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
 use crate::ui::guiding;
-use crate::ui::jobs::Jobs;
 use crate::ui::opening;
 use crate::ui::session::Session;
 use crate::ui::trainer::choice::WorldChoice;

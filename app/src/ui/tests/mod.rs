@@ -26,10 +26,10 @@ mod window;
 mod workbench;
 
 use super::app::App;
-use super::jobs::JobKind;
 use super::panel::Picture;
 use super::prepare::Prepared;
 use super::session::{self, Session};
+use crate::ui::background::jobs::JobKind;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
 use crate::ui::trainer::choice::WorldChoice;
