@@ -16,7 +16,7 @@ use crate::ui::kit::widgets::{card, plain_card, primary_button, remark};
 use crate::ui::lessons::practising;
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::plots::doubts::places;
+use crate::ui::plots::data_warnings::places;
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::training::Training;

@@ -10,7 +10,7 @@ use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
 use crate::ui::plots::curves::Sources;
 use crate::ui::plots::derived::Recipe;
 use crate::ui::plots::levels::Levels;
-use crate::ui::plots::row::GUTTER;
+use crate::ui::plots::time_plot::GUTTER;
 use crate::ui::plots::xy::{XyCache, XyInput, xy_plot};
 use crate::ui::prepare::{Group, Prepared, Trace};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
