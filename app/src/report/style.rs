@@ -1,6 +1,6 @@
 //! The look of the page: rules in `style.css`, colours from the window's theme.
 
-use crate::ui::theme::{Palette, curve, ink_on, state_color};
+use crate::ui::kit::theme::{Palette, curve, ink_on, state_color};
 use egui::Color32;
 use estimator::segment::SystemState;
 use render::ColorRole;

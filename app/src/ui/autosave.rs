@@ -149,7 +149,7 @@ fn read(path: &Path) -> Option<State> {
 
 fn state(session: &Session, dock: &Dock, toured: bool) -> State {
     State {
-        project: project_of(session),
+        project: project_of(session.workspace, &session.document, &session.calibration, &session.plots),
         project_path: session.document.project_path.clone(),
         dock: dock.clone(),
         comfort: session.training.comfort,

@@ -3,6 +3,9 @@
 //! The band shows what was set at once; the fit follows when it is made again. What is set stands in the sidecar of a saved recording.
 
 use super::session::Session;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::fitting;
 use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
 use haptics::recording::{Recording, Segment, Task};
@@ -99,44 +102,51 @@ fn boundary(before: &Interval, after: &Interval, times: &[f64], to_s: f64) -> Op
 }
 
 /// True when the states of the shown recording can be set by hand, and the fit then follows.
-pub fn states_can_be_set(session: &Session) -> bool {
-    session.calibration.analysis.as_ref().is_some_and(|a| decides(a.task)) && session.calibration.rules.is_none()
+pub fn states_can_be_set(calibration: &Calibration) -> bool {
+    calibration.analysis.as_ref().is_some_and(|a| decides(a.task)) && calibration.rules.is_none()
 }
 
 /// True when the fit of the shown recording does not ask for its states; it can still be of a part.
-pub fn fits_without_states(session: &Session) -> bool {
-    let clocked = session.document.prepared().is_some_and(|p| !p.clockless());
-    clocked
-        && session.calibration.analysis.as_ref().is_some_and(|a| !decides(a.task))
-        && session.calibration.rules.is_none()
+pub fn fits_without_states(document: &Document, calibration: &Calibration) -> bool {
+    let clocked = document.prepared().is_some_and(|p| !p.clockless());
+    clocked && calibration.analysis.as_ref().is_some_and(|a| !decides(a.task)) && calibration.rules.is_none()
 }
 
 /// Sets states of the shown recording by hand.
-pub fn set_states(session: &mut Session, change: &Change) {
-    let (Some(found), Some(prepared)) = (session.segmentation(), session.document.prepared()) else { return };
+pub fn set_states(document: &Document, calibration: &mut Calibration, change: &Change) {
+    let (Some(found), Some(prepared)) = (calibration.segmentation(document.current), document.prepared()) else {
+        return;
+    };
     if let Some(segments) = changed(found, &prepared.times, change) {
-        session.calibration.choice.segments.insert(session.document.current, Arc::new(segments));
-        show_segments(session);
+        calibration.choice.segments.insert(document.current, Arc::new(segments));
+        show_segments(document, calibration);
     }
 }
 
 /// Restores the detected states.
-pub fn forget_states(session: &mut Session, ctx: &egui::Context) {
-    session.calibration.choice.segments.remove(&session.document.current);
-    fitting::resegment(session, ctx);
+pub fn forget_states(
+    document: &Document,
+    calibration: &mut Calibration,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+) {
+    calibration.choice.segments.remove(&document.current);
+    fitting::resegment(document, calibration, jobs, ctx);
 }
 
 /// Shows what was set by hand, before the fit has followed.
-pub(crate) fn show_segments(session: &mut Session) {
-    let (Some(prepared), Some(found)) = (session.document.prepared().cloned(), session.segmentation().cloned()) else {
+pub(crate) fn show_segments(document: &Document, calibration: &mut Calibration) {
+    let (Some(prepared), Some(found)) =
+        (document.prepared().cloned(), calibration.segmentation(document.current).cloned())
+    else {
         return;
     };
-    let Some(segments) = session.calibration.choice.segments.get(&session.document.current) else { return };
+    let Some(segments) = calibration.choice.segments.get(&document.current) else { return };
     let mut stand_in = Recording::default();
     stand_in.meta.segments.clone_from(segments);
     let mut shown = by_hand::put(found, &stand_in, &prepared.times);
     shown.score = None;
-    fitting::segmented(session, session.document.current, shown);
+    fitting::segmented(calibration, document.current, shown);
 }
 
 #[cfg(test)]
@@ -144,8 +154,8 @@ mod tests {
     use super::*;
     use crate::ui::tests::{STACK, session};
 
-    fn place(session: &Session, interval: usize) -> (f64, f64, SystemState) {
-        let found = &session.segmentation().expect("segmented").states[interval];
+    fn place(document: &Document, calibration: &Calibration, interval: usize) -> (f64, f64, SystemState) {
+        let found = &calibration.segmentation(document.current).expect("segmented").states[interval];
         (found.t0, found.t1, found.state)
     }
 
@@ -153,15 +163,22 @@ mod tests {
     fn a_boundary_moves_and_the_fit_follows_it() {
         let mut session = session(STACK.clone());
         let lifted = SystemState::HoldAboveGround;
-        let states = &session.segmentation().expect("segmented").states;
+        let states = &session.calibration.segmentation(session.document.current).expect("segmented").states;
         let carry = states.iter().position(|i| i.state == lifted).expect("carried");
-        let (t0, t1, _) = place(&session, carry);
+        let (t0, t1, _) = place(&session.document, &session.calibration, carry);
         let before =
             session.calibration.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
-        set_states(&mut session, &Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
-        let (_, now, _) = place(&session, carry);
-        assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
-        assert_eq!(place(&session, carry + 1).0, now, "no hole");
+        set_states(
+            &session.document,
+            &mut session.calibration,
+            &Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) },
+        );
+        let (_, now, _) = place(&session.document, &session.calibration, carry);
+        assert!(
+            (now - t0 - 0.5 * (t1 - t0)).abs() < 0.02
+                && session.calibration.segmentation(session.document.current).is_some_and(|s| s.by_hand)
+        );
+        assert_eq!(place(&session.document, &session.calibration, carry + 1).0, now, "no hole");
         let after =
             crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice).expect("fits");
         let (before, after) = (before.expect("weighed"), after.fit.parameter("block-1", "weight_N").cloned());
@@ -174,26 +191,42 @@ mod tests {
     #[test]
     fn a_boundary_stops_at_its_neighbours() {
         let mut session = session(STACK.clone());
-        let (t0, ..) = place(&session, 1);
-        set_states(&mut session, &Change::Move { interval: 1, to_s: -100.0 });
-        let (first, end, _) = place(&session, 1);
+        let (t0, ..) = place(&session.document, &session.calibration, 1);
+        set_states(&session.document, &mut session.calibration, &Change::Move { interval: 1, to_s: -100.0 });
+        let (first, end, _) = place(&session.document, &session.calibration, 1);
         assert!(first == t0 && end > t0, "{first} to {end}");
-        set_states(&mut session, &Change::Move { interval: 1, to_s: 1e9 });
-        assert!(place(&session, 2).1 > place(&session, 2).0);
+        set_states(&session.document, &mut session.calibration, &Change::Move { interval: 1, to_s: 1e9 });
+        assert!(
+            place(&session.document, &session.calibration, 2).1 > place(&session.document, &session.calibration, 2).0
+        );
     }
 
     #[test]
     fn stretches_are_split_renamed_and_joined() {
         let mut session = session(STACK.clone());
-        let count = session.segmentation().expect("segmented").states.len();
-        let (t0, t1, state) = place(&session, 0);
-        set_states(&mut session, &Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
-        set_states(&mut session, &Change::State { interval: 1, state: SystemState::NoState });
-        assert_eq!((place(&session, 0).2, place(&session, 1).2), (state, SystemState::NoState));
-        assert_eq!(session.segmentation().expect("segmented").states.len(), count + 1);
-        set_states(&mut session, &Change::Join { interval: 0 });
-        assert_eq!(place(&session, 0), (t0, t1, state));
-        set_states(&mut session, &Change::Split { interval: 0, at_s: t1 + 100.0 });
-        assert_eq!(session.segmentation().expect("segmented").states.len(), count, "outside: nothing happens");
+        let count = session.calibration.segmentation(session.document.current).expect("segmented").states.len();
+        let (t0, t1, state) = place(&session.document, &session.calibration, 0);
+        set_states(&session.document, &mut session.calibration, &Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
+        set_states(
+            &session.document,
+            &mut session.calibration,
+            &Change::State { interval: 1, state: SystemState::NoState },
+        );
+        assert_eq!(
+            (place(&session.document, &session.calibration, 0).2, place(&session.document, &session.calibration, 1).2),
+            (state, SystemState::NoState)
+        );
+        assert_eq!(
+            session.calibration.segmentation(session.document.current).expect("segmented").states.len(),
+            count + 1
+        );
+        set_states(&session.document, &mut session.calibration, &Change::Join { interval: 0 });
+        assert_eq!(place(&session.document, &session.calibration, 0), (t0, t1, state));
+        set_states(&session.document, &mut session.calibration, &Change::Split { interval: 0, at_s: t1 + 100.0 });
+        assert_eq!(
+            session.calibration.segmentation(session.document.current).expect("segmented").states.len(),
+            count,
+            "outside: nothing happens"
+        );
     }
 }

@@ -8,6 +8,7 @@ use super::sensitivity::Sensitivity;
 use super::what_if::WhatIf;
 use estimator::online::information::Enough;
 use estimator::pipeline::Analysis;
+use estimator::segment::Segmentation;
 use std::sync::Arc;
 
 /// The choice of a fit, the fit, and all that is derived from it.
@@ -38,6 +39,16 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// Segmentation of a recording.
+    pub fn segmentation(&self, recording: usize) -> Option<&Segmentation> {
+        self.analysis.as_ref()?.segmentations.get(recording)?.as_ref()
+    }
+
+    /// Replay of a recording through the fitted world.
+    pub fn replay(&self, recording: usize) -> Option<&Replayed> {
+        self.replays.get(recording)?.as_ref()
+    }
+
     /// Forgets the fit: other recordings were opened. The method and the wish to follow changes stay.
     pub fn forget(&mut self) {
         self.replays.clear();

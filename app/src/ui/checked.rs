@@ -1,10 +1,10 @@
 //! The value of a diagnosis on other recordings: figures and verdicts.
 
 use super::fit_choice::FitChoice;
-use super::jobs::JobKind;
 use super::prepare::Prepared;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, options, plain};
 use estimator::diagnose::{self, Findings, Options, Progress, Validation};
 use haptics::recording::Recording;

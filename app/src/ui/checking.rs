@@ -1,25 +1,36 @@
 //! Checks of a diagnosis on held-out recordings.
 
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
+use crate::ui::background::jobs::no_change;
+use crate::ui::calibration::Calibration;
 use crate::ui::checked::{CHECK, Checked, On, check_now};
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::document::Document;
 
 /// Checks the answer in the background.
-pub fn check(session: &mut Session, ctx: &egui::Context, on: On) {
-    let Some(answer) = session.diagnosing.answer.clone() else { return };
-    session.diagnosing.check_field.clear();
-    let (recordings, choice) = (session.document.recordings.clone(), session.calibration.choice.clone());
-    session.jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
+pub fn check(
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    on: On,
+) {
+    let Some(answer) = diagnosing.answer.clone() else { return };
+    diagnosing.check_field.clear();
+    let (recordings, choice) = (document.recordings.clone(), calibration.choice.clone());
+    jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
         match check_now(&recordings, &choice, &answer, &on, &|share| ticket.goes_on(share)) {
-            Some(checked) => change(|session, _| take_checked(session, checked)),
+            Some(checked) => change(|session, _| take_checked(&mut session.diagnosing, checked)),
             None => no_change(),
         }
     });
 }
 
 /// A check has ended: what is newer takes the place of what was there of the same name.
-pub(crate) fn take_checked(session: &mut Session, checked: Vec<Checked>) {
-    let all = &mut session.diagnosing.checked;
+pub(crate) fn take_checked(diagnosing: &mut Diagnosing, checked: Vec<Checked>) {
+    let all = &mut diagnosing.checked;
     all.retain(|old| checked.iter().all(|new| new.name != old.name));
     all.extend(checked);
 }

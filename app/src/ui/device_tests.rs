@@ -2,7 +2,8 @@
 
 use super::app::App;
 use super::session::Session;
-use super::{screenshot, theme};
+use crate::ui::kit::theme;
+use crate::ui::screenshot;
 use crate::ui::tests::picture;
 use crate::ui::trainer::hand::{HandDevice, Steering};
 use crate::ui::trainer::live::{Clock, Operator, Trainer};

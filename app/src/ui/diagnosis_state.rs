@@ -2,12 +2,12 @@
 
 use super::atlas::Sheet;
 use super::fit_choice::FitChoice;
-use super::jobs::JobKind;
 use super::prepare::Prepared;
 use super::replayed::Replayed;
 use crate::experiment::rehearse::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::checked::Checked;
 use crate::ui::file_kind::LOAD;
 use crate::ui::plots::residuals::Residuals;
@@ -93,6 +93,11 @@ pub struct Diagnosing {
 }
 
 impl Diagnosing {
+    /// Replay of a recording through the world with what the diagnosis found.
+    pub fn replay(&self, recording: usize) -> Option<&Replayed> {
+        self.replays.get(recording)?.as_ref()
+    }
+
     /// Forgets everything but the question.
     pub fn forget(&mut self) {
         *self = Self { from: self.from, shows_atlas: self.shows_atlas, ..Self::default() };

@@ -3,33 +3,36 @@
 use super::files::{SAVE, saved};
 use super::session::Session;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::fitting;
+use crate::ui::message_list::Messages;
 use crate::ui::refits::SEGMENT;
 use crate::ui::rules::Rules;
 use estimator::segment::library;
 use std::sync::Arc;
 
 /// Opens the rules of the task that is chosen; says why not where it has none.
-pub fn open(session: &mut Session) -> Option<Box<Rules>> {
-    let found =
-        session.document.prepared().cloned().and_then(|prepared| session.calibration.choice.definition(&prepared));
+pub fn open(document: &Document, calibration: &Calibration, messages: &mut Messages) -> Option<Box<Rules>> {
+    let found = document.prepared().cloned().and_then(|prepared| calibration.choice.definition(&prepared));
     match found {
         Some(Ok(task)) => Some(Box::new(Rules::of(task))),
         Some(Err(problem)) => {
-            session.messages.fail(problem);
+            messages.fail(problem);
             None
         }
         None => {
-            session.messages.fail("The task of this recording is not known; choose one first.");
+            messages.fail("The task of this recording is not known; choose one first.");
             None
         }
     }
 }
 
 /// Looks at what was changed, and tells the states anew with it. Call once a frame.
-pub fn follow(ctx: &egui::Context, session: &mut Session) {
-    let running = session.jobs.is_running(SEGMENT);
-    let Some(rules) = session.calibration.rules.as_mut().filter(|rules| rules.untried) else { return };
+pub fn follow(ctx: &egui::Context, document: &Document, calibration: &mut Calibration, jobs: &mut Jobs<Session>) {
+    let running = jobs.is_running(SEGMENT);
+    let Some(rules) = calibration.rules.as_mut().filter(|rules| rules.untried) else { return };
     rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
     if rules.fault.is_some() {
         rules.untried = false;
@@ -42,33 +45,39 @@ pub fn follow(ctx: &egui::Context, session: &mut Session) {
     rules.untried = false;
     let same = rules.draft == rules.before;
     let draft = rules.draft.clone();
-    if !same || session.calibration.choice.own.is_some() {
-        session.calibration.choice.task = Some(draft.like);
-        session.calibration.choice.own = Some(Arc::new(draft));
+    if !same || calibration.choice.own.is_some() {
+        calibration.choice.task = Some(draft.like);
+        calibration.choice.own = Some(Arc::new(draft));
     }
-    fitting::resegment(session, ctx);
+    fitting::resegment(document, calibration, jobs, ctx);
 }
 
 /// Writes the draft under its new name, in the background.
-pub fn save(ctx: &egui::Context, session: &mut Session) {
-    let Some(rules) = session.calibration.rules.as_mut() else { return };
+pub fn save(
+    ctx: &egui::Context,
+    document: &Document,
+    calibration: &mut Calibration,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
+    let Some(rules) = calibration.rules.as_mut() else { return };
     let mut task = rules.draft.clone();
     rules.name.trim().clone_into(&mut task.name);
     if task.title == rules.before.title && task.name != rules.before.name {
         task.title = task.name.replace(['-', '_'], " ");
     }
     let Some(folder) = library::folder() else {
-        session.messages.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
+        messages.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
         return;
     };
     match library::save(folder, &task) {
         Ok(path) => {
             (rules.before, rules.draft) = (task.clone(), task.clone());
-            session.calibration.choice.task = Some(task.like);
-            session.calibration.choice.own = Some(Arc::new(task));
-            fitting::resegment(session, ctx);
-            session.jobs.start(ctx, SAVE, "", move |_| saved(path));
+            calibration.choice.task = Some(task.like);
+            calibration.choice.own = Some(Arc::new(task));
+            fitting::resegment(document, calibration, jobs, ctx);
+            jobs.start(ctx, SAVE, "", move |_| saved(path));
         }
-        Err(error) => session.messages.fail(sentence(&error.to_string())),
+        Err(error) => messages.fail(sentence(&error.to_string())),
     }
 }

@@ -2,17 +2,23 @@
 
 use super::files::{SAVE, saved};
 use super::guided::Guided;
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::session::{Session, change};
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;
 use crate::recorder::folder;
 use crate::text::file_name::name_of;
-use crate::ui::diagnosing;
-use crate::ui::experiments::{GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write};
-use crate::ui::message_list::Tone;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::background::jobs::no_change;
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::document::Document;
+use crate::ui::experiments::{
+    Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
+};
+use crate::ui::message_list::{Messages, Tone};
 use crate::ui::project_files;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;
 use haptics::world::MechanismPath;
@@ -20,25 +26,31 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Rehearses the experiment in the background.
-pub fn rehearse(session: &mut Session, ctx: &egui::Context) {
-    let Some(answer) = session.diagnosing.answer.clone() else { return };
-    (session.diagnosing.rehearsal, session.diagnosing.rehearsal_problem) = (None, None);
-    let (recordings, choice) = (session.document.recordings.clone(), session.calibration.choice.clone());
-    session.jobs.start(ctx, REHEARSE, "Rehearsing the experiment", move |ticket| {
+pub fn rehearse(
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+) {
+    let Some(answer) = diagnosing.answer.clone() else { return };
+    (diagnosing.rehearsal, diagnosing.rehearsal_problem) = (None, None);
+    let (recordings, choice) = (document.recordings.clone(), calibration.choice.clone());
+    jobs.start(ctx, REHEARSE, "Rehearsing the experiment", move |ticket| {
         let rehearsal = match rehearse_now(&recordings, &choice, &answer, ROUNDS, &|share| ticket.goes_on(share)) {
             Err(None) => return no_change(),
             Err(Some(problem)) => Err(problem),
             Ok(rehearsal) => Ok(rehearsal),
         };
-        change(|session, _| rehearsed(session, rehearsal))
+        change(|session, _| rehearsed(&mut session.diagnosing, rehearsal))
     });
 }
 
 /// A rehearsal has ended.
-pub(crate) fn rehearsed(session: &mut Session, rehearsal: Result<Rehearsal, String>) {
+pub(crate) fn rehearsed(diagnosing: &mut Diagnosing, rehearsal: Result<Rehearsal, String>) {
     match rehearsal {
-        Ok(rehearsal) => session.diagnosing.rehearsal = Some(Arc::new(rehearsal)),
-        Err(problem) => session.diagnosing.rehearsal_problem = Some(problem),
+        Ok(rehearsal) => diagnosing.rehearsal = Some(Arc::new(rehearsal)),
+        Err(problem) => diagnosing.rehearsal_problem = Some(problem),
     }
 }
 
@@ -52,18 +64,32 @@ pub fn guide(session: &mut Session, ctx: &egui::Context, stage: Stage) {
             Stage::AsIf(id) => guided_as_if(&recordings, &choice, &answer, &id),
             Stage::AsItStands => Guided::in_world(&standing, &answer.diagnosis),
         };
-        change(|session, _| take_guided(session, guided))
+        change(|session, _| {
+            take_guided(
+                &mut session.workspace,
+                &mut session.experiments,
+                &mut session.training.trainer,
+                &mut session.messages,
+                guided,
+            );
+        })
     });
 }
 
 /// The experiment is ready for a person.
-pub(crate) fn take_guided(session: &mut Session, guided: Result<Guided, String>) {
-    match guided.and_then(|guided| guided.take_over(&mut session.training.trainer).map(|()| guided)) {
+pub(crate) fn take_guided(
+    workspace: &mut Workspace,
+    experiments: &mut Experiments,
+    trainer: &mut Trainer,
+    messages: &mut Messages,
+    guided: Result<Guided, String>,
+) {
+    match guided.and_then(|guided| guided.take_over(trainer).map(|()| guided)) {
         Ok(guided) => {
-            session.experiments.guided = Some(Box::new(guided));
-            session.workspace = Workspace::Train;
+            experiments.guided = Some(Box::new(guided));
+            *workspace = Workspace::Train;
         }
-        Err(problem) => session.messages.fail(problem),
+        Err(problem) => messages.fail(problem),
     }
 }
 
@@ -80,12 +106,19 @@ pub fn add_experiment(session: &mut Session, ctx: &egui::Context, path: &Path) {
 }
 
 /// Writes a rehearsed recording into the folder of recordings and adds it, as what it is: a simulation.
-pub fn add_rehearsed(session: &mut Session, ctx: &egui::Context, outcome: usize) {
-    let rehearsal = session.diagnosing.rehearsal.clone();
+pub fn add_rehearsed(
+    diagnosing: &Diagnosing,
+    trainer: &Trainer,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    outcome: usize,
+) {
+    let rehearsal = diagnosing.rehearsal.clone();
     let round = rehearsal.as_ref().and_then(|r| r.outcomes.get(outcome)?.rounds.first());
     let Some(recording) = round.map(|r| r.recording.clone()) else { return };
-    let Some(folder) = folder_of_recordings(session) else { return };
-    session.jobs.start(ctx, SAVE, "", move |_| {
+    let Some(folder) = folder_of_recordings(trainer, messages) else { return };
+    jobs.start(ctx, SAVE, "", move |_| {
         let path = write(&folder, recording)?;
         change(move |session, ctx| performed(session, ctx, &path))
     });
@@ -93,8 +126,8 @@ pub fn add_rehearsed(session: &mut Session, ctx: &egui::Context, outcome: usize)
 
 /// Writes the plan of a mechanism's motion into the folder of recordings.
 pub fn save_motion_plan(session: &mut Session, ctx: &egui::Context, plan: &MotionPlan, coordinate: Coordinate) {
-    let Some(folder) = folder_of_recordings(session) else { return };
-    let text = match path_of_tool(session) {
+    let Some(folder) = folder_of_recordings(&session.training.trainer, &mut session.messages) else { return };
+    let text = match path_of_tool(&session.document, &session.calibration) {
         Some((path, is_planar)) => plan.places_to_csv(&path, is_planar),
         None => plan.to_csv(coordinate),
     };
@@ -106,19 +139,19 @@ pub fn save_motion_plan(session: &mut Session, ctx: &egui::Context, plan: &Motio
 }
 
 /// Path of the recorded tool, and true if it lies in a plane; `None` where the coordinate itself was recorded.
-pub fn path_of_tool(session: &Session) -> Option<(MechanismPath, bool)> {
-    let recording = &session.document.recordings.first()?.recording;
+pub fn path_of_tool(document: &Document, calibration: &Calibration) -> Option<(MechanismPath, bool)> {
+    let recording = &document.recordings.first()?.recording;
     if recording.channel("q_m").or(recording.channel("q_rad")).is_some() {
         return None;
     }
-    let path = session.calibration.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
+    let path = calibration.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
     Some((path, recording.channel("z_m").is_none()))
 }
 
-fn folder_of_recordings(session: &mut Session) -> Option<PathBuf> {
-    let folder = session.training.trainer.recordings_folder.clone().or_else(folder::of_user);
+fn folder_of_recordings(trainer: &Trainer, messages: &mut Messages) -> Option<PathBuf> {
+    let folder = trainer.recordings_folder.clone().or_else(folder::of_user);
     if folder.is_none() {
-        session.messages.fail(
+        messages.fail(
             "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
         );
     }
@@ -126,16 +159,9 @@ fn folder_of_recordings(session: &mut Session) -> Option<PathBuf> {
 }
 
 /// Names of the open recordings that were simulated.
-pub fn simulated(session: &Session) -> Vec<&str> {
-    let simulated = session.document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
+pub fn simulated(document: &Document) -> Vec<&str> {
+    let simulated = document.recordings.iter().filter(|p| simulated_object(&p.recording).is_some());
     simulated.map(|p| p.recording.name.as_str()).collect()
-}
-
-/// The recordings are there: asks again if they came for that.
-pub(crate) fn ask_again(session: &mut Session, ctx: &egui::Context) {
-    if std::mem::take(&mut session.experiments.asks_again) {
-        diagnosing::diagnose(session, ctx);
-    }
 }
 
 /// A recording of the experiment was written.

@@ -2,12 +2,12 @@
 
 use super::fit_choice::FitChoice;
 use super::guided::Guided;
-use super::jobs::JobKind;
 use super::prepare::Prepared;
 use crate::experiment::like::Like;
 use crate::experiment::rehearse::{Rehearsal, rehearse};
 use crate::experiment::timetable::Timetable;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, options, plain, reachable};
 use estimator::diagnose::{self, Progress, Suspect};
 use haptics::recording::Recording;

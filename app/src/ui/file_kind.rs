@@ -1,7 +1,7 @@
 //! Kinds of files, told apart by their content.
 
-use super::jobs::JobKind;
 use super::prepare::Prepared;
+use crate::ui::background::jobs::JobKind;
 use haptics::recording::Meta;
 use haptics::world::World;
 use std::io::Read as _;

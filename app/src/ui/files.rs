@@ -1,17 +1,13 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::jobs::{Answer, JobKind, Jobs, change, no_change};
-use super::session::Session;
+use super::session::{Session, change};
 use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
-use crate::ui::checked::On;
-use crate::ui::checking;
-use crate::ui::experimenting;
-use crate::ui::opening;
-use crate::ui::project_files;
-use crate::ui::showing_video;
-use crate::ui::trainees;
+use crate::ui::background::jobs::{Answer, JobKind, Jobs, no_change};
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::document::Document;
 use crate::write_whole::write_whole;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -31,108 +27,17 @@ pub const SAVE: JobKind = JobKind::new("save").writes();
 /// A file dialog, and the use of the path that it brings.
 #[derive(Clone, Copy)]
 pub struct Dialog {
-    title: &'static str,
+    pub(crate) title: &'static str,
     /// Name and endings of the files on offer.
-    filters: &'static [(&'static str, &'static [&'static str])],
+    pub(crate) filters: &'static [(&'static str, &'static [&'static str])],
     /// The proposed name of a file to write; nothing where one is opened.
-    saves_as: Option<&'static str>,
-    then: fn(&mut Session, &egui::Context, PathBuf),
+    pub(crate) saves_as: Option<&'static str>,
+    /// Use of the chosen path.
+    pub(crate) then: fn(&mut Session, &egui::Context, PathBuf),
 }
 
 /// Logs first; the content tells what a file is.
-const LOGS_AND_ALL: &[(&str, &[&str])] = &[("Logs", LOGS), ("All files", &["*"])];
-
-/// A log to calibrate from.
-pub const OPEN_LOG: Dialog = Dialog {
-    title: "Open a log",
-    filters: LOGS_AND_ALL,
-    saves_as: None,
-    then: |session, ctx, path| opening::open_any(session, ctx, &path),
-};
-/// A world to train in.
-pub const OPEN_WORLD: Dialog = Dialog {
-    title: "Open a world",
-    filters: &[("Worlds", &["json"])],
-    saves_as: None,
-    then: |session, ctx, path| opening::open_world(session, ctx, &path),
-};
-/// A project.
-pub const OPEN_PROJECT: Dialog = Dialog {
-    title: "Open a project",
-    filters: &[("Projects", &["touchstone.json", "json"])],
-    saves_as: None,
-    then: |session, ctx, path| project_files::open_project(session, ctx, &path),
-};
-/// Another recording of the same object.
-pub const ADD_LOG: Dialog = Dialog {
-    title: "Add a recording of the same object",
-    filters: LOGS_AND_ALL,
-    saves_as: None,
-    then: |session, ctx, path| project_files::add_log(session, ctx, &path),
-};
-/// A recording of the experiment that a diagnosis asks for.
-pub const ADD_EXPERIMENT: Dialog = Dialog {
-    title: "Add a recording of the experiment",
-    filters: LOGS_AND_ALL,
-    saves_as: None,
-    then: |session, ctx, path| experimenting::add_experiment(session, ctx, &path),
-};
-/// A video of the shown recording.
-pub const OPEN_VIDEO: Dialog = Dialog {
-    title: "Open a video of the hand",
-    filters: &[("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"]), ("All files", &["*"])],
-    saves_as: None,
-    then: |session, _, path| showing_video::open_video(session, &path),
-};
-/// The place of the project.
-pub const SAVE_PROJECT: Dialog = Dialog {
-    title: "Save the project",
-    filters: &[],
-    saves_as: Some("project.touchstone.json"),
-    then: project_files::save_project_as,
-};
-/// The place of the report.
-pub const SAVE_REPORT: Dialog = Dialog {
-    title: "Write a report",
-    filters: &[],
-    saves_as: Some("report.html"),
-    then: |session, ctx, path| save_report(ctx, session, path),
-};
-/// The place of the recording.
-pub const SAVE_LOG: Dialog = Dialog {
-    title: "Save the recording",
-    filters: &[],
-    saves_as: Some("recording.csv"),
-    then: |session, ctx, path| save_log(ctx, session, &path.display().to_string()),
-};
-/// The place of the calibrated world.
-pub const SAVE_WORLD: Dialog = Dialog {
-    title: "Save the world",
-    filters: &[],
-    saves_as: Some("world.json"),
-    then: |session, ctx, path| save_world(ctx, session, &path.display().to_string()),
-};
-/// The place of the calibrated world in the format of another simulator.
-pub const EXPORT_WORLD: Dialog = Dialog {
-    title: "Export the world: .xml for MuJoCo, .urdf or .sdf",
-    filters: &[("MuJoCo", &["xml", "mjcf"]), ("URDF", &["urdf"]), ("SDF", &["sdf", "world"])],
-    saves_as: Some("world.xml"),
-    then: |session, ctx, path| export_world(ctx, session, path),
-};
-/// The place of the extended world.
-pub const SAVE_EXTENDED: Dialog = Dialog {
-    title: "Save the extended world",
-    filters: &[],
-    saves_as: Some("extended-world.json"),
-    then: |session, ctx, path| save_extended(ctx, session, path),
-};
-/// The place of a table of attempts.
-pub const SAVE_HISTORY: Dialog = Dialog {
-    title: "Save the attempts",
-    filters: &[],
-    saves_as: Some("attempts.csv"),
-    then: |session, _, path| trainees::export_history(session, path),
-};
+pub(crate) const LOGS_AND_ALL: &[(&str, &[&str])] = &[("Logs", LOGS), ("All files", &["*"])];
 
 /// Opens a file dialog on a thread of its own.
 pub fn ask(ctx: &egui::Context, jobs: &mut Jobs<Session>, dialog: Dialog) {
@@ -156,12 +61,17 @@ pub fn answered(dialog: Dialog, path: PathBuf) -> Answer<Session> {
     change(move |session, ctx| (dialog.then)(session, ctx, path))
 }
 
-/// Asks for recordings to check a diagnosis on, on a thread of its own.
-pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>) {
+/// Asks for several logs on a thread of its own.
+pub fn ask_for_logs(
+    ctx: &egui::Context,
+    jobs: &mut Jobs<Session>,
+    title: &'static str,
+    then: impl FnOnce(Vec<PathBuf>) -> Answer<Session> + Send + 'static,
+) {
     jobs.start(ctx, DIALOG, "", move |_| {
         let asked = Instant::now();
-        match dialog_of("Recordings of the same object", LOGS_AND_ALL).pick_files() {
-            Some(paths) => change(|session, ctx| checking::check(session, ctx, On::Files(paths))),
+        match dialog_of(title, LOGS_AND_ALL).pick_files() {
+            Some(paths) => then(paths),
             None if asked.elapsed() < THERE => Err(NO_DIALOG.to_owned()),
             None => no_change(),
         }
@@ -175,15 +85,21 @@ fn dialog_of(title: &str, filters: &[(&str, &[&str])]) -> rfd::FileDialog {
 
 /// The answer of a job that has written a file.
 pub fn saved(path: PathBuf) -> Answer<Session> {
-    change(move |session: &mut Session, _| session.messages.say_saved(&path))
+    change(move |session, _| session.messages.say_saved(&path))
 }
 
 /// Writes the shown recording and its sidecar.
-pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(prepared) = session.document.prepared().cloned() else { return };
+pub fn save_log(
+    ctx: &egui::Context,
+    document: &Document,
+    calibration: &Calibration,
+    jobs: &mut Jobs<Session>,
+    field: &str,
+) {
+    let Some(prepared) = document.prepared().cloned() else { return };
     let path = PathBuf::from(field.trim());
-    let (choice, index) = (session.calibration.choice.clone(), session.document.current);
-    session.jobs.start(ctx, SAVE, "", move |_| {
+    let (choice, index) = (calibration.choice.clone(), document.current);
+    jobs.start(ctx, SAVE, "", move |_| {
         // A task of the user's goes along, and what was stated and set by hand.
         let recording = &choice.given_to(index, &prepared.recording);
         estimator::log::write_csv(recording, &path)
@@ -194,9 +110,15 @@ pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
 }
 
 /// Writes a report of the open files, as they are fitted.
-pub fn save_report(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let (sources, choice) = (session.document.sources.clone(), session.calibration.choice.clone());
-    session.jobs.start(ctx, SAVE, "Writing the report", move |_| {
+pub fn save_report(
+    ctx: &egui::Context,
+    document: &Document,
+    calibration: &Calibration,
+    jobs: &mut Jobs<Session>,
+    path: PathBuf,
+) {
+    let (sources, choice) = (document.sources.clone(), calibration.choice.clone());
+    jobs.start(ctx, SAVE, "Writing the report", move |_| {
         let given = |index, recording| choice.given_to(index, &recording);
         of_files::of_files(&sources_of(&sources), &path, given)?;
         saved(path)
@@ -208,28 +130,28 @@ fn sources_of(sources: &[super::project::Source]) -> Vec<(PathBuf, Option<PathBu
 }
 
 /// Writes the world with what a diagnosis found in it.
-pub fn save_extended(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let Some(worlds) = session.diagnosing.worlds.clone() else { return };
-    session.jobs.start(ctx, SAVE, "", move |_| {
+pub fn save_extended(ctx: &egui::Context, diagnosing: &Diagnosing, jobs: &mut Jobs<Session>, path: PathBuf) {
+    let Some(worlds) = diagnosing.worlds.clone() else { return };
+    jobs.start(ctx, SAVE, "", move |_| {
         write_whole(&path, &(worlds.after.to_json() + "\n"))?;
         saved(path)
     });
 }
 
 /// Writes the calibrated world.
-pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
+pub fn save_world(ctx: &egui::Context, calibration: &Calibration, jobs: &mut Jobs<Session>, field: &str) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
     let path = PathBuf::from(field.trim());
-    session.jobs.start(ctx, SAVE, "", move |_| {
+    jobs.start(ctx, SAVE, "", move |_| {
         write_whole(&path, &analysis.world.to_json())?;
         saved(path)
     });
 }
 
 /// Writes the calibrated world for another simulator; what has no counterpart there stands at the top of the file.
-pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
-    session.jobs.start(ctx, SAVE, "", move |_| {
+pub fn export_world(ctx: &egui::Context, calibration: &Calibration, jobs: &mut Jobs<Session>, path: PathBuf) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
+    jobs.start(ctx, SAVE, "", move |_| {
         let Some(format) = Format::of_ending(&path) else {
             return Err(format!("The ending names no format; use .xml (MuJoCo), .urdf or .sdf: {}", path.display()));
         };

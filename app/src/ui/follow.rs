@@ -1,9 +1,13 @@
 //! Following what happens between frames: the answers of jobs, and the features that watch something.
 
 use super::session::Session;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
+use crate::ui::experiments::Experiments;
 use crate::ui::fitting;
 use crate::ui::guiding;
 use crate::ui::lessons::practising;
+use crate::ui::message_list::Messages;
 use crate::ui::opening;
 use crate::ui::project_files;
 use crate::ui::trainees;
@@ -15,35 +19,52 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     for answer in session.jobs.poll() {
         match answer {
             Ok(change) => change(session, ctx),
-            Err(problem) => job_failed(session, problem),
+            Err(problem) => job_failed(
+                &session.document,
+                &mut session.calibration,
+                &mut session.experiments,
+                &mut session.messages,
+                problem,
+            ),
         }
     }
-    super::recorder::follow(ctx, session);
-    guiding::follow_experiment(session, ctx);
-    trainees::follow_history(session);
-    practising::follow_lesson(session, ctx);
+    super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
+    guiding::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
+    trainees::follow_history(&mut session.training.learning, &mut session.messages);
+    practising::follow_lesson(&mut session.training, &mut session.jobs, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-    undoing::note_changes(session, now_s, held);
-    fitting::follow_choice(session, ctx);
-    trying_values::follow_what_if(session, ctx);
+    undoing::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
+    fitting::follow_choice(&session.document, &mut session.calibration, &mut session.jobs, ctx);
+    trying_values::follow_what_if(&session.document, &session.calibration, &mut session.jobs, ctx);
 }
 
 /// A job has failed.
-fn job_failed(session: &mut Session, problem: String) {
-    session.experiments.asks_again = false;
-    if !session.document.recordings.is_empty() && session.calibration.analysis.is_none() {
-        session.calibration.fit_problem = Some(problem.clone());
+fn job_failed(
+    document: &Document,
+    calibration: &mut Calibration,
+    experiments: &mut Experiments,
+    messages: &mut Messages,
+    problem: String,
+) {
+    experiments.asks_again = false;
+    if !document.recordings.is_empty() && calibration.analysis.is_none() {
+        calibration.fit_problem = Some(problem.clone());
     }
-    session.messages.fail(problem);
+    messages.fail(problem);
 }
 
 /// Reads the same log again.
 pub fn reload(session: &mut Session, ctx: &egui::Context) {
     match session.document.path.clone() {
         Some(_) if session.document.sources.len() > 1 => {
-            project_files::restore(session, ctx, project_files::project_of(session));
+            project_files::restore(
+                &mut session.messages,
+                &mut session.jobs,
+                ctx,
+                project_files::project_of(session.workspace, &session.document, &session.calibration, &session.plots),
+            );
         }
-        Some(path) => opening::open(session, ctx, &path),
+        Some(path) => opening::open(&mut session.document, &mut session.jobs, ctx, &path),
         None => session.messages.fail("There is no file to reload: open a log first."),
     }
 }

@@ -1,34 +1,42 @@
 //! Doing an experiment in Train: beginning, watching, ending it.
 
-use super::jobs::change;
 use super::recorder::RECORD;
-use super::session::Session;
+use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
 use crate::ui::experimenting;
+use crate::ui::experiments::Experiments;
 use crate::ui::guided::Phase;
+use crate::ui::message_list::Messages;
+use crate::ui::trainer::live::Trainer;
 use std::path::PathBuf;
 
 /// Begins the experiment that is ready, or begins it again.
-pub fn begin_experiment(session: &mut Session) {
-    let Some(guided) = &mut session.experiments.guided else { return };
-    if let Err(problem) = guided.begin(&mut session.training.trainer) {
+pub fn begin_experiment(experiments: &mut Experiments, trainer: &mut Trainer, messages: &mut Messages) {
+    let Some(guided) = &mut experiments.guided else { return };
+    if let Err(problem) = guided.begin(trainer) {
         guided.phase = Phase::Ready;
-        session.messages.fail(problem);
+        messages.fail(problem);
     }
 }
 
 /// Leaves the experiment; a recording that is not over is removed.
-pub fn leave_experiment(session: &mut Session) {
-    let guided = session.experiments.guided.take();
+pub fn leave_experiment(experiments: &mut Experiments, trainer: &mut Trainer) {
+    let guided = experiments.guided.take();
     if guided.is_some_and(|g| matches!(g.phase, Phase::Going(_))) {
-        session.training.trainer.discard_recording();
+        trainer.discard_recording();
     }
 }
 
 /// Once a frame: ends the experiment when its time is over.
-pub(crate) fn follow_experiment(session: &mut Session, ctx: &egui::Context) {
-    let Some(guided) = &mut session.experiments.guided else { return };
-    let Some(time_s) = guided.time_s(&session.training.trainer) else { return };
-    if !session.training.trainer.is_recording() {
+pub(crate) fn follow_experiment(
+    experiments: &mut Experiments,
+    trainer: &mut Trainer,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+) {
+    let Some(guided) = &mut experiments.guided else { return };
+    let Some(time_s) = guided.time_s(trainer) else { return };
+    if !trainer.is_recording() {
         // Another world was chosen, or the disk is full: what there is of it was saved and said.
         guided.phase = Phase::Ready;
         return;
@@ -37,42 +45,42 @@ pub(crate) fn follow_experiment(session: &mut Session, ctx: &egui::Context) {
         return;
     }
     guided.phase = Phase::Ending;
-    let Some(stopping) = session.training.trainer.stop_recording() else { return };
-    session.jobs.start(ctx, RECORD, "", move |_| {
+    let Some(stopping) = trainer.stop_recording() else { return };
+    jobs.start(ctx, RECORD, "", move |_| {
         let path = stopping.wait().map(|finished| finished.path);
-        change(|session, _| followed(session, path))
+        change(|session, _| followed(&mut session.experiments, &mut session.messages, path))
     });
 }
 
 /// The recording of the experiment has its end.
-pub(crate) fn followed(session: &mut Session, path: Result<PathBuf, String>) {
+pub(crate) fn followed(experiments: &mut Experiments, messages: &mut Messages, path: Result<PathBuf, String>) {
     let phase = match path {
         Ok(path) => Phase::Recorded(path),
         Err(problem) => {
-            session.messages.fail(problem);
+            messages.fail(problem);
             Phase::Ready
         }
     };
-    if let Some(guided) = &mut session.experiments.guided {
+    if let Some(guided) = &mut experiments.guided {
         guided.phase = phase;
     }
 }
 
 /// A hand on the mouse that follows the rings, for pictures and tests: the trainer's clock must be a manual one.
-pub fn follow_rings(session: &mut Session, seconds: f64) {
+pub fn follow_rings(experiments: &Experiments, trainer: &mut Trainer, seconds: f64) {
     const FRAME_S: f64 = 1.0 / 60.0;
     let mut left_s = seconds;
     while left_s > 0.0 {
-        let Some(guided) = &session.experiments.guided else { return };
-        let Some((step, _, goal)) = guided.now(&session.training.trainer) else { return };
-        let (holds, firmer_n) = (step.holds, goal.pinch_n - session.training.trainer.pinch.strength_n());
-        let pinch = &mut session.training.trainer.pinch;
+        let Some(guided) = &experiments.guided else { return };
+        let Some((step, _, goal)) = guided.now(trainer) else { return };
+        let (holds, firmer_n) = (step.holds, goal.pinch_n - trainer.pinch.strength_n());
+        let pinch = &mut trainer.pinch;
         pinch.move_to(goal.center_m);
         pinch.button = holds;
         if holds && firmer_n > 0.0 {
             pinch.strengthen(firmer_n);
         }
-        session.training.trainer.advance(FRAME_S);
+        trainer.advance(FRAME_S);
         left_s -= FRAME_S;
     }
 }

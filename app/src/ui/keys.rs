@@ -1,6 +1,6 @@
 //! Keys that are held or have two strengths: moving the time cursor. Everything else is an action.
 
-use super::session::Session;
+use crate::ui::document::Document;
 use crate::ui::workspace::Workspace;
 use egui::{Key, Ui};
 
@@ -8,18 +8,18 @@ use egui::{Key, Ui};
 const SCRUB_SHARE: f64 = 0.01;
 
 /// Handles keys that are not meant for a text field.
-pub fn handle(ui: &Ui, session: &mut Session) {
+pub fn handle(ui: &Ui, workspace: Workspace, document: &mut Document) {
     let ctx = ui.ctx().clone();
-    if ctx.egui_wants_keyboard_input() || !matches!(session.workspace, Workspace::Calibrate | Workspace::Diagnose) {
+    if ctx.egui_wants_keyboard_input() || !matches!(workspace, Workspace::Calibrate | Workspace::Diagnose) {
         return;
     }
     let pressed = |key| ctx.input(|i| i.key_pressed(key));
     let coarse = if ctx.input(|i| i.modifiers.shift) { 10.0 } else { 1.0 };
-    let step = SCRUB_SHARE * coarse * (session.document.view_s.1 - session.document.view_s.0);
+    let step = SCRUB_SHARE * coarse * (document.view_s.1 - document.view_s.0);
     if pressed(Key::ArrowLeft) {
-        session.document.seek(session.document.cursor_s - step);
+        document.seek(document.cursor_s - step);
     }
     if pressed(Key::ArrowRight) {
-        session.document.seek(session.document.cursor_s + step);
+        document.seek(document.cursor_s + step);
     }
 }

@@ -1,24 +1,25 @@
 //! Messages above the workspace.
 
-use super::icons::{self, Icon};
-use super::session::Session;
-use super::theme::{self, palette};
-use crate::ui::message_list::Tone;
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::palette;
+use crate::ui::message_list::{Messages, Tone};
 use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 
 /// Draws the messages. Errors stay above the workspace until they are dismissed. Other messages float over its lower
 /// edge and vanish by themselves, so that nothing moves under the pointer.
-pub fn banners(ui: &mut Ui, session: &mut Session) {
+pub fn banners(ui: &mut Ui, messages: &mut Messages) {
     let now = Instant::now();
-    session.messages.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
-    if let Some(first) = session.messages.banners.iter().filter_map(|banner| banner.until).min() {
+    messages.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
+    if let Some(first) = messages.banners.iter().filter_map(|banner| banner.until).min() {
         ui.ctx().request_repaint_after(first - now);
     }
     let mut closed = None;
-    let wrong = session.messages.banners.iter().filter(|b| b.tone == Tone::Error).count();
+    let wrong = messages.banners.iter().filter(|b| b.tone == Tone::Error).count();
     strip(ui, "messages", wrong, |ui| {
-        for (index, banner) in session.messages.banners.iter().enumerate().filter(|(_, b)| b.tone == Tone::Error) {
+        for (index, banner) in messages.banners.iter().enumerate().filter(|(_, b)| b.tone == Tone::Error) {
             message(ui, banner.tone, &banner.text, |ui| {
                 if ui.small_button("Dismiss").clicked() {
                     closed = Some(index);
@@ -26,15 +27,15 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
             });
         }
     });
-    toasts(ui, session);
+    toasts(ui, messages);
     if let Some(index) = closed {
-        session.messages.banners.remove(index);
+        messages.banners.remove(index);
     }
 }
 
 /// The newest at the bottom.
-fn toasts(ui: &Ui, session: &Session) {
-    let done: Vec<_> = session.messages.banners.iter().filter(|b| b.tone == Tone::Done).collect();
+fn toasts(ui: &Ui, messages: &Messages) {
+    let done: Vec<_> = messages.banners.iter().filter(|b| b.tone == Tone::Done).collect();
     if done.is_empty() {
         return;
     }
@@ -96,6 +97,7 @@ pub fn message(ui: &mut Ui, tone: Tone, text: &str, buttons: impl FnOnce(&mut Ui
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::session::Session;
     use egui_kittest::Harness;
     use std::time::Duration;
 
@@ -105,7 +107,8 @@ mod tests {
         session.messages.fail("It did not work.");
         session.messages.say(Tone::Done, "Saved.".to_owned());
         let builder = Harness::builder().with_context_setup(theme::install);
-        let mut harness = builder.build_ui_state(|ui, session: &mut Session| banners(ui, session), session);
+        let mut harness =
+            builder.build_ui_state(|ui, session: &mut Session| banners(ui, &mut session.messages), session);
         harness.run_steps(2);
         assert_eq!(harness.state().messages.banners.len(), 2);
         let done = harness.state_mut().messages.banners.iter_mut().find(|b| b.tone == Tone::Done).expect("said");

@@ -1,15 +1,18 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{Answer, Ticket, change, no_change};
 use super::prepare::Prepared;
 use super::project::Source;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
+use crate::ui::document::Document;
 use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
 use crate::ui::fitting;
+use crate::ui::mapping::look::look;
 use crate::ui::mapping::state;
-use crate::ui::mapping_actions::look;
+use crate::ui::message_list::Messages;
+use crate::ui::panel_id::PanelId;
 use crate::ui::project_files;
 use crate::ui::showing_video;
 use crate::ui::workspace::Workspace;
@@ -29,9 +32,9 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
         Err(LogError::Cancelled { .. }) => no_change(),
         Err(error) if state::mends(&error) => {
             let why = sentence(&error.to_string());
-            change(move |session: &mut Session, ctx| {
+            change(move |session, ctx| {
                 session.document.path_field = path.display().to_string();
-                map_columns_of(session, ctx, &path, Some(why));
+                map_columns_of(&session.document, &mut session.jobs, ctx, &path, Some(why));
             })
         }
         Err(error) => Err(sentence(&error.to_string())),
@@ -39,25 +42,31 @@ pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answe
 }
 
 /// Reads a log in the background, with the sidecar named by hand if there is one, then fits it.
-pub fn open(session: &mut Session, ctx: &egui::Context, path: &Path) {
-    let (path, meta) = (path.to_path_buf(), session.document.meta.clone());
-    session.document.path_field = path.display().to_string();
+pub fn open(document: &mut Document, jobs: &mut Jobs<Session>, ctx: &egui::Context, path: &Path) {
+    let (path, meta) = (path.to_path_buf(), document.meta.clone());
+    document.path_field = path.display().to_string();
     let title = format!("Reading {}", name_of(&path));
-    session.jobs.start(ctx, LOAD, title, move |ticket| read(path, meta.as_deref(), ticket));
+    jobs.start(ctx, LOAD, title, move |ticket| read(path, meta.as_deref(), ticket));
 }
 
 /// Reads a log with this sidecar; without one, with the sidecar beside it.
-pub fn open_with(session: &mut Session, ctx: &egui::Context, path: &Path, sidecar: Option<PathBuf>) {
-    session.document.meta = sidecar;
-    open(session, ctx, path);
+pub fn open_with(
+    document: &mut Document,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    path: &Path,
+    sidecar: Option<PathBuf>,
+) {
+    document.meta = sidecar;
+    open(document, jobs, ctx, path);
 }
 
 /// Reads a world in the background: a file, or a built-in one by its name.
-pub fn open_world(session: &mut Session, ctx: &egui::Context, path: &Path) {
+pub fn open_world(jobs: &mut Jobs<Session>, ctx: &egui::Context, path: &Path) {
     let path = path.to_path_buf();
-    session.jobs.start(ctx, LOAD, "", move |_| {
+    jobs.start(ctx, LOAD, "", move |_| {
         let world = crate::worlds::find(&path).map_err(|error| sentence(&format!("{error:#}")))?;
-        change(|session: &mut Session, _| session.training.opened_world = Some(Box::new(world)))
+        change(|session, _| session.training.opened_world = Some(Box::new(world)))
     });
 }
 
@@ -78,22 +87,29 @@ fn loaded(session: &mut Session, ctx: &egui::Context, path: PathBuf, recordings:
     }
     session.document.path = Some(path);
     match mute {
-        Some(why) => map_columns(session, ctx, Some(why)),
-        None => fitting::refit(session, ctx),
+        Some(why) => map_columns(&session.document, &mut session.jobs, ctx, Some(why)),
+        None => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
     }
 }
 
 /// Opens whatever a file is.
-pub fn open_any(session: &mut Session, ctx: &egui::Context, path: &Path) {
+pub fn open_any(
+    document: &mut Document,
+    wanted_pane: &mut Option<PanelId>,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    path: &Path,
+) {
     match kind_of(path) {
-        FileKind::World => open_world(session, ctx, path),
-        FileKind::Sidecar => open_sidecar(session, ctx, path),
-        FileKind::Project => project_files::open_project(session, ctx, path),
-        FileKind::Video => showing_video::open_video(session, path),
+        FileKind::World => open_world(jobs, ctx, path),
+        FileKind::Sidecar => open_sidecar(document, messages, jobs, ctx, path),
+        FileKind::Project => project_files::open_project(document, messages, jobs, ctx, path),
+        FileKind::Video => showing_video::open_video(document, wanted_pane, messages, jobs, path),
         FileKind::Log => {
-            let again = session.document.path.as_deref() == Some(path);
-            let sidecar = session.document.meta.clone().filter(|_| again);
-            open_with(session, ctx, path, sidecar);
+            let again = document.path.as_deref() == Some(path);
+            let sidecar = document.meta.clone().filter(|_| again);
+            open_with(document, jobs, ctx, path, sidecar);
         }
     }
 }
@@ -106,49 +122,93 @@ pub fn open_dropped(session: &mut Session, ctx: &egui::Context, paths: &[PathBuf
     }
     match paths {
         [] => {}
-        [one] => open_any(session, ctx, one),
+        [one] => open_any(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            one,
+        ),
         [a, b] => match (kind_of(a), kind_of(b)) {
-            (FileKind::Log, FileKind::Sidecar) => open_with(session, ctx, a, Some(b.clone())),
-            (FileKind::Sidecar, FileKind::Log) => open_with(session, ctx, b, Some(a.clone())),
-            _ => open_first(session, ctx, paths),
+            (FileKind::Log, FileKind::Sidecar) => {
+                open_with(&mut session.document, &mut session.jobs, ctx, a, Some(b.clone()));
+            }
+            (FileKind::Sidecar, FileKind::Log) => {
+                open_with(&mut session.document, &mut session.jobs, ctx, b, Some(a.clone()));
+            }
+            _ => open_first(
+                &mut session.document,
+                &mut session.wanted_pane,
+                &mut session.messages,
+                &mut session.jobs,
+                ctx,
+                paths,
+            ),
         },
-        _ => open_first(session, ctx, paths),
+        _ => open_first(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            paths,
+        ),
     }
 }
 
-fn open_first(session: &mut Session, ctx: &egui::Context, paths: &[PathBuf]) {
+fn open_first(
+    document: &mut Document,
+    wanted_pane: &mut Option<PanelId>,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    paths: &[PathBuf],
+) {
     if let Some(first) = paths.first() {
-        session.messages.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
-        open_any(session, ctx, first);
+        messages.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
+        open_any(document, wanted_pane, messages, jobs, ctx, first);
     }
 }
 
 /// A sidecar: for the log that it stands beside, else for the one that is open.
-fn open_sidecar(session: &mut Session, ctx: &egui::Context, sidecar: &Path) {
+fn open_sidecar(
+    document: &mut Document,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    sidecar: &Path,
+) {
     let name = name_of(sidecar);
     let stem = name.strip_suffix(".meta.json");
     let beside = stem.and_then(|stem| {
         let at = |ending: &&str| sidecar.with_file_name(format!("{stem}.{ending}"));
         LOG_ENDINGS.iter().map(at).find(|log| log.is_file())
     });
-    match beside.or_else(|| session.document.path.clone()) {
-        Some(log) => open_with(session, ctx, &log, Some(sidecar.to_path_buf())),
-        None => session.messages.fail(format!(
+    match beside.or_else(|| document.path.clone()) {
+        Some(log) => open_with(document, jobs, ctx, &log, Some(sidecar.to_path_buf())),
+        None => messages.fail(format!(
             "{name} is a sidecar and no log stands beside it; open its log first, or drop both together."
         )),
     }
 }
 
 /// Opens the mapping dialog for the log that is open, or that the path field names.
-pub fn map_columns(session: &mut Session, ctx: &egui::Context, why: Option<String>) {
-    let named = PathBuf::from(session.document.path_field.trim());
-    let path = session.document.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
-    map_columns_of(session, ctx, &path, why);
+pub fn map_columns(document: &Document, jobs: &mut Jobs<Session>, ctx: &egui::Context, why: Option<String>) {
+    let named = PathBuf::from(document.path_field.trim());
+    let path = document.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
+    map_columns_of(document, jobs, ctx, &path, why);
 }
 
 /// Opens the mapping dialog for a log.
-pub fn map_columns_of(session: &mut Session, ctx: &egui::Context, path: &Path, why: Option<String>) {
-    look(ctx, &mut session.jobs, path, session.document.meta.clone(), why);
+pub fn map_columns_of(
+    document: &Document,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    path: &Path,
+    why: Option<String>,
+) {
+    look(ctx, jobs, path, document.meta.clone(), why);
 }
 
 #[cfg(test)]
@@ -184,7 +244,14 @@ mod tests {
         let sidecar = folder.path().join("a.meta.json");
         std::fs::write(&sidecar, r#"{"rate_hz": 100}"#).expect("writable");
         let mut session = Session::new();
-        open_any(&mut session, &egui::Context::default(), &sidecar);
+        open_any(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            &egui::Context::default(),
+            &sidecar,
+        );
         assert!(session.messages.banners[0].text.contains("open its log first"), "{:?}", session.messages.banners);
     }
 }

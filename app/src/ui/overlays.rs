@@ -1,10 +1,13 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::jobs::{JobKind, change};
-use super::plots::choices::Overlaid;
+use super::plots::choices::{Overlaid, PlotChoices};
 use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
-use super::session::Session;
+use super::session::{Session, change};
+use crate::ui::background::jobs::{JobKind, Jobs};
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
+use crate::ui::message_list::Messages;
 use estimator::segment::SystemState;
 use estimator::signal::lag::lag;
 use std::sync::Arc;
@@ -18,8 +21,8 @@ const TELLING: [&str; 5] = ["Task signals", "Force", "Torque", "Position", "Angl
 const LEAST_LIKENESS: f64 = 0.3;
 
 /// Lays a recording over the shown one, or takes it away.
-pub fn toggle_overlay(session: &mut Session, recording: usize) {
-    let overlaid = &mut session.plots.overlaid;
+pub fn toggle_overlay(plots: &mut PlotChoices, recording: usize) {
+    let overlaid = &mut plots.overlaid;
     match overlaid.iter().position(|o| o.recording == recording) {
         Some(place) => drop(overlaid.remove(place)),
         None => overlaid.push(Overlaid { recording, offset_s: 0.0 }),
@@ -27,64 +30,71 @@ pub fn toggle_overlay(session: &mut Session, recording: usize) {
 }
 
 /// Shifts a recording that lies over the shown one.
-pub fn shift_overlay(session: &mut Session, recording: usize, offset_s: f64) {
-    if let Some(overlaid) = session.plots.overlaid.iter_mut().find(|o| o.recording == recording) {
+pub fn shift_overlay(plots: &mut PlotChoices, recording: usize, offset_s: f64) {
+    if let Some(overlaid) = plots.overlaid.iter_mut().find(|o| o.recording == recording) {
         overlaid.offset_s = offset_s;
     }
 }
 
 /// Shifts a recording to where it is most like the shown one, in the background.
-pub fn align(session: &mut Session, ctx: &egui::Context, recording: usize) {
-    let (Some(fixed), Some(moved)) =
-        (session.document.prepared().cloned(), session.document.recordings.get(recording).cloned())
-    else {
+pub fn align(document: &Document, jobs: &mut Jobs<Session>, ctx: &egui::Context, recording: usize) {
+    let (Some(fixed), Some(moved)) = (document.prepared().cloned(), document.recordings.get(recording).cloned()) else {
         return;
     };
-    session.jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
+    jobs.start(ctx, ALIGN, "Laying recordings over each other", move |_| {
         let found = most_alike(&fixed, &moved);
-        change(move |session, _| aligned(session, recording, found))
+        change(move |session, _| aligned(&mut session.plots, &mut session.messages, recording, found))
     });
 }
 
 /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
-pub fn find_likeliest(session: &mut Session, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
-    let pair = (session.document.current, recording);
-    let (Some(fixed), Some(moved)) =
-        (session.document.prepared().cloned(), session.document.recordings.get(recording).cloned())
-    else {
+pub fn find_likeliest(
+    document: &Document,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    likeliest: &Likeliest,
+    recording: usize,
+) {
+    let pair = (document.current, recording);
+    let (Some(fixed), Some(moved)) = (document.prepared().cloned(), document.recordings.get(recording).cloned()) else {
         return;
     };
-    if likeliest.contains_key(&pair) || session.jobs.is_running(ALIGN) {
+    if likeliest.contains_key(&pair) || jobs.is_running(ALIGN) {
         return;
     }
     // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
-    session.jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
+    jobs.start(ctx, ALIGN, "Comparing recordings", move |_| {
         let found = most_alike(&fixed, &moved).ok();
-        change(move |session: &mut Session, _| {
+        change(move |session, _| {
             session.plots.likeliest.insert(pair, found);
         })
     });
 }
 
-pub(crate) fn aligned(session: &mut Session, recording: usize, found: Result<f64, String>) {
+pub(crate) fn aligned(plots: &mut PlotChoices, messages: &mut Messages, recording: usize, found: Result<f64, String>) {
     match found {
-        Ok(offset_s) => shift_overlay(session, recording, offset_s),
-        Err(problem) => session.messages.fail(problem),
+        Ok(offset_s) => shift_overlay(plots, recording, offset_s),
+        Err(problem) => messages.fail(problem),
     }
 }
 
 /// Time of the first contact in a recording, s; `None` where its states are not known.
-pub fn first_contact_s(session: &Session, recording: usize) -> Option<f64> {
-    let states = &session.calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
+pub fn first_contact_s(calibration: &Calibration, recording: usize) -> Option<f64> {
+    let states = &calibration.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
     let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
     states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
 }
 
 /// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
-pub fn align_by_contact(session: &mut Session, recording: usize) -> bool {
-    let both = first_contact_s(session, session.document.current).zip(first_contact_s(session, recording));
+pub fn align_by_contact(
+    document: &Document,
+    calibration: &Calibration,
+    plots: &mut PlotChoices,
+    recording: usize,
+) -> bool {
+    let both = first_contact_s(calibration, document.current).zip(first_contact_s(calibration, recording));
     if let Some((here, there)) = both {
-        shift_overlay(session, recording, here - there);
+        shift_overlay(plots, recording, here - there);
     }
     both.is_some()
 }

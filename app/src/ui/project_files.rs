@@ -1,31 +1,49 @@
 //! Opening and saving projects.
 
-use super::files::{SAVE, SAVE_PROJECT, ask, saved};
-use super::jobs::{Answer, Ticket, change, no_change};
+use super::files::{Dialog, SAVE, ask, saved};
 use super::prepare::Prepared;
-use super::session::Session;
+use super::session::{Session, change};
 use crate::text::sentence::sentence;
-use crate::ui::experimenting;
+use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosing;
+use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::fitting;
+use crate::ui::message_list::Messages;
 use crate::ui::opening;
+use crate::ui::plots::choices::PlotChoices;
 use crate::ui::project::{Project, Source, VERSION};
+use crate::ui::workspace::Workspace;
 use estimator::log::Watch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The place of the project.
+pub const SAVE_PROJECT: Dialog = Dialog {
+    title: "Save the project",
+    filters: &[],
+    saves_as: Some("project.touchstone.json"),
+    then: save_project_as,
+};
+
 /// Project that holds all that a session has open.
-pub fn project_of(session: &Session) -> Project {
+pub fn project_of(
+    workspace: Workspace,
+    document: &Document,
+    calibration: &Calibration,
+    plots: &PlotChoices,
+) -> Project {
     Project {
         touchstone_project: VERSION,
-        recordings: session.document.sources.clone(),
-        videos: session.document.videos.sources.clone(),
-        choice: session.calibration.choice.clone(),
-        current: session.document.current,
-        cursor_s: session.document.cursor_s,
-        view_s: session.document.view_s,
-        workspace: session.workspace,
-        plots: session.plots.kept(),
+        recordings: document.sources.clone(),
+        videos: document.videos.sources.clone(),
+        choice: calibration.choice.clone(),
+        current: document.current,
+        cursor_s: document.cursor_s,
+        view_s: document.view_s,
+        workspace,
+        plots: plots.kept(),
     }
 }
 
@@ -44,28 +62,34 @@ fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
     }
     change(|session, ctx| {
         opened_project(session, ctx, project, recordings);
-        experimenting::ask_again(session, ctx);
+        diagnosing::ask_again(session, ctx);
     })
 }
 
 /// Opens a project file in the background.
-pub fn open_project(session: &mut Session, ctx: &egui::Context, path: &Path) {
+pub fn open_project(
+    document: &mut Document,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    ctx: &egui::Context,
+    path: &Path,
+) {
     match Project::read(path) {
         Ok(project) => {
-            session.document.opening_project = Some(path.to_path_buf());
-            restore(session, ctx, project);
+            document.opening_project = Some(path.to_path_buf());
+            restore(messages, jobs, ctx, project);
         }
-        Err(problem) => session.messages.fail(problem),
+        Err(problem) => messages.fail(problem),
     }
 }
 
 /// Opens what a project names, in the background.
-pub fn restore(session: &mut Session, ctx: &egui::Context, project: Project) {
+pub fn restore(messages: &mut Messages, jobs: &mut Jobs<Session>, ctx: &egui::Context, project: Project) {
     if project.recordings.is_empty() {
-        session.messages.fail("This project names no recording.");
+        messages.fail("This project names no recording.");
         return;
     }
-    session.jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
+    jobs.start(ctx, LOAD, "Opening the project", move |ticket| read_all(project, ticket));
 }
 
 /// A project's files were read.
@@ -94,19 +118,26 @@ pub(crate) fn opened_project(
     if let Some(path) = session.document.project_path.clone() {
         session.document.recent.note(&path);
     }
-    fitting::refit(session, ctx);
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx);
 }
 
 /// Adds the recordings of another file to those that are open, and fits all of them together.
 pub fn add_log(session: &mut Session, ctx: &egui::Context, path: &Path) {
     if session.document.sources.is_empty() {
-        opening::open_any(session, ctx, path);
+        opening::open_any(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            path,
+        );
         return;
     }
-    let mut project = project_of(session);
+    let mut project = project_of(session.workspace, &session.document, &session.calibration, &session.plots);
     project.recordings.push(Source { log: path.to_path_buf(), meta: None });
     session.document.opening_project.clone_from(&session.document.project_path);
-    restore(session, ctx, project);
+    restore(&mut session.messages, &mut session.jobs, ctx, project);
 }
 
 /// Writes the project where it was opened, or asks where.
@@ -119,7 +150,7 @@ pub fn save_project(session: &mut Session, ctx: &egui::Context) {
 
 /// Writes the project there.
 pub fn save_project_as(session: &mut Session, ctx: &egui::Context, path: PathBuf) {
-    let project = project_of(session);
+    let project = project_of(session.workspace, &session.document, &session.calibration, &session.plots);
     session.document.project_path = Some(path.clone());
     session.document.recent.note(&path);
     session.jobs.start(ctx, SAVE, "", move |_| {

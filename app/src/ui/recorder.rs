@@ -2,17 +2,20 @@
 //! program left behind.
 
 use super::files::saved;
-use super::icons::Icon;
-use super::jobs::{JobKind, change};
-use super::session::Session;
-use super::widgets::{primary_button, recording_light, remark};
-use super::{messages, theme};
+use super::session::{Session, change};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::background::jobs::{JobKind, Jobs};
+use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
-use crate::ui::message_list::Tone;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{primary_button, recording_light, remark};
+use crate::ui::message_list::{Messages, Tone};
+use crate::ui::messages;
 use crate::ui::opening;
+use crate::ui::trainer::live::Trainer;
 use egui::Ui;
 use std::path::Path;
 
@@ -22,11 +25,17 @@ pub const RECORD: JobKind = JobKind::new("record").writes();
 const RECOVER: JobKind = JobKind::new("recover");
 
 /// The card beside the trainer's picture.
-pub fn controls(ui: &mut Ui, session: &mut Session) {
-    let Some(status) = session.training.trainer.recording_status() else {
+pub fn controls(
+    ui: &mut Ui,
+    document: &mut Document,
+    trainer: &mut Trainer,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
+    let Some(status) = trainer.recording_status() else {
         ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
-        if primary_button(ui, true, (Icon::Record, "Record")).on_hover_text(whereto(session)).clicked() {
-            start(session);
+        if primary_button(ui, true, (Icon::Record, "Record")).on_hover_text(whereto(trainer)).clicked() {
+            start(trainer, messages);
         }
         return;
     };
@@ -45,16 +54,16 @@ pub fn controls(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         if primary_button(ui, true, (Icon::Stop, "Stop and calibrate")).clicked() {
             let ctx = ui.ctx().clone();
-            stop_and_open(&ctx, session);
+            stop_and_open(&ctx, document, trainer, messages, jobs);
         }
         if ui.button((Icon::Remove, "Discard")).on_hover_text("Ends the recording and removes its file").clicked() {
-            session.training.trainer.discard_recording();
+            trainer.discard_recording();
         }
     });
 }
 
-fn whereto(session: &Session) -> String {
-    let folder = session.training.trainer.recordings_folder.clone().or_else(folder::of_user);
+fn whereto(trainer: &Trainer) -> String {
+    let folder = trainer.recordings_folder.clone().or_else(folder::of_user);
     folder.map_or_else(|| "R".to_owned(), |folder| format!("R\nGoes to {}", folder.display()))
 }
 
@@ -77,49 +86,51 @@ fn megabytes(bytes: u64) -> String {
 }
 
 /// Begins to record; what is in the way is said.
-pub fn start(session: &mut Session) {
-    if let Err(problem) = session.training.trainer.start_recording() {
-        session.messages.fail(problem);
+pub fn start(trainer: &mut Trainer, messages: &mut Messages) {
+    if let Err(problem) = trainer.start_recording() {
+        messages.fail(problem);
     }
 }
 
 /// Ends the recording and opens it as a log, all in the background.
-pub fn stop_and_open(ctx: &egui::Context, session: &mut Session) {
-    let status = session.training.trainer.recording_status().unwrap_or_default();
-    let Some(stopping) = session.training.trainer.stop_recording() else { return };
+pub fn stop_and_open(
+    ctx: &egui::Context,
+    document: &mut Document,
+    trainer: &mut Trainer,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
+    let status = trainer.recording_status().unwrap_or_default();
+    let Some(stopping) = trainer.stop_recording() else { return };
     if status.files > 1 {
-        session
-            .messages
-            .say(Tone::Done, format!("The recording has {} files; the newest one is opened.", status.files));
+        messages.say(Tone::Done, format!("The recording has {} files; the newest one is opened.", status.files));
     }
     // A sidecar that was named for another log is not for this one.
-    session.document.meta = None;
-    session.document.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
-    session
-        .jobs
-        .start(ctx, LOAD, "Reading the recording", move |ticket| opening::read(stopping.wait()?.path, None, ticket));
+    document.meta = None;
+    document.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
+    jobs.start(ctx, LOAD, "Reading the recording", move |ticket| opening::read(stopping.wait()?.path, None, ticket));
 }
 
 /// Recordings that ended without being asked to are told; call once a frame.
-pub fn follow(ctx: &egui::Context, session: &mut Session) {
-    while let Some(stopping) = session.training.trainer.take_ended_recording() {
-        session.jobs.start(ctx, RECORD, "", move |_| saved(stopping.wait()?.path));
+pub fn follow(ctx: &egui::Context, trainer: &mut Trainer, jobs: &mut Jobs<Session>) {
+    while let Some(stopping) = trainer.take_ended_recording() {
+        jobs.start(ctx, RECORD, "", move |_| saved(stopping.wait()?.path));
     }
 }
 
 /// Looks for recordings that a killed program left behind, in the background.
-pub fn look_for_unfinished(ctx: &egui::Context, session: &mut Session) {
-    let Some(folder) = session.training.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
-    session.jobs.start(ctx, RECOVER, "", move |_| {
+pub fn look_for_unfinished(ctx: &egui::Context, trainer: &Trainer, jobs: &mut Jobs<Session>) {
+    let Some(folder) = trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
+    jobs.start(ctx, RECOVER, "", move |_| {
         let unfinished = folder::unfinished(&folder);
-        change(|session: &mut Session, _| session.document.unfinished = unfinished)
+        change(|session, _| session.document.unfinished = unfinished)
     });
 }
 
 /// Above the workspace: a recording that has no end, with the way to open it.
-pub fn unfinished(ui: &mut Ui, session: &mut Session) {
-    let count = session.document.unfinished.len();
-    let path = session.document.unfinished.first().cloned().unwrap_or_default();
+pub fn unfinished(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>) {
+    let count = document.unfinished.len();
+    let path = document.unfinished.first().cloned().unwrap_or_default();
     let (mut open, mut dismiss) = (false, false);
     messages::strip(ui, "unfinished recordings", count.min(1), |ui| {
         messages::message(ui, Tone::Error, &said(&path, count), |ui| {
@@ -128,12 +139,12 @@ pub fn unfinished(ui: &mut Ui, session: &mut Session) {
         });
     });
     if open || dismiss {
-        session.document.unfinished.remove(0);
+        document.unfinished.remove(0);
         folder::forget(&path);
     }
     if open {
         let ctx = ui.ctx().clone();
-        opening::open_with(session, &ctx, &path, None);
+        opening::open_with(document, jobs, &ctx, &path, None);
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::film::Film;
 use super::fit_choice::FitChoice;
-use super::jobs::JobKind;
 use super::prepare::Prepared;
 use super::replayed::Replayed;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::plots::levels::Levels;
 use estimator::online::information::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};

@@ -50,6 +50,6 @@ pub fn offer(ui: &mut Ui, app: &mut App) {
     if let Some(state) = app.left_behind.take().filter(|_| again) {
         let ctx = ui.ctx().clone();
         app.session.document.opening_project = state.project_path;
-        project_files::restore(&mut app.session, &ctx, state.project);
+        project_files::restore(&mut app.session.messages, &mut app.session.jobs, &ctx, state.project);
     }
 }

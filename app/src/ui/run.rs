@@ -3,11 +3,11 @@
 use crate::tasks::Chosen;
 use crate::ui::app;
 use crate::ui::first_picture;
+use crate::ui::kit::theme;
 use crate::ui::opening;
 use crate::ui::recorder;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::ui::trainees;
 use crate::ui::workspace;
 use anyhow::Context as _;
@@ -93,20 +93,25 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     let mut session = Session::new();
     session.document.meta.clone_from(&options.meta);
     session.document.task_hint.clone_from(&options.task);
-    recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
+    recorder::look_for_unfinished(&cc.egui_ctx, &session.training.trainer, &mut session.jobs);
     if let Some(world) = &options.world {
-        opening::open_world(&mut session, &cc.egui_ctx, world);
+        opening::open_world(&mut session.jobs, &cc.egui_ctx, world);
     }
     if let Some(log) = &options.log {
         session.workspace = workspace::Workspace::Calibrate;
-        opening::open(&mut session, &cc.egui_ctx, log);
+        opening::open(&mut session.document, &mut session.jobs, &cc.egui_ctx, log);
     }
     let mut app = app::App::new(session);
     if let Some(folder) = eframe::storage_dir("touchstone") {
         let fresh = options.log.is_none() && options.world.is_none();
         app.keep(&folder, fresh);
         if let Some(database) = crate::history::attempt::of_user() {
-            trainees::open_history(&mut app.session, &cc.egui_ctx, database);
+            trainees::open_history(
+                &mut app.session.training.learning,
+                &mut app.session.messages,
+                &cc.egui_ctx,
+                database,
+            );
         }
     }
     app

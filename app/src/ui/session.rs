@@ -5,9 +5,8 @@ use crate::ui::experiments::Experiments;
 use crate::ui::fit_choice::FitChoice;
 use crate::ui::scene::layers::SceneLayers;
 
-use super::jobs::{JobKind, Jobs};
 use super::prepare::Prepared;
-use super::replayed::Replayed;
+use crate::ui::background::jobs::{Answer, JobKind, Jobs};
 use crate::ui::file_kind::LOAD;
 use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::PlotChoices;
@@ -21,7 +20,6 @@ use super::undo::Undo;
 use super::workspace::Workspace;
 use crate::tasks::Chosen;
 use crate::ui::videos::Videos;
-use estimator::segment::Segmentation;
 use std::sync::Arc;
 
 /// Everything that is shared between panels.
@@ -60,21 +58,6 @@ impl Session {
         Self { document, ..Self::default() }
     }
 
-    /// Its segmentation.
-    pub fn segmentation(&self) -> Option<&Segmentation> {
-        self.calibration.analysis.as_ref()?.segmentations.get(self.document.current)?.as_ref()
-    }
-
-    /// Its replay through the world with what the diagnosis found.
-    pub fn extended_replay(&self) -> Option<&Replayed> {
-        self.diagnosing.replays.get(self.document.current)?.as_ref()
-    }
-
-    /// Its replay through the fitted world.
-    pub fn replay(&self) -> Option<&Replayed> {
-        self.calibration.replays.get(self.document.current)?.as_ref()
-    }
-
     /// Shows prepared recordings from the start.
     pub fn show(&mut self, recordings: Vec<Arc<Prepared>>) {
         let document = &mut self.document;
@@ -101,4 +84,9 @@ impl Session {
             change(self, ctx);
         }
     }
+}
+
+/// A change of the session as the answer of a job.
+pub fn change(change: impl FnOnce(&mut Session, &egui::Context) + Send + 'static) -> Answer<Session> {
+    crate::ui::background::jobs::change(change)
 }

@@ -9,7 +9,10 @@ use super::prepare::Prepared;
 use super::session::Session;
 use super::workspace::Workspace;
 use crate::history::keeper::History;
+use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::document::Document;
 use crate::ui::editing_rules;
 use crate::ui::experimenting;
 use crate::ui::experiments;
@@ -18,7 +21,7 @@ use crate::ui::lessons::pointer;
 use crate::ui::lessons::practising;
 use crate::ui::mapping::state;
 use crate::ui::mapping::state::Mapping;
-use crate::ui::plots::choices::LogView;
+use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
 use crate::ui::refits;
 use crate::ui::showing_video;
@@ -85,7 +88,7 @@ fn fitted_then(
 /// One signal against another: the lifting force over the height, where both are known.
 pub fn xy(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        against_each_other(session);
+        against_each_other(&session.document, &mut session.plots);
         Ok(())
     })
 }
@@ -93,9 +96,9 @@ pub fn xy(input: &PictureInput) -> anyhow::Result<Session> {
 /// The residuals of the model and of the extended model.
 pub fn left_over(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        diagnose(session);
+        diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
         session.workspace = Workspace::Calibrate;
-        what_is_left(session);
+        what_is_left(&mut session.document, &session.calibration, &mut session.plots);
         Ok(())
     })
 }
@@ -103,7 +106,7 @@ pub fn left_over(input: &PictureInput) -> anyhow::Result<Session> {
 /// A diagnosis with its extended model.
 pub fn diagnosed(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        diagnose(session);
+        diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
         Ok(())
     })
 }
@@ -111,7 +114,7 @@ pub fn diagnosed(input: &PictureInput) -> anyhow::Result<Session> {
 /// The atlas of a diagnosis.
 pub fn atlas(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        diagnose(session);
+        diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
         session.diagnosing.shows_atlas = true;
         Ok(())
     })
@@ -130,7 +133,7 @@ pub fn guided(input: &PictureInput) -> anyhow::Result<Session> {
 /// The sensitivity of the force to the parameters.
 pub fn sensitivity(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        wanting_sensitivity::look_at_sensitivity(session);
+        wanting_sensitivity::look_at_sensitivity(&session.document, &mut session.calibration);
         Ok(())
     })
 }
@@ -138,7 +141,7 @@ pub fn sensitivity(input: &PictureInput) -> anyhow::Result<Session> {
 /// Another value of a parameter, tried.
 pub fn parameter(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        try_another_value(session);
+        try_another_value(&session.document, &mut session.calibration);
         Ok(())
     })
 }
@@ -146,7 +149,7 @@ pub fn parameter(input: &PictureInput) -> anyhow::Result<Session> {
 /// A video of the hand.
 pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, input| {
-        with_video(session, input);
+        with_video(&mut session.document, &mut session.wanted_pane, input);
         Ok(())
     })
 }
@@ -154,7 +157,7 @@ pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
 /// The open rules of the task.
 pub fn rules(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.calibration.rules = editing_rules::open(session);
+        session.calibration.rules = editing_rules::open(&session.document, &session.calibration, &mut session.messages);
         Ok(())
     })
 }
@@ -193,17 +196,17 @@ pub fn lessons(_: &PictureInput) -> anyhow::Result<Session> {
 /// A lesson that is practised with the mouse, half done.
 pub fn practice(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    practising::practise_lesson(&mut session);
-    pointer::follow_expert(&mut session, PRACTICE_S);
+    practising::practise_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, PRACTICE_S);
     Ok(session)
 }
 
 /// The result of an attempt at a lesson.
 pub fn debrief(_: &PictureInput) -> anyhow::Result<Session> {
     let mut session = in_lesson()?;
-    practising::test_lesson(&mut session);
-    pointer::follow_expert(&mut session, 60.0);
-    practising::end_lesson_now(&mut session, None);
+    practising::test_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, 60.0);
+    practising::end_lesson_now(&mut session.training, &mut session.messages, None);
     Ok(session)
 }
 
@@ -223,7 +226,11 @@ fn with_lessons() -> anyhow::Result<Session> {
 fn in_lesson() -> anyhow::Result<Session> {
     let mut session = with_lessons()?;
     let lesson = session.training.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
-    practising::open_lesson_now(&mut session, &lesson.context("the lesson of two blocks is missing")?);
+    practising::open_lesson_now(
+        &mut session.training,
+        &mut session.messages,
+        &lesson.context("the lesson of two blocks is missing")?,
+    );
     Ok(session)
 }
 
@@ -277,74 +284,74 @@ fn unknown_barrel() -> Result<World, String> {
 }
 
 /// The video that is named, or that belongs to the log.
-fn with_video(session: &mut Session, input: &PictureInput) {
-    session.wanted_pane = Some(PanelId::VIDEO);
+fn with_video(document: &mut Document, wanted_pane: &mut Option<PanelId>, input: &PictureInput) {
+    *wanted_pane = Some(PanelId::VIDEO);
     match (&input.video, &input.log) {
-        (Some(source), _) => session.document.videos.sources.push(source.clone()),
-        (None, Some(log)) => session.document.videos.of_log(log, &session.document.recordings),
+        (Some(source), _) => document.videos.sources.push(source.clone()),
+        (None, Some(log)) => document.videos.of_log(log, &document.recordings),
         (None, None) => {}
     }
-    showing_video::read_video_now(session);
+    showing_video::read_video_now(document);
 }
 
 /// The lifting force over the height, where both are known; else what the window begins with.
-fn against_each_other(session: &mut Session) {
-    session.plots.view = LogView::Xy;
-    let Some(prepared) = session.document.prepared().cloned() else { return };
+fn against_each_other(document: &Document, plots: &mut PlotChoices) {
+    plots.view = LogView::Xy;
+    let Some(prepared) = document.prepared().cloned() else { return };
     let axis = |name: &str| {
         let group = prepared.groups.iter().find(|g| g.traces.iter().any(|t| t.name == name))?;
         Some(XyAxis { group: group.key(), name: name.to_owned(), transform: Transform::None })
     };
-    (session.plots.xy.x, session.plots.xy.y) = (axis("y1_m"), axis("net_y_N"));
+    (plots.xy.x, plots.xy.y) = (axis("y1_m"), axis("net_y_N"));
 }
 
 /// One plot of the residual for each quantity that the model predicts.
-fn what_is_left(session: &mut Session) {
-    let Some(prepared) = session.document.prepared().cloned() else { return };
+fn what_is_left(document: &mut Document, calibration: &Calibration, plots: &mut PlotChoices) {
+    let Some(prepared) = document.prepared().cloned() else { return };
     for group in &prepared.groups {
-        let comparable = can_compare(trying_values::shown_curves(session), group);
-        let choice = session.plots.of(group);
+        let comparable = can_compare(trying_values::shown_curves(document, calibration), group);
+        let choice = plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
     // A tenth of the way, in which single curves can be told apart.
-    let (first, last) = session.document.view_s;
-    session.document.view_s = (first + 0.36 * (last - first), first + 0.46 * (last - first));
+    let (first, last) = document.view_s;
+    document.view_s = (first + 0.36 * (last - first), first + 0.46 * (last - first));
 }
 
 /// The first parameter with a good value a fifth larger.
-fn try_another_value(session: &mut Session) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
+fn try_another_value(document: &Document, calibration: &mut Calibration) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
     let known = |p: &&estimator::estimate::Parameter| p.identified && p.value.is_some_and(|v| v != 0.0);
     let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
     let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
     let name = parameter.full_name();
-    trying_values::try_value(session, &name, parameter.value.map(|v| 1.2 * v));
-    session.calibration.selected_parameter = Some(name);
-    trying_values::try_now(session);
+    trying_values::try_value(calibration, &name, parameter.value.map(|v| 1.2 * v));
+    calibration.selected_parameter = Some(name);
+    trying_values::try_now(document, calibration);
 }
 
 /// Diagnoses and extends the model at once, without the window's jobs.
-fn diagnose(session: &mut Session) {
-    session.workspace = Workspace::Diagnose;
-    let from = session.diagnosing.from;
-    match diagnosis_state::ask(&session.document.recordings, &session.calibration.choice, from, Progress::default()) {
+fn diagnose(workspace: &mut Workspace, document: &Document, calibration: &Calibration, diagnosing: &mut Diagnosing) {
+    *workspace = Workspace::Diagnose;
+    let from = diagnosing.from;
+    match diagnosis_state::ask(&document.recordings, &calibration.choice, from, Progress::default()) {
         Ok(answer) => {
-            match diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer) {
+            match diagnosis_state::extend(&document.recordings, &calibration.choice, from, &answer) {
                 Ok(worlds) => {
-                    session.diagnosing.replays = refits::replay_forces(&worlds.after, &session.document.recordings);
-                    session.diagnosing.worlds = Some(Arc::new(worlds));
+                    diagnosing.replays = refits::replay_forces(&worlds.after, &document.recordings);
+                    diagnosing.worlds = Some(Arc::new(worlds));
                 }
-                Err(problem) => session.diagnosing.worlds_problem = Some(problem),
+                Err(problem) => diagnosing.worlds_problem = Some(problem),
             }
-            session.diagnosing.answer = Some(Arc::new(answer));
+            diagnosing.answer = Some(Arc::new(answer));
         }
-        Err(problem) => session.diagnosing.problem = Some(problem),
+        Err(problem) => diagnosing.problem = Some(problem),
     }
 }
 
 /// The experiment that is asked for, rehearsed.
 fn rehearse(session: &mut Session) -> anyhow::Result<()> {
-    diagnose(session);
+    diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
     let made = experiments::rehearse_now(
         &session.document.recordings,
@@ -360,16 +367,22 @@ fn rehearse(session: &mut Session) -> anyhow::Result<()> {
 
 /// The experiment that is asked for, half done by hand.
 fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
-    diagnose(session);
+    diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
     let guided = experiments::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
-    experimenting::take_guided(session, guided);
+    experimenting::take_guided(
+        &mut session.workspace,
+        &mut session.experiments,
+        &mut session.training.trainer,
+        &mut session.messages,
+        guided,
+    );
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    guiding::begin_experiment(session);
-    guiding::follow_rings(session, 8.2);
+    guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 8.2);
     session.experiments.scratch = Some(folder);
     Ok(())
 }

@@ -1,9 +1,10 @@
 //! Shown around: what is where, in a few cards, the first time and whenever it is asked for.
 
 use super::app::App;
-use super::icons::Icon;
-use super::theme::{self, palette, space};
-use super::widgets::primary_button;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::primary_button;
 use crate::ui::tour_progress::{STEPS, WIDTH, beside, shade};
 use egui::{Align2, Area, Frame, Key, Order, RichText, Stroke, Ui};
 

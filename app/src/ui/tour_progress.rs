@@ -1,7 +1,8 @@
 //! The progress of the tour.
 
 use super::panel_id::PanelId;
-use super::theme::{self, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
 use crate::ui::workspace::Workspace;
 use egui::{Color32, Order, Rect, Stroke, StrokeKind, vec2};
 

@@ -1,11 +1,10 @@
 //! The history of the person who practises, in the window.
 
-use super::session::Session;
 use crate::history::attempt::Attempt;
 use crate::history::keeper::{Answer, History};
 use crate::history::store::Query;
-use crate::ui::learning::{AHEAD, Learned, POINTS};
-use crate::ui::message_list::Tone;
+use crate::ui::learning::{AHEAD, Learned, Learning, POINTS};
+use crate::ui::message_list::{Messages, Tone};
 use estimator::training::progress::{self, LearningCurve, Try};
 use std::path::PathBuf;
 
@@ -29,20 +28,20 @@ impl Learned {
 }
 
 /// Keeps attempts in this database from now on, and shows what is there.
-pub fn open_history(session: &mut Session, ctx: &egui::Context, database: PathBuf) {
+pub fn open_history(learning: &mut Learning, messages: &mut Messages, ctx: &egui::Context, database: PathBuf) {
     let ctx = ctx.clone();
     match History::start(database, move || ctx.request_repaint()) {
         Ok(history) => {
             history.read_trainees();
-            session.training.learning.keep_in(history);
+            learning.keep_in(history);
         }
-        Err(problem) => session.messages.fail(problem),
+        Err(problem) => messages.fail(problem),
     }
 }
 
 /// Keeps an attempt; false where nothing is kept.
-pub fn keep_attempt(session: &mut Session, attempt: Attempt) -> bool {
-    let history = session.training.learning.history.as_ref();
+pub fn keep_attempt(learning: &Learning, attempt: Attempt) -> bool {
+    let history = learning.history.as_ref();
     history.is_some_and(|history| {
         history.add(attempt);
         true
@@ -50,38 +49,37 @@ pub fn keep_attempt(session: &mut Session, attempt: Attempt) -> bool {
 }
 
 /// Writes the attempts of who practises as a table.
-pub fn export_history(session: &mut Session, to: PathBuf) {
-    let query = Query { trainee: session.training.learning.trainee.clone(), lesson: None };
-    if let Some(history) = &session.training.learning.history {
+pub fn export_history(learning: &Learning, to: PathBuf) {
+    let query = Query { trainee: learning.trainee.clone(), lesson: None };
+    if let Some(history) = &learning.history {
         history.export(to, query);
     }
 }
 
 /// Takes what the history has answered.
-pub(crate) fn follow_history(session: &mut Session) {
-    let Some(history) = &session.training.learning.history else { return };
+pub(crate) fn follow_history(learning: &mut Learning, messages: &mut Messages) {
+    let Some(history) = &learning.history else { return };
     for answer in history.poll() {
         match answer {
-            Answer::Kept(attempt) => attempt_kept(session, *attempt),
-            Answer::Trainees(names) => trainees_known(session, names),
-            Answer::Attempts(query, attempts) if query.trainee == session.training.learning.trainee => {
-                session.training.learning.take(attempts);
+            Answer::Kept(attempt) => attempt_kept(learning, *attempt),
+            Answer::Trainees(names) => trainees_known(learning, names),
+            Answer::Attempts(query, attempts) if query.trainee == learning.trainee => {
+                learning.take(attempts);
             }
             Answer::Attempts(..) => {}
-            Answer::Exported(path) => session.messages.say_saved(&path),
+            Answer::Exported(path) => messages.say_saved(&path),
             Answer::TakenIn(1) => {
-                session.messages.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
+                messages.say(Tone::Done, "An attempt of earlier was taken into the history.".to_owned());
             }
             Answer::TakenIn(count) => {
-                session.messages.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
+                messages.say(Tone::Done, format!("{count} attempts of earlier were taken into the history."));
             }
-            Answer::Problem(problem) => session.messages.fail(problem),
+            Answer::Problem(problem) => messages.fail(problem),
         }
     }
 }
 
-fn attempt_kept(session: &mut Session, attempt: Attempt) {
-    let learning = &mut session.training.learning;
+fn attempt_kept(learning: &mut Learning, attempt: Attempt) {
     if !learning.trainees.contains(&attempt.trainee) {
         learning.trainees.push(attempt.trainee.clone());
     }
@@ -95,10 +93,10 @@ fn attempt_kept(session: &mut Session, attempt: Attempt) {
 }
 
 /// Takes over the known trainees. A single one is chosen at once.
-fn trainees_known(session: &mut Session, names: Vec<String>) {
-    session.training.learning.trainees = names;
-    if let ([only], None) = (session.training.learning.trainees.as_slice(), &session.training.learning.trainee) {
+fn trainees_known(learning: &mut Learning, names: Vec<String>) {
+    learning.trainees = names;
+    if let ([only], None) = (learning.trainees.as_slice(), &learning.trainee) {
         let only = only.clone();
-        session.training.learning.choose(&only);
+        learning.choose(&only);
     }
 }

@@ -1,58 +1,52 @@
 //! Replaying with tried values, in the background or at once.
 
-use super::jobs::change;
 use super::replayed::Replayed;
-use super::session::Session;
+use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::refits::replay_forces;
 use crate::ui::what_if::{WHAT_IF, world};
 
 /// Tries a value, or with `None` no longer.
-pub fn try_value(session: &mut Session, name: &str, value: Option<f64>) {
+pub fn try_value(calibration: &mut Calibration, name: &str, value: Option<f64>) {
     match value {
-        Some(value) => drop(session.calibration.what_if.values.insert(name.to_owned(), value)),
-        None => drop(session.calibration.what_if.values.remove(name)),
+        Some(value) => drop(calibration.what_if.values.insert(name.to_owned(), value)),
+        None => drop(calibration.what_if.values.remove(name)),
     }
-    if !session.calibration.what_if.is_on() {
-        session.calibration.what_if.forget();
+    if !calibration.what_if.is_on() {
+        calibration.what_if.forget();
     }
 }
 
 /// Replays with the newest tried values when the last replay has come; call once a frame.
-pub fn follow_what_if(session: &mut Session, ctx: &egui::Context) {
-    if !session.calibration.what_if.is_behind() || session.jobs.is_running(WHAT_IF) {
+pub fn follow_what_if(document: &Document, calibration: &Calibration, jobs: &mut Jobs<Session>, ctx: &egui::Context) {
+    if !calibration.what_if.is_behind() || jobs.is_running(WHAT_IF) {
         return;
     }
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
-    let (recordings, choice, values) = (
-        session.document.recordings.clone(),
-        session.calibration.choice.clone(),
-        session.calibration.what_if.values.clone(),
-    );
-    session.jobs.start(ctx, WHAT_IF, "", move |_| {
+    let Some(analysis) = calibration.analysis.clone() else { return };
+    let (recordings, choice, values) =
+        (document.recordings.clone(), calibration.choice.clone(), calibration.what_if.values.clone());
+    jobs.start(ctx, WHAT_IF, "", move |_| {
         let world = world(&analysis, &choice.given_to_all(&recordings), &values);
         let replays = replay_forces(&world, &recordings);
-        change(|session: &mut Session, _| session.calibration.what_if.take(values, replays))
+        change(|session, _| session.calibration.what_if.take(values, replays))
     });
 }
 
 /// Replays with the tried values now, for a picture.
-pub(crate) fn try_now(session: &mut Session) {
-    let Some(analysis) = &session.calibration.analysis else { return };
-    let values = session.calibration.what_if.values.clone();
-    let world = world(analysis, &session.calibration.choice.given_to_all(&session.document.recordings), &values);
-    let replays = replay_forces(&world, &session.document.recordings);
-    session.calibration.what_if.take(values, replays);
+pub(crate) fn try_now(document: &Document, calibration: &mut Calibration) {
+    let Some(analysis) = &calibration.analysis else { return };
+    let values = calibration.what_if.values.clone();
+    let world = world(analysis, &calibration.choice.given_to_all(&document.recordings), &values);
+    let replays = replay_forces(&world, &document.recordings);
+    calibration.what_if.take(values, replays);
 }
 
 /// The replay that plots show: of the tried values while something is tried.
-pub fn shown_curves(session: &Session) -> Option<&Replayed> {
-    let tried = session
-        .calibration
-        .what_if
-        .replays
-        .get(session.document.current)
-        .filter(|_| session.calibration.what_if.is_on());
-    tried.and_then(Option::as_ref).or_else(|| session.replay())
+pub fn shown_curves<'a>(document: &Document, calibration: &'a Calibration) -> Option<&'a Replayed> {
+    let tried = calibration.what_if.replays.get(document.current).filter(|_| calibration.what_if.is_on());
+    tried.and_then(Option::as_ref).or_else(|| calibration.replay(document.current))
 }
 
 #[cfg(test)]
@@ -61,13 +55,13 @@ mod tests {
     use crate::ui::tests::{CRANK, STACK, session};
     use crate::ui::what_if::residual_rms;
 
-    fn tried(session: &Session, name: &str, factor: f64) -> f64 {
-        let analysis = session.calibration.analysis.as_ref().expect("fitted");
+    fn tried(document: &Document, calibration: &Calibration, name: &str, factor: f64) -> f64 {
+        let analysis = calibration.analysis.as_ref().expect("fitted");
         let (object, plain) = name.split_once('.').expect("object.name");
         let value = analysis.fit.value(object, plain).expect("identified");
-        let recordings = session.calibration.choice.given_to_all(&session.document.recordings);
+        let recordings = calibration.choice.given_to_all(&document.recordings);
         let world = world(analysis, &recordings, &[(name.to_owned(), factor * value)].into());
-        residual_rms(&replay_forces(&world, &session.document.recordings)).expect("predicts")
+        residual_rms(&replay_forces(&world, &document.recordings)).expect("predicts")
     }
 
     #[test]
@@ -75,9 +69,9 @@ mod tests {
         for (recording, name) in [(STACK.clone(), "block-1.weight_N"), (CRANK.clone(), "crank.weight_N")] {
             let session = session(recording);
             let before = residual_rms(&session.calibration.replays).expect("predicts");
-            let same = tried(&session, name, 1.0);
+            let same = tried(&session.document, &session.calibration, name, 1.0);
             assert!((same - before).abs() < 1e-9 + 1e-6 * before, "{name}: {same} and {before}");
-            let heavy = tried(&session, name, 1.6);
+            let heavy = tried(&session.document, &session.calibration, name, 1.6);
             assert!(heavy > 1.1 * before, "{name}: {heavy} against {before}");
         }
     }

@@ -1,7 +1,7 @@
 //! The videos of the open recordings.
 
-use super::jobs::JobKind;
 use super::prepare::Prepared;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::file_kind::LOAD;
 use crate::video::reading::{Video, VideoSource};
 use egui::{ColorImage, TextureHandle};

@@ -1,34 +1,37 @@
 //! Computing the sensitivity, in the background or at once.
 
-use super::jobs::{change, no_change};
-use super::session::Session;
+use super::session::{Session, change};
+use crate::ui::background::jobs::Jobs;
+use crate::ui::background::jobs::no_change;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::refits::FIT;
 use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Computes it now, for a picture.
-pub(crate) fn look_at_sensitivity(session: &mut Session) {
-    let Some(analysis) = &session.calibration.analysis else { return };
-    let given = session.calibration.choice.given_to_all(&session.document.recordings);
-    let found = sensitivity(analysis, &session.document.recordings, &given, |_| {}, &AtomicBool::new(false));
-    session.calibration.sensitivity = found.map(Arc::new);
+pub(crate) fn look_at_sensitivity(document: &Document, calibration: &mut Calibration) {
+    let Some(analysis) = &calibration.analysis else { return };
+    let given = calibration.choice.given_to_all(&document.recordings);
+    let found = sensitivity(analysis, &document.recordings, &given, |_| {}, &AtomicBool::new(false));
+    calibration.sensitivity = found.map(Arc::new);
 }
 
 /// Computes it in the background, unless it is there.
-pub fn want_sensitivity(session: &mut Session, ctx: &egui::Context) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
-    let there = session.calibration.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
+pub fn want_sensitivity(document: &Document, calibration: &Calibration, jobs: &mut Jobs<Session>, ctx: &egui::Context) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
+    let there = calibration.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
     // A fit that is about to change needs none.
-    if there || session.calibration.stale || session.jobs.is_running(SENSITIVITY) || session.jobs.is_running(FIT) {
+    if there || calibration.stale || jobs.is_running(SENSITIVITY) || jobs.is_running(FIT) {
         return;
     }
-    let (recordings, choice) = (session.document.recordings.clone(), session.calibration.choice.clone());
+    let (recordings, choice) = (document.recordings.clone(), calibration.choice.clone());
     let title = "Looking how the force depends on the parameters";
-    session.jobs.start(ctx, SENSITIVITY, title, move |ticket| {
+    jobs.start(ctx, SENSITIVITY, title, move |ticket| {
         let given = choice.given_to_all(&recordings);
         match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
-            Some(found) => change(|session: &mut Session, _| session.calibration.sensitivity = Some(Arc::new(found))),
+            Some(found) => change(|session, _| session.calibration.sensitivity = Some(Arc::new(found))),
             None => no_change(),
         }
     });

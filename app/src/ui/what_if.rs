@@ -1,7 +1,7 @@
 //! Trial values of parameters: the world with them, its replay and its residual force, live.
 
-use super::jobs::JobKind;
 use super::replayed::Replayed;
+use crate::ui::background::jobs::JobKind;
 use estimator::calibrate;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;

@@ -1,10 +1,7 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
 use super::dock::panes::Panels;
-use super::icons::Icon;
 use super::session::Session;
-use super::theme::{self, space};
-use super::widgets::{icon_button, segmented};
 use super::{menu, messages, palette, restore, tour};
 use crate::ui::actions::list::Action;
 use crate::ui::actions::search;
@@ -12,10 +9,15 @@ use crate::ui::app::App;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
 use crate::ui::follow;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{icon_button, segmented};
 use crate::ui::message_list::Tone;
 use crate::ui::opening;
 use crate::ui::tour_progress::Tour;
 use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
@@ -46,25 +48,25 @@ impl App {
         if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() && self.dock.naming.is_none()
         {
             search::keys(ui, self);
-            super::keys::handle(ui, &mut self.session);
+            super::keys::handle(ui, self.session.workspace, &mut self.session.document);
         }
         dropped_files(&ctx, &mut self.session);
         self.session.document.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
-        super::recorder::unfinished(ui, &mut self.session);
+        super::recorder::unfinished(ui, &mut self.session.document, &mut self.session.jobs);
         restore::offer(ui, self);
-        messages::banners(ui, &mut self.session);
+        messages::banners(ui, &mut self.session.messages);
         self.arranging(ui);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
             self.session.training.trainer.trial.abort();
         }
         if self.session.mapping.is_some() {
-            rest(ui, &mut self.session);
+            rest(ui, &mut self.session.training.trainer);
             super::mapping::dialog::show(ui, &mut self.session);
         } else {
             if !matches!(self.session.workspace, Workspace::Train | Workspace::Devices) {
-                rest(ui, &mut self.session);
+                rest(ui, &mut self.session.training.trainer);
             }
             CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
                 self.dock.ui(ui, &mut self.panels, &mut self.session);
@@ -186,15 +188,28 @@ impl App {
 
     /// Undo and redo buttons, if there is a change to undo or redo.
     fn undo_buttons(&mut self, ui: &mut Ui) {
-        let (undo, redo) = (undoing::can_undo(&self.session), undoing::can_redo(&self.session));
+        let (undo, redo) = (
+            undoing::can_undo(&self.session.document, &self.session.calibration, &self.session.plots),
+            undoing::can_redo(&self.session.document, &self.session.calibration, &self.session.plots),
+        );
         if !undo && !redo || self.session.workspace == Workspace::Train {
             return;
         }
         if icon_button(ui, Icon::Redo, redo, "Redo").on_hover_text("Redo (Ctrl+Shift+Z)").clicked() {
-            undoing::redo(&mut self.session);
+            undoing::redo(
+                &mut self.session.document,
+                &mut self.session.calibration,
+                &mut self.session.plots,
+                &mut self.session.messages,
+            );
         }
         if icon_button(ui, Icon::Undo, undo, "Undo").on_hover_text("Undo (Ctrl+Z)").clicked() {
-            undoing::undo(&mut self.session);
+            undoing::undo(
+                &mut self.session.document,
+                &mut self.session.calibration,
+                &mut self.session.plots,
+                &mut self.session.messages,
+            );
         }
     }
 
@@ -247,12 +262,12 @@ impl eframe::App for App {
 }
 
 /// The trainer while the user looks elsewhere: a running recording goes on, everything else rests.
-fn rest(ui: &Ui, session: &mut Session) {
-    if session.training.trainer.is_recording() {
-        session.training.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+fn rest(ui: &Ui, trainer: &mut Trainer) {
+    if trainer.is_recording() {
+        trainer.update(f64::from(ui.input(|i| i.stable_dt)));
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     } else {
-        session.training.trainer.pause();
+        trainer.pause();
     }
 }
 

@@ -1,6 +1,6 @@
 //! The workspaces of the window.
 
-use super::icons::Icon;
+use crate::ui::kit::icons::Icon;
 use serde::{Deserialize, Serialize};
 
 /// The workspaces.

@@ -60,11 +60,19 @@ pub fn at_the_same_time(chaos: &mut Chaos) {
             scope.spawn(|| histories::on_a_bad_disk(&spoiled, second, &over)),
         ];
         let mut bench = Bench::open(&at("kept"));
-        trainees::open_history(&mut bench.session, &bench.ctx, database.clone());
+        trainees::open_history(
+            &mut bench.session.training.learning,
+            &mut bench.session.messages,
+            &bench.ctx,
+            database.clone(),
+        );
         let (begun, mut deeds) = (Instant::now(), 0);
         while deeds < DEEDS || begun.elapsed() < LEAST {
             assert!(
-                trainees::keep_attempt(&mut bench.session, histories::attempt(histories::HERE, deeds as u64)),
+                trainees::keep_attempt(
+                    &bench.session.training.learning,
+                    histories::attempt(histories::HERE, deeds as u64)
+                ),
                 "it has a history"
             );
             bench.deed(chaos, folder.path(), deeds);

@@ -65,11 +65,23 @@ impl Bench {
         let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
         match chaos.rng.random_range(0..6) {
             0 => project_files::add_log(session, ctx, &path),
-            1 => undoing::undo(session),
-            2 => fitting::refit(session, ctx),
+            1 => undoing::undo(
+                &mut session.document,
+                &mut session.calibration,
+                &mut session.plots,
+                &mut session.messages,
+            ),
+            2 => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
             3 => session.jobs.cancel(FIT),
             4 => spoiled_project(chaos, session, ctx, &path),
-            _ => opening::open_any(session, ctx, &path),
+            _ => opening::open_any(
+                &mut session.document,
+                &mut session.wanted_pane,
+                &mut session.messages,
+                &mut session.jobs,
+                ctx,
+                &path,
+            ),
         }
         // Some are still at work when the next comes.
         (0..chaos.rng.random_range(0..4)).for_each(|_| frame(ctx, session));
@@ -85,7 +97,7 @@ impl Bench {
     pub fn must_fit(&mut self, chaos: &mut Chaos) {
         let Self { ctx, session, .. } = self;
         settle(ctx, session);
-        opening::open(session, ctx, &workspace().join("assets/recordings/crank.csv"));
+        opening::open(&mut session.document, &mut session.jobs, ctx, &workspace().join("assets/recordings/crank.csv"));
         settle(ctx, session);
         assert!(
             session.calibration.analysis.is_some(),
@@ -109,7 +121,11 @@ pub fn jobs(chaos: &mut Chaos) {
     autosave.end(&session, &dock, true);
     drop(autosave);
     let (_, Kept { project, .. }) = Autosave::begin(&kept_in).expect("the next start");
-    assert_eq!(project, project_of(&session), "what was open is found");
+    assert_eq!(
+        project,
+        project_of(session.workspace, &session.document, &session.calibration, &session.plots),
+        "what was open is found"
+    );
 }
 
 fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context, log: &Path) {
@@ -118,5 +134,5 @@ fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context
     if let Ok(text) = std::fs::read(&path) {
         std::fs::write(&path, tests::spoiled::bytes(&text, &mut chaos.rng)).expect("writes");
     }
-    project_files::open_project(session, ctx, &path);
+    project_files::open_project(&mut session.document, &mut session.messages, &mut session.jobs, ctx, &path);
 }

@@ -7,7 +7,7 @@ mod lessons;
 mod mapping;
 mod screen;
 
-use app::ui::theme;
+use app::ui::kit::theme;
 use drop::drop_file;
 use estimator::segment::SystemState;
 use screen::{Screen, always_choose, command, drawn, kept, start, try_command, until};

@@ -1,6 +1,6 @@
 //! A screen of its own for a real window, and the program on it.
 
-use app::ui::theme;
+use app::ui::kit::theme;
 use estimator::segment::SystemState;
 use serde_json::Value;
 use std::fs;

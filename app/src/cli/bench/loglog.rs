@@ -2,7 +2,7 @@
 
 use super::table::plain;
 use crate::report::style::hex;
-use crate::ui::theme::{Palette, curve};
+use crate::ui::kit::theme::{Palette, curve};
 use render::ColorRole;
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! Appearance of the actions in menus and in the palette.
 
 use crate::ui::actions::list::Action;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
 use crate::ui::panels::list;
 
 impl Action {

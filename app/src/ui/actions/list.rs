@@ -3,9 +3,10 @@
 use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
-use crate::ui::session::Session;
 use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
@@ -191,7 +192,7 @@ impl Action {
         let recordings =
             (0..session.document.recordings.len()).filter(|i| *i != session.document.current).map(Self::Select);
         let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
-        let places = if known { places(session) } else { Vec::new() };
+        let places = if known { places(&session.document, &session.calibration) } else { Vec::new() };
         let fixed = Self::iter().flat_map(|action| match action {
             Self::Open(_) => Workspace::CHOICES.map(|(workspace, ..)| Self::Open(workspace)).to_vec(),
             Self::Panel(_) => {
@@ -420,8 +421,13 @@ impl Action {
             Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.calibration.can_train(), "This world has nothing for the hand."))
             }
-            Self::Undo => need(undoing::can_undo(session), "Nothing was changed."),
-            Self::Redo => need(undoing::can_redo(session), "Nothing was taken back."),
+            Self::Undo => {
+                need(undoing::can_undo(&session.document, &session.calibration, &session.plots), "Nothing was changed.")
+            }
+            Self::Redo => need(
+                undoing::can_redo(&session.document, &session.calibration, &session.plots),
+                "Nothing was taken back.",
+            ),
             Self::ForgetStates => need(
                 session.calibration.choice.segments.contains_key(&session.document.current),
                 "No state was set by hand.",
@@ -468,10 +474,10 @@ impl Action {
 }
 
 /// Positions of subtasks, states and warnings of the shown recording.
-fn places(session: &Session) -> Vec<Action> {
-    let Some(segmentation) = session.segmentation() else { return Vec::new() };
+fn places(document: &Document, calibration: &Calibration) -> Vec<Action> {
+    let Some(segmentation) = calibration.segmentation(document.current) else { return Vec::new() };
     let mut places: Vec<Action> = Vec::new();
-    let named = session.calibration.analysis.as_ref().is_some_and(|a| decides(a.task));
+    let named = calibration.analysis.as_ref().is_some_and(|a| decides(a.task));
     for interval in segmentation.states.iter().filter(|_| named) {
         let Some(subtask) = &interval.subtask else { continue };
         let what = format::object(subtask).to_lowercase();

@@ -4,7 +4,9 @@ use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::by_hand;
 use crate::ui::diagnosing;
+use crate::ui::dialogs;
 use crate::ui::dock::name_field::Naming;
+use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
 use crate::ui::fitting;
 use crate::ui::follow;
@@ -71,60 +73,139 @@ fn with_layouts(action: &Action, app: &mut App) {
 
 fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
-        Action::OpenLog => files::ask(ctx, &mut session.jobs, files::OPEN_LOG),
-        Action::AddLog => files::ask(ctx, &mut session.jobs, files::ADD_LOG),
-        Action::AddVideo => files::ask(ctx, &mut session.jobs, files::OPEN_VIDEO),
-        Action::OpenWorld => files::ask(ctx, &mut session.jobs, files::OPEN_WORLD),
-        Action::OpenProject => files::ask(ctx, &mut session.jobs, files::OPEN_PROJECT),
-        Action::OpenRecent(path) => opening::open_any(session, ctx, path),
-        Action::SaveProject => project_files::save_project(session, ctx),
-        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, files::SAVE_PROJECT),
-        Action::SaveLog => files::ask(ctx, &mut session.jobs, files::SAVE_LOG),
-        Action::SaveWorld => files::ask(ctx, &mut session.jobs, files::SAVE_WORLD),
-        Action::ExportWorld => files::ask(ctx, &mut session.jobs, files::EXPORT_WORLD),
-        Action::Report => files::ask(ctx, &mut session.jobs, files::SAVE_REPORT),
-        Action::Reload => follow::reload(session, ctx),
-        Action::MapColumns => opening::map_columns(session, ctx, None),
-        Action::Undo => undoing::undo(session),
-        Action::Redo => undoing::redo(session),
-        Action::Fit => fitting::refit(session, ctx),
-        Action::Rules => session.calibration.rules = editing_rules::open(session),
-        Action::ForgetStates => by_hand::forget_states(session, ctx),
+        Action::Open(workspace) => session.workspace = *workspace,
+        Action::Diagnose => {
+            session.workspace = Workspace::Diagnose;
+            diagnosing::diagnose(
+                &session.document,
+                &session.calibration,
+                &mut session.diagnosing,
+                &mut session.jobs,
+                ctx,
+            );
+        }
+        Action::Extend => diagnosing::extend_model(
+            &session.document,
+            &session.calibration,
+            &session.diagnosing,
+            &mut session.jobs,
+            ctx,
+        ),
+        Action::Feel => diagnosing::feel(
+            &mut session.workspace,
+            &session.diagnosing,
+            &mut session.training.trainer,
+            &mut session.messages,
+        ),
+        Action::Fit => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
+        Action::Rules => {
+            session.calibration.rules =
+                editing_rules::open(&session.document, &session.calibration, &mut session.messages);
+        }
+        Action::ForgetStates => {
+            by_hand::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx);
+        }
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,
-        Action::Diagnose => {
-            session.workspace = Workspace::Diagnose;
-            diagnosing::diagnose(session, ctx);
+        Action::Undo => {
+            undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
         }
-        Action::Extend => diagnosing::extend_model(session, ctx),
-        Action::Feel => diagnosing::feel(session),
+        Action::Redo => {
+            undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+        }
+        Action::Play | Action::ToStart | Action::ToEnd | Action::ShowAll | Action::Select(_) | Action::GoTo { .. } => {
+            with_document(action, &mut session.document);
+        }
+        Action::TrainCalibrated
+        | Action::Assistant
+        | Action::StartOver
+        | Action::Answer(..)
+        | Action::Lesson(_)
+        | Action::Watch
+        | Action::Practise
+        | Action::TakeTest
+        | Action::PractiseOnThis
+        | Action::Record => with_training(action, ctx, session),
+        _ => with_files(action, ctx, session),
+    }
+}
+
+fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
+    match action {
+        Action::OpenLog => files::ask(ctx, &mut session.jobs, dialogs::OPEN_LOG),
+        Action::AddLog => files::ask(ctx, &mut session.jobs, dialogs::ADD_LOG),
+        Action::AddVideo => files::ask(ctx, &mut session.jobs, dialogs::OPEN_VIDEO),
+        Action::OpenWorld => files::ask(ctx, &mut session.jobs, dialogs::OPEN_WORLD),
+        Action::OpenProject => files::ask(ctx, &mut session.jobs, dialogs::OPEN_PROJECT),
+        Action::OpenRecent(path) => opening::open_any(
+            &mut session.document,
+            &mut session.wanted_pane,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            path,
+        ),
+        Action::SaveProject => project_files::save_project(session, ctx),
+        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, project_files::SAVE_PROJECT),
+        Action::SaveLog => files::ask(ctx, &mut session.jobs, dialogs::SAVE_LOG),
+        Action::SaveWorld => files::ask(ctx, &mut session.jobs, dialogs::SAVE_WORLD),
+        Action::ExportWorld => files::ask(ctx, &mut session.jobs, dialogs::EXPORT_WORLD),
+        Action::Report => files::ask(ctx, &mut session.jobs, dialogs::SAVE_REPORT),
+        Action::Reload => follow::reload(session, ctx),
+        Action::MapColumns => opening::map_columns(&session.document, &mut session.jobs, ctx, None),
+        // Actions of the window.
+        _ => {}
+    }
+}
+
+fn with_document(action: &Action, document: &mut Document) {
+    match action {
+        Action::Play => document.toggle_play(),
+        Action::ToStart => document.seek(f64::NEG_INFINITY),
+        Action::ToEnd => document.seek(f64::INFINITY),
+        Action::ShowAll => {
+            if let Some(prepared) = document.prepared() {
+                document.view_s = prepared.span();
+            }
+        }
+        Action::Select(index) => document.select(*index),
+        Action::GoTo { from_s, to_s, .. } => document.look_at(*from_s, *to_s),
+        _ => {}
+    }
+}
+
+fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
+    match action {
         Action::TrainCalibrated => {
             session.training.train_calibrated = true;
             session.workspace = Workspace::Train;
         }
         Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
-        Action::StartOver => starting_over::start_over(session),
-        Action::Answer(index, _) => practising::end_lesson(session, ctx, Some(*index)),
-        Action::Lesson(title) => practising::open_lesson_titled(session, ctx, title),
-        Action::Watch => practising::watch_lesson(session),
-        Action::Practise => practising::practise_lesson(session),
-        Action::TakeTest => practising::test_lesson(session),
-        Action::PractiseOnThis => practising::practise_on_this(session, ctx),
-        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
-        Action::Record => crate::ui::recorder::start(session),
-        Action::Play => session.document.toggle_play(),
-        Action::ToStart => session.document.seek(f64::NEG_INFINITY),
-        Action::ToEnd => session.document.seek(f64::INFINITY),
-        Action::ShowAll => {
-            if let Some(prepared) = session.document.prepared() {
-                session.document.view_s = prepared.span();
-            }
+        Action::StartOver => {
+            starting_over::start_over(&mut session.experiments, &mut session.training, &mut session.messages);
         }
-        Action::Select(index) => session.document.select(*index),
-        Action::GoTo { from_s, to_s, .. } => session.document.look_at(*from_s, *to_s),
-        Action::Open(workspace) => session.workspace = *workspace,
-        // Actions of the window.
+        Action::Answer(index, _) => practising::end_lesson(&mut session.training, &mut session.jobs, ctx, Some(*index)),
+        Action::Lesson(title) => practising::open_lesson_titled(
+            &mut session.workspace,
+            &mut session.training,
+            &mut session.messages,
+            &mut session.jobs,
+            ctx,
+            title,
+        ),
+        Action::Watch => practising::watch_lesson(&mut session.training, &mut session.messages),
+        Action::Practise => practising::practise_lesson(&mut session.training, &mut session.messages),
+        Action::TakeTest => practising::test_lesson(&mut session.training, &mut session.messages),
+        Action::PractiseOnThis => practising::practise_on_this(&session.calibration, &mut session.jobs, ctx),
+        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(
+            ctx,
+            &mut session.document,
+            &mut session.training.trainer,
+            &mut session.messages,
+            &mut session.jobs,
+        ),
+        Action::Record => crate::ui::recorder::start(&mut session.training.trainer, &mut session.messages),
         _ => {}
     }
 }

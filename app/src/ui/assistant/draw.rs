@@ -4,10 +4,12 @@
 use super::words::{self, Urgency};
 use crate::ui::assistant::readings::{Circle, Said, said};
 use crate::ui::assistant::state::Assistant;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, role, space};
+use crate::ui::kit::widgets::compact;
 use crate::ui::scene::view::SceneResponse;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, role, space};
-use crate::ui::widgets::compact;
+use crate::ui::trainer::live::Trainer;
+use crate::ui::training::Training;
 use egui::{
     Align, Color32, CornerRadius, Frame, Layout, Margin, Pos2, Rect, RichText, Shape, Stroke, Ui, UiBuilder, vec2,
 };
@@ -35,9 +37,9 @@ const ABOUT_SLIP: &str = "Share of the friction that is free. The friction is no
                           far, and otherwise as that of foam or rubber pads (0.4 to 1.6). In brackets: nineteen of twenty frictions";
 
 /// Draws the assistant's output over the trainer's picture.
-pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
-    let Some(said) = said(session) else { return };
-    let parts = session.training.assistant;
+pub fn draw(ui: &mut Ui, view: &SceneResponse, training: &Training) {
+    let Some(said) = said(training) else { return };
+    let parts = training.assistant;
     let canvas = Canvas { ui, view };
     if parts.constraint {
         said.pulls.iter().for_each(|pull| canvas.pull(pull));
@@ -48,14 +50,14 @@ pub fn draw(ui: &mut Ui, view: &SceneResponse, session: &Session) {
         Warning::Collision(_) => parts.collision,
         Warning::Edge { .. } => parts.edge,
     };
-    let state = session.training.trainer.seen();
+    let state = training.trainer.seen();
     let tips = state.map_or([Vec2::zeros(); 2], |s| s.input.tip_in_world);
     let warnings: Vec<&Warning> = said.warnings.iter().filter(wanted).collect();
     for warning in &warnings {
         match warning {
             Warning::Force { finger, over, .. } => canvas.force(tips[*finger], *over),
             Warning::Collision(met) => canvas.collision(met),
-            Warning::Edge { at_m, .. } => canvas.edge(session, *at_m),
+            Warning::Edge { at_m, .. } => canvas.edge(&training.trainer, *at_m),
         }
     }
     lines(ui, view.rect, &said, &warnings, parts);
@@ -145,7 +147,7 @@ fn plate(ui: &mut Ui, view: &SceneResponse, held: &Held, at_m: Vec2, parts: Assi
                 let (text, urgency) = words::slip(&slip);
                 let color = if urgency == Urgency::Note { p.good } else { ink(ui, urgency) };
                 ui.label(RichText::new(text).size(12.0).color(ink(ui, urgency))).on_hover_text(ABOUT_SLIP);
-                crate::ui::widgets::bar(ui, slip.free, 1.0, None, color);
+                crate::ui::kit::widgets::bar(ui, slip.free, 1.0, None, color);
             }
         });
 }
@@ -210,9 +212,9 @@ impl Canvas<'_> {
     }
 
     /// Draws the nearby arc of the workspace's edge.
-    fn edge(&self, session: &Session, at_m: Vec2) {
+    fn edge(&self, trainer: &Trainer, at_m: Vec2) {
         const PIECES: u32 = 24;
-        let Some((_, world)) = session.training.trainer.scene() else { return };
+        let Some((_, world)) = trainer.scene() else { return };
         let workspace = world.hand.workspace;
         let middle = (at_m - workspace.center_m).y.atan2((at_m - workspace.center_m).x);
         let arc = (0..=PIECES).map(|k| {

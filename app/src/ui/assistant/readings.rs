@@ -1,8 +1,8 @@
 //! Readings of the assistant, from the online estimates and the live world.
 
-use crate::ui::lessons::state::Phase;
-use crate::ui::session::Session;
+use crate::ui::lessons::state::{Lessons, Phase};
 use crate::ui::trainer::live::Trainer;
+use crate::ui::training::Training;
 use estimator::assistant::{Held, Known, Load, Look, Warnings, collision, warnings};
 use estimator::online::{Pull, Report};
 use haptics::Vec2;
@@ -28,8 +28,8 @@ pub(crate) struct Said {
 }
 
 /// Reason for the assistant's silence, as a sentence; `None` while it is active.
-pub fn silent(session: &Session) -> Option<&'static str> {
-    match session.training.lessons.open.as_ref()?.phase {
+pub fn silent(lessons: &Lessons) -> Option<&'static str> {
+    match lessons.open.as_ref()?.phase {
         Phase::Testing | Phase::Asking => Some("In a test you are on your own."),
         // The world is paused behind the result.
         Phase::Grading | Phase::Debrief(_) => Some("The attempt is over. It goes on with the next one."),
@@ -37,16 +37,16 @@ pub fn silent(session: &Session) -> Option<&'static str> {
     }
 }
 
-pub(crate) fn said(session: &Session) -> Option<Said> {
-    if !session.training.assistant.on || silent(session).is_some() {
+pub(crate) fn said(training: &Training) -> Option<Said> {
+    if !training.assistant.on || silent(&training.lessons).is_some() {
         return None;
     }
-    let trainer = &session.training.trainer;
+    let trainer = &training.trainer;
     let (_, world) = trainer.scene()?;
     let state = trainer.seen()?;
     let delay = trainer.delay();
     let late_s = if delay.is_none() || delay.predicted { 0.0 } else { delay.round_trip_s };
-    let load = Load { limit_n: limit_n(session), late_s };
+    let load = Load { limit_n: limit_n(training), late_s };
     let report = trainer.watch.report();
     let held_body = collision::held(state);
     Some(Said {
@@ -59,9 +59,9 @@ pub(crate) fn said(session: &Session) -> Option<Said> {
 }
 
 /// Maximum force of a finger, N: the limit of the lesson, or of the servo.
-fn limit_n(session: &Session) -> f64 {
-    let by_lesson = session.training.lessons.open.as_ref().map(|open| open.lesson.limit_n);
-    by_lesson.unwrap_or_else(|| max_force_n(&session.training.trainer))
+fn limit_n(training: &Training) -> f64 {
+    let by_lesson = training.lessons.open.as_ref().map(|open| open.lesson.limit_n);
+    by_lesson.unwrap_or_else(|| max_force_n(&training.trainer))
 }
 
 fn max_force_n(trainer: &Trainer) -> f64 {

@@ -46,7 +46,7 @@ impl Dock {
         mine.show_only_what_has_contents(session);
         let room = ui.available_size();
         if !mine.moved {
-            layout::suit(&mut mine.tree, workspace, room, session);
+            layout::suit(&mut mine.tree, workspace, room, &session.calibration, session.training.comfort);
         }
         let mut tiling = Tiling { panels, session, arranging, edited: false };
         Frame::new().inner_margin(Margin::same(layout::GAP as i8)).show(ui, |ui| mine.tree.ui(&mut tiling, ui));
@@ -178,7 +178,7 @@ mod tests {
         let mut session = Session::new();
         let (mut panels, mut rects) = (Panels::default(), Vec::new());
         let ctx = egui::Context::default();
-        crate::ui::theme::install(&ctx);
+        crate::ui::kit::theme::install(&ctx);
         let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 680.0));
         let input = egui::RawInput { screen_rect: Some(room), ..Default::default() };
         let mut output = ctx.run_ui(input, |ui| {

@@ -2,10 +2,11 @@
 
 use super::layout::GAP;
 use super::panes::Panels;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::Palette;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, Palette};
 use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 

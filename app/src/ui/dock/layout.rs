@@ -1,8 +1,9 @@
 //! The standard layouts, and column widths for the window.
 
+use crate::ui::calibration::Calibration;
+use crate::ui::comfort::Comfort;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
-use crate::ui::session::Session;
 use crate::ui::workspace::Workspace;
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
@@ -44,14 +45,14 @@ fn side_by_side(tiles: &mut Tiles<PanelId>, panes: [PanelId; 2]) -> TileId {
 }
 
 /// Sets the columns of an unmodified layout to widths for the available space.
-pub fn suit(tree: &mut Tree<PanelId>, workspace: Workspace, room: Vec2, session: &Session) {
+pub fn suit(tree: &mut Tree<PanelId>, workspace: Workspace, room: Vec2, calibration: &Calibration, comfort: Comfort) {
     let wide = room.x - 2.0 * GAP;
     match workspace {
         Workspace::Calibrate => {
             let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
             // The rules need more space than the picture.
-            let upper = if session.calibration.rules.is_some() {
+            let upper = if calibration.rules.is_some() {
                 0.48 * room.y
             } else {
                 (0.40 * room.y).min(room.y - PLOTS).max(150.0)
@@ -59,7 +60,7 @@ pub fn suit(tree: &mut Tree<PanelId>, workspace: Workspace, room: Vec2, session:
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
         }
         Workspace::Train => {
-            let left = session.training.comfort.left_handed;
+            let left = comfort.left_handed;
             side_first(tree, left);
             let [side, picture] = [Some(TRAINER_SIDE), None];
             columns(tree, LinearDir::Horizontal, &if left { [side, picture] } else { [picture, side] }, wide);

@@ -2,8 +2,9 @@
 
 use crate::ui::app::App;
 use crate::ui::dock::name_field::WIDTH;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::primary_button;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::primary_button;
 use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
 
 /// Draws the dialog while a name is asked for.

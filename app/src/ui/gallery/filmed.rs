@@ -1,8 +1,8 @@
 //! The recorded hand as a film: a video for screenshots of the video panel.
 
+use crate::ui::kit::theme;
 use crate::ui::scene::overlay::{camera_for, options_for, scene_world};
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::video::reading::VideoSource;
 use crate::video::writer::Writer;
 use anyhow::Context as _;
@@ -21,8 +21,8 @@ const ASIDE_RAD: [f32; 2] = [0.7, 0.18];
 /// Films the shown recording about the time cursor.
 pub fn filmed(session: &mut Session, file: &Path) -> anyhow::Result<VideoSource> {
     let prepared = session.document.prepared().cloned().context("there is no recording to film")?;
-    let world = scene_world(session, &prepared);
-    let mut camera = camera_for(session, &prepared);
+    let world = scene_world(&session.calibration, &prepared);
+    let mut camera = camera_for(&session.document, &session.calibration, &prepared);
     camera.orbit(ASIDE_RAD[0], ASIDE_RAD[1]);
     let (middle_s, begins_at_s) = (session.document.cursor_s, session.document.cursor_s - 0.5 * LENGTH_S);
     let mut headless = Headless::new()?;

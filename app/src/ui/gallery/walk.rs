@@ -5,12 +5,12 @@
 use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::diagnosis_state::EXTEND;
+use crate::ui::kit::theme;
 use crate::ui::message_list::Tone;
 use crate::ui::opening;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use anyhow::{Context as _, anyhow, bail};
@@ -235,7 +235,13 @@ impl Walker {
     }
 
     pub(super) fn drag_a_boundary(&mut self) -> anyhow::Result<()> {
-        let states = self.session().segmentation().context("there are no states")?.states.clone();
+        let states = self
+            .session()
+            .calibration
+            .segmentation(self.session().document.current)
+            .context("there are no states")?
+            .states
+            .clone();
         let (index, first) =
             states.iter().enumerate().find(|(_, i)| i.t1 - i.t0 > 0.5).context("all states are short")?;
         let label = format!("Boundary at {} s", format::number(first.t1, 2));
@@ -248,8 +254,15 @@ impl Walker {
         }
         self.harness.drop_at(pos2(grip.x - 24.0, grip.y));
         self.calm()?;
-        let now = self.session().segmentation().and_then(|s| s.states.get(index)).map_or(first.t1, |i| i.t1);
-        if now > first.t1 - 0.05 || !self.session().segmentation().is_some_and(|s| s.by_hand) {
+        let now = self
+            .session()
+            .calibration
+            .segmentation(self.session().document.current)
+            .and_then(|s| s.states.get(index))
+            .map_or(first.t1, |i| i.t1);
+        if now > first.t1 - 0.05
+            || !self.session().calibration.segmentation(self.session().document.current).is_some_and(|s| s.by_hand)
+        {
             bail!("the boundary at {} s did not move ({now} s)", first.t1);
         }
         Ok(())
@@ -259,7 +272,7 @@ impl Walker {
     fn take_back(&mut self) -> anyhow::Result<()> {
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         self.calm()?;
-        if self.session().segmentation().is_some_and(|s| s.by_hand) {
+        if self.session().calibration.segmentation(self.session().document.current).is_some_and(|s| s.by_hand) {
             bail!("Ctrl+Z did not take the boundary back");
         }
         Ok(())

@@ -2,20 +2,20 @@
 
 use crate::history::attempt::{Attempt, Conditions};
 use crate::ui::lessons::state::Debrief;
-use crate::ui::session::Session;
 use crate::ui::trainees;
+use crate::ui::training::Training;
 use jiff::{SignedDuration, Timestamp};
 
 /// Stores a graded attempt under the trainee's name; does nothing without a name.
-pub(crate) fn keep_graded(session: &mut Session, debrief: &Debrief) {
-    session.training.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
-    let Some(trainee) = session.training.learning.trainee.clone() else { return };
-    let line = session.training.trainer.delay();
+pub(crate) fn keep_graded(training: &mut Training, debrief: &Debrief) {
+    training.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
+    let Some(trainee) = training.learning.trainee.clone() else { return };
+    let line = training.trainer.delay();
     let conditions = Conditions { delay_ms: 1e3 * line.round_trip_s, predicted: line.predicted && !line.is_none() };
     let attempt = attempt_of(debrief, trainee, conditions, Timestamp::now());
-    let before = session.training.learning.attempts.iter().rev().find(|earlier| earlier.is_like(&attempt));
+    let before = training.learning.attempts.iter().rev().find(|earlier| earlier.is_like(&attempt));
     let proficient = attempt.meets_criterion && before.is_some_and(|earlier| earlier.meets_criterion);
-    trainees::keep_attempt(session, Attempt { proficient, ..attempt });
+    trainees::keep_attempt(&training.learning, Attempt { proficient, ..attempt });
 }
 
 /// Attempt that has ended now.

@@ -5,8 +5,9 @@ use super::trace::Point;
 use crate::text::sentence::sentence;
 use crate::ui::lessons::practising;
 use crate::ui::lessons::state::Phase;
-use crate::ui::session::Session;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::trainer::pinch::Pinch;
+use crate::ui::training::Training;
 use estimator::training::lesson::Lesson;
 use haptics::Vec2;
 use haptics::world::State;
@@ -28,19 +29,19 @@ const UNTIL_IT_GIVES_M: f64 = 0.003;
 const PUSH_N: f64 = 0.1;
 
 /// Performs the open lesson with the mouse for some time, or until its attempt is over.
-pub fn follow_expert(session: &mut Session, seconds: f64) {
+pub fn follow_expert(training: &mut Training, seconds: f64) {
     let mut left_s = seconds;
     while left_s > 0.0 {
-        let Some(open) = session.training.lessons.open.as_ref() else { return };
+        let Some(open) = training.lessons.open.as_ref() else { return };
         let (Some(trace), true) = (&open.expert, matches!(open.phase, Phase::Practising | Phase::Testing)) else {
             return;
         };
-        let now_s = session.training.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
+        let now_s = training.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
         let Some(point) = trace.at(SLOWER * now_s).copied() else { return };
-        point_as(session, &point);
-        session.training.trainer.advance(FRAME_S);
-        if !practising::see_lesson(session)
-            || session.training.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed())
+        point_as(&mut training.trainer, &point);
+        training.trainer.advance(FRAME_S);
+        if !practising::see_lesson(training)
+            || training.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed())
         {
             return;
         }
@@ -48,8 +49,8 @@ pub fn follow_expert(session: &mut Session, seconds: f64) {
     }
 }
 
-fn point_as(session: &mut Session, point: &Point) {
-    let pinch = &mut session.training.trainer.pinch;
+fn point_as(trainer: &mut Trainer, point: &Point) {
+    let pinch = &mut trainer.pinch;
     let pointed = Pointed::of(point, pinch.opening_m());
     pinch.move_to(pointed.at_m);
     pinch.button = pointed.pinches;

@@ -2,7 +2,7 @@
 
 use crate::recorder::Stopping;
 use crate::text::sentence::sentence;
-use crate::ui::jobs::JobKind;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::lessons::ghost::Ghost;
 use crate::ui::lessons::trace::Trace;
 use crate::ui::lessons::trace::trace_of;

@@ -3,13 +3,15 @@
 use super::preview::PREVIEW;
 use super::{options, plot, table};
 use crate::text::file_name::name_of;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::files::SAVE;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{plain_card, primary_button, remark, sheet};
 use crate::ui::mapping::state::Mapping;
 use crate::ui::mapping_actions::save;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{plain_card, primary_button, remark, sheet};
 use egui::{Align, CentralPanel, Frame, Key, Layout, Margin, Panel as Side, RichText, Ui};
 
 /// User's decision in the dialog.
@@ -35,14 +37,14 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         .frame(frame(12, 12, 0, 12))
         .show_separator_line(false)
         .resizable(false)
-        .show(ui, |ui| foot(ui, &mut mapping, session))
+        .show(ui, |ui| foot(ui, &mut mapping, &session.jobs))
         .inner;
     Side::right("mapping preview")
         .frame(frame(0, 12, 10, 10))
         .show_separator_line(false)
         .resizable(false)
         .exact_size((0.34 * width).clamp(360.0, 560.0))
-        .show(ui, |ui| plot::preview(ui, &mut mapping, session));
+        .show(ui, |ui| plot::preview(ui, &mut mapping, &session.jobs));
     CentralPanel::default().frame(frame(12, 12, 10, 10)).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = space::S;
         plain_card(ui, "Recording", |ui| options::options(ui, &mut mapping.draft));
@@ -86,12 +88,12 @@ fn head(ui: &mut Ui, mapping: &Mapping) {
     }
 }
 
-fn foot(ui: &mut Ui, mapping: &mut Mapping, session: &Session) -> Option<Done> {
+fn foot(ui: &mut Ui, mapping: &mut Mapping, jobs: &Jobs<Session>) -> Option<Done> {
     let mut done = None;
     ui.horizontal(|ui| {
-        let saving = session.jobs.is_running(SAVE);
+        let saving = jobs.is_running(SAVE);
         let loads = matches!(mapping.preview.seen, Some(Ok(_)));
-        let ready = loads && !saving && !mapping.preview.is_stale(&session.jobs);
+        let ready = loads && !saving && !mapping.preview.is_stale(jobs);
         let hint = "A mapping is saved when the log can be read with it";
         if primary_button(ui, ready, (Icon::Save, "Save sidecar and open")).on_disabled_hover_text(hint).clicked() {
             done = Some(Done::Save);

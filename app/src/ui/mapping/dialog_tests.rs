@@ -2,9 +2,9 @@
 
 use super::draft::Role;
 use crate::ui::app::App;
+use crate::ui::kit::theme;
 use crate::ui::opening;
 use crate::ui::session::Session;
-use crate::ui::theme;
 use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;

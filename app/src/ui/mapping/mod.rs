@@ -14,6 +14,7 @@ pub mod file_units;
 pub mod guess;
 #[cfg(test)]
 mod guess_tests;
+pub mod look;
 pub mod names;
 pub mod options;
 pub mod plot;

@@ -1,9 +1,10 @@
 //! Options of the whole recording: task, axis, rate, selection, known values.
 
 use super::draft::{Draft, UP, task_words};
-use crate::ui::icons::Icon;
-use crate::ui::theme::{self, space};
-use crate::ui::widgets::{quiet_icon_button, remark};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{quiet_icon_button, remark};
 use egui::{ComboBox, DragValue, Role as Accessible, Ui, WidgetInfo};
 use haptics::recording::Task;
 use serde_json::Value;

@@ -2,22 +2,24 @@
 
 use super::preview::Seen;
 use crate::text::format;
-use crate::ui::icons::Icon;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{mix, palette, space};
+use crate::ui::kit::widgets::{compact, fact, remark, sheet};
 use crate::ui::mapping::state::{Mapping, View};
 use crate::ui::plots::axes::{marks, time_axis, value_axis};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, mix, palette, space};
-use crate::ui::widgets::{compact, fact, remark, sheet};
 use egui::{RichText, ScrollArea, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;
 use render::ColorRole;
 
 /// Draws the preview.
-pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
-    let stale = mapping.preview.is_stale(&session.jobs);
+pub fn preview(ui: &mut Ui, mapping: &mut Mapping, jobs: &Jobs<Session>) {
+    let stale = mapping.preview.is_stale(jobs);
     sheet(ui).inner_margin(space::M).show(ui, |ui| {
         ui.set_min_size(ui.available_size());
         // As tall as the headings of the cards beside it.

@@ -2,7 +2,7 @@
 
 use super::draft::Draft;
 use crate::text::sentence::sentence;
-use crate::ui::jobs::{JobKind, Jobs, Ticket, change};
+use crate::ui::background::jobs::{JobKind, Jobs, Ticket, change};
 use crate::ui::prepare::Prepared;
 use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;

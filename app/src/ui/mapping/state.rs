@@ -1,7 +1,7 @@
 //! An open mapping dialog.
 
 use crate::text::sentence::sentence;
-use crate::ui::jobs::JobKind;
+use crate::ui::background::jobs::JobKind;
 use crate::ui::mapping::draft::Draft;
 use crate::ui::mapping::facts;
 use crate::ui::mapping::facts::FileFacts;

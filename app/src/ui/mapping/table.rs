@@ -4,7 +4,8 @@ use super::draft::{Draft, Role, Row};
 use super::file_units::FileUnit;
 use super::names::{dimension, find};
 use crate::text::format;
-use crate::ui::theme::{self, palette};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::palette;
 use egui::{Align, ComboBox, DragValue, Label, Layout, RichText, Role as Accessible, Ui, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 

@@ -1,11 +1,11 @@
 //! The devices page, right column: data received from the boards or over the network, and faults in it.
 
 use crate::boards::{ADVICE, Answers};
-use crate::ui::icons::Icon;
-use crate::ui::theme;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{fact, plain_card, remark};
 use crate::ui::trainer::hand::Steering;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{fact, plain_card, remark};
 use egui::Ui;
 use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};

@@ -1,9 +1,9 @@
 //! Switches of the assistant's parts over the picture.
 
 use crate::ui::assistant::readings;
-use crate::ui::session::Session;
-use crate::ui::theme;
-use crate::ui::widgets::{call, card};
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{call, card};
+use crate::ui::training::Training;
 use egui::Ui;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -30,9 +30,9 @@ mod words {
 }
 
 /// The card beside the trainer's picture.
-pub fn assistant(ui: &mut Ui, session: &mut Session) {
-    let silent = readings::silent(session);
-    let parts = &mut session.training.assistant;
+pub fn assistant(ui: &mut Ui, training: &mut Training) {
+    let silent = readings::silent(&training.lessons);
+    let parts = &mut training.assistant;
     let mut on = parts.on;
     let switch = |ui: &mut Ui| {
         let hint = words::SAYS_OVER_THE_PICTURE;
@@ -67,5 +67,5 @@ pub fn assistant(ui: &mut Ui, session: &mut Session) {
             });
         }
     });
-    session.training.assistant.on = on;
+    training.assistant.on = on;
 }

@@ -5,12 +5,13 @@ use crate::text::diagnosis_words::{listed, title};
 use crate::text::format::{self, capitalised};
 use crate::text::sentence::sentence;
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
-use crate::ui::icons::Icon;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette, space};
+use crate::ui::kit::widgets::compact;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
-use crate::ui::session::Session;
-use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::compact;
 use egui::{
     Align, Align2, Color32, FontId, Layout, Pos2, Rect, Response, RichText, ScrollArea, Sense, Shape, Stroke, Ui, pos2,
     vec2,
@@ -33,15 +34,15 @@ const WORDS: f32 = 18.0;
 const NUMBERS: [f32; 2] = [52.0, 20.0];
 
 /// Draws the grid, or one candidate enlarged.
-pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Findings) {
-    let open = session.diagnosing.atlas_open.clone();
+pub fn show(ui: &mut Ui, diagnosing: &mut Diagnosing, sheet: &Sheet, diagnosis: &Findings) {
+    let open = diagnosing.atlas_open.clone();
     match open.and_then(|key| sheet.find(&key)) {
-        Some(cell) => large(ui, session, cell, diagnosis),
-        None => grid(ui, session, sheet, diagnosis),
+        Some(cell) => large(ui, diagnosing, cell, diagnosis),
+        None => grid(ui, diagnosing, sheet, diagnosis),
     }
 }
 
-fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Findings) {
+fn grid(ui: &mut Ui, diagnosing: &mut Diagnosing, sheet: &Sheet, diagnosis: &Findings) {
     let gap = space::M;
     let mut clicked = None;
     ScrollArea::vertical().id_salt("atlas").auto_shrink(false).show(ui, |ui| {
@@ -72,7 +73,7 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Findings)
         }
     });
     if clicked.is_some() {
-        session.diagnosing.atlas_open = clicked;
+        diagnosing.atlas_open = clicked;
     }
 }
 
@@ -167,13 +168,13 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
 }
 
 /// Draws one candidate over the whole panel, with numbers and text.
-fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Findings) {
+fn large(ui: &mut Ui, diagnosing: &mut Diagnosing, cell: &Cell, diagnosis: &Findings) {
     let p = palette(ui);
     compact(ui, |ui| {
         if ui.add(egui::Button::new((Icon::Back, words::ALL_SUSPECTS)).small()).clicked()
             || ui.input(|i| i.key_pressed(egui::Key::Escape))
         {
-            session.diagnosing.atlas_open = None;
+            diagnosing.atlas_open = None;
         }
         ui.add_space(space::S);
         ui.label(theme::strong(&cell.title));

@@ -3,9 +3,11 @@
 use crate::text::format;
 use crate::text::states::state_name;
 use crate::ui::by_hand::Change;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, state_color};
-use crate::ui::widgets::swatch;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, state_color};
+use crate::ui::kit::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};
 
@@ -70,25 +72,25 @@ fn mark(ui: &Ui, x: f32, band: Rect, held: bool) {
 }
 
 /// Context menu of a state where the fit uses no states: restricts the fit to this time range.
-pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Session) {
+pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), calibration: &mut Calibration) {
     response.context_menu(|ui| {
         ui.set_max_width(230.0);
         ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
         if ui.button(words::ONLY_THIS).on_hover_text(words::ONLY_THIS_MORE).clicked() {
-            session.calibration.choice.only_s = Some(stretch_s);
+            calibration.choice.only_s = Some(stretch_s);
             ui.close();
         }
-        if session.calibration.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
-            session.calibration.choice.only_s = None;
+        if calibration.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
+            calibration.choice.only_s = None;
             ui.close();
         }
     });
 }
 
 /// Context menu of a state; `at_s` is the time under the pointer.
-pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, session: &Session) -> Option<Change> {
+pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, document: &Document) -> Option<Change> {
     let mut change = None;
-    let cursor_s = session.document.cursor_s;
+    let cursor_s = document.cursor_s;
     response.context_menu(|ui| {
         let interval = &segmentation.states[index];
         ui.label(theme::caption(ui, words::SET_BY_HAND));

@@ -3,8 +3,9 @@
 use crate::text::diagnosis_words::{gain_unit, said_in_words, shown_unit, small, symbol, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, card, compact};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, card, compact};
 use egui::{Align, Color32, FontId, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 use estimator::diagnose::{Alternative, Cause, CauseParameter, Findings, Rollout, RolloutOf};
 use estimator::words::amount;

@@ -2,13 +2,18 @@
 
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
 use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::checking;
-use crate::ui::files;
-use crate::ui::icons::Icon;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::dialogs;
+use crate::ui::document::Document;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette, space};
+use crate::ui::kit::widgets::{bar, compact, icon_button, plain_card, remark};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::{bar, compact, icon_button, plain_card, remark};
 use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Findings, Validation};
 use std::path::PathBuf;
@@ -33,50 +38,69 @@ mod words {
 }
 
 /// Card below the causes, if there is a recording to validate on.
-pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
+pub fn card(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+    diagnosis: &Findings,
+) {
     if diagnosis.causes.is_empty() {
         return;
     }
     plain_card(ui, words::CHECK_ON_OTHER_RECORDINGS, |ui| {
         let text = words::CHECK_ON_OTHER_RECORDINGS_MORE;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
-        ask(ui, session);
-        left_out(ui, session);
-        for checked in &session.diagnosing.checked {
+        ask(ui, document, calibration, diagnosing, jobs);
+        left_out(ui, document, calibration, diagnosing, jobs);
+        for checked in &diagnosing.checked {
             ui.separator();
             result(ui, checked);
         }
     });
 }
 
-fn ask(ui: &mut Ui, session: &mut Session) {
+fn ask(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+) {
     let ctx = ui.ctx().clone();
     ui.horizontal(|ui| {
-        let busy = session.jobs.is_running(CHECK);
+        let busy = jobs.is_running(CHECK);
         let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
-        let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
+        let field = TextEdit::singleline(&mut diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
         let response = ui.add(field.desired_width(width));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING_TO_CHECK_ON));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE_FILES).on_hover_text(words::CHOOSE_FILES_MORE).clicked() {
-            files::ask_for_recordings_to_check(&ctx, &mut session.jobs);
+            dialogs::ask_for_recordings_to_check(&ctx, jobs);
         }
         if busy {
             ui.add(egui::Spinner::new().size(16.0));
         }
-        let path = session.diagnosing.check_field.trim().to_owned();
+        let path = diagnosing.check_field.trim().to_owned();
         if entered && !path.is_empty() {
-            checking::check(session, &ctx, On::Files(vec![PathBuf::from(path)]));
+            checking::check(document, calibration, diagnosing, jobs, &ctx, On::Files(vec![PathBuf::from(path)]));
         }
     });
 }
 
 /// Leave-one-out validation: each of several open recordings can be checked with the causes from the others.
-fn left_out(ui: &mut Ui, session: &mut Session) {
-    if session.document.recordings.len() < 2 {
+fn left_out(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+) {
+    if document.recordings.len() < 2 {
         return;
     }
-    let names: Vec<String> = session.document.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let names: Vec<String> = document.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = None;
     ui.menu_button(words::LEAVE_ONE_OUT, |ui| {
         for (k, name) in names.iter().enumerate() {
@@ -89,7 +113,7 @@ fn left_out(ui: &mut Ui, session: &mut Session) {
     .on_hover_text(words::LEAVE_ONE_OUT_MORE);
     if let Some(k) = chosen {
         let ctx = ui.ctx().clone();
-        checking::check(session, &ctx, On::LeftOut(k));
+        checking::check(document, calibration, diagnosing, jobs, &ctx, On::LeftOut(k));
     }
 }
 

@@ -1,9 +1,10 @@
 //! The comfort card beside the trainer's picture, and the message over the picture while the world is paused.
 
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::comfort::Comfort;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{compact, plain_card};
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -24,9 +25,8 @@ mod words {
 }
 
 /// Card of the persistent comfort settings.
-pub fn card(ui: &mut Ui, session: &mut Session) {
+pub fn card(ui: &mut Ui, comfort: &mut Comfort) {
     plain_card(ui, words::COMFORT, |ui| {
-        let comfort = &mut session.training.comfort;
         let choices = [
             (&mut comfort.left_handed, words::LEFT_HANDED, words::LEFT_HANDED_MORE),
             (&mut comfort.pauses, words::PAUSE_WHEN_THE_WINDOW, words::PAUSE_WHEN_THE_WINDOW_MORE),
@@ -34,13 +34,12 @@ pub fn card(ui: &mut Ui, session: &mut Session) {
         for (choice, label, hint) in choices {
             compact(ui, |ui| ui.checkbox(choice, label).on_hover_text(hint));
         }
-        sound(ui, session);
+        sound(ui, comfort);
     });
 }
 
 /// Volume control. A build without sound says so.
-fn sound(ui: &mut Ui, session: &mut Session) {
-    let comfort = &mut session.training.comfort;
+fn sound(ui: &mut Ui, comfort: &mut Comfort) {
     if !cfg!(feature = "sound") {
         let text = words::THIS_BUILD_IS_SILENT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());

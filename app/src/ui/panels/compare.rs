@@ -1,9 +1,10 @@
 //! The base and the extended world of a diagnosis, to be felt alternately.
 
-use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card_with_head, compact, key_hint, segmented};
+use crate::ui::message_list::Messages;
 use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
+use crate::ui::trainer::live::Trainer;
 use egui::{Align, Key, Layout, Ui};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -24,11 +25,11 @@ mod words {
 }
 
 /// Card beside the trainer's picture, while there are worlds to compare.
-pub fn compare(ui: &mut Ui, session: &mut Session) {
-    if session.training.trainer.compare.is_none() {
+pub fn compare(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages) {
+    if trainer.compare.is_none() {
         return;
     }
-    let shown = session.training.trainer.choice;
+    let shown = trainer.choice;
     let mut choice = shown;
     let choices = [
         (WorldChoice::Before, words::BEFORE, words::BEFORE_MORE),
@@ -56,33 +57,29 @@ pub fn compare(ui: &mut Ui, session: &mut Session) {
         },
     );
     if changed {
-        switch(session, choice);
+        switch(trainer, messages, choice);
     }
     if closed {
-        session.training.trainer.compare = None;
-        if matches!(session.training.trainer.choice, WorldChoice::Before | WorldChoice::After) {
-            switch(session, WorldChoice::default());
+        trainer.compare = None;
+        if matches!(trainer.choice, WorldChoice::Before | WorldChoice::After) {
+            switch(trainer, messages, WorldChoice::default());
         }
     }
 }
 
 /// Handles the key that switches, for hands that hold an object.
-pub fn key(ui: &Ui, session: &mut Session) {
-    if session.training.trainer.compare.is_none() || ui.ctx().egui_wants_keyboard_input() {
+pub fn key(ui: &Ui, trainer: &mut Trainer, messages: &mut Messages) {
+    if trainer.compare.is_none() || ui.ctx().egui_wants_keyboard_input() {
         return;
     }
     if ui.input(|i| i.key_pressed(Key::B)) {
-        let other = if session.training.trainer.choice == WorldChoice::After {
-            WorldChoice::Before
-        } else {
-            WorldChoice::After
-        };
-        switch(session, other);
+        let other = if trainer.choice == WorldChoice::After { WorldChoice::Before } else { WorldChoice::After };
+        switch(trainer, messages, other);
     }
 }
 
-fn switch(session: &mut Session, choice: WorldChoice) {
-    if let Err(problem) = session.training.trainer.choose(choice) {
-        session.messages.fail(problem);
+fn switch(trainer: &mut Trainer, messages: &mut Messages, choice: WorldChoice) {
+    if let Err(problem) = trainer.choose(choice) {
+        messages.fail(problem);
     }
 }

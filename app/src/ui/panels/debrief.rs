@@ -1,11 +1,12 @@
 //! Result of an attempt: the score, every judged measure beside the expert reference, the path of the hand beside an
 //! expert's.
 
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, role, space};
+use crate::ui::kit::widgets::{compact, remark};
 use crate::ui::lessons::state::Debrief;
 use crate::ui::lessons::trace::Trace;
-use crate::ui::theme::{self, palette, role, space};
-use crate::ui::widgets::{compact, remark};
 use egui::{Align, Layout, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
 use estimator::training::definitions::Definition;
 use estimator::training::lesson::advice::shown;
@@ -133,10 +134,10 @@ fn ways(ui: &mut Ui, own: &Trace, expert: Option<&Trace>) {
         ui.painter().with_clip_rect(rect).add(Shape::line(points, Stroke::new(width, color)));
     }
     compact(ui, |ui| {
-        crate::ui::widgets::swatch(ui, color);
+        crate::ui::kit::widgets::swatch(ui, color);
         ui.label(theme::caption(ui, words::YOUR_WAY));
         if expert.is_some() {
-            crate::ui::widgets::swatch(ui, p.secondary.gamma_multiply(0.8));
+            crate::ui::kit::widgets::swatch(ui, p.secondary.gamma_multiply(0.8));
             ui.label(theme::caption(ui, words::AN_EXPERTS));
         }
     });

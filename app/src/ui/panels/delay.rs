@@ -1,10 +1,10 @@
 //! The link between hand and world: its latency, its prediction model, and the resulting picture.
 
 use crate::text::format::{number, with_error};
-use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card_with_head, fact, segmented};
+use crate::ui::message_list::Messages;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{card_with_head, fact, segmented};
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};
 
@@ -30,11 +30,11 @@ const ROUND_TRIPS: [(f64, &str, &str); 3] = [
 const UNSTEADY: (f64, f64) = (0.02, 0.05);
 
 /// The card beside the trainer's picture.
-pub fn delay(ui: &mut Ui, session: &mut Session) {
-    let before = session.training.trainer.delay();
+pub fn delay(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages) {
+    let before = trainer.delay();
     let (mut line, mut manner) = (before, before);
     // The servo restarts, which would end a recording.
-    let free = !session.training.trainer.is_recording();
+    let free = !trainer.is_recording();
     card_with_head(
         ui,
         words::DELAY,
@@ -48,15 +48,15 @@ pub fn delay(ui: &mut Ui, session: &mut Session) {
                 ui.label(theme::caption(ui, text));
             } else {
                 ui.add_enabled_ui(free, |ui| choices(ui, &mut manner));
-                shown(ui, &session.training.trainer);
+                shown(ui, trainer);
             }
         },
     );
     let wanted = if line == before { manner } else { line };
     if wanted != before
-        && let Err(problem) = session.training.trainer.set_delay(wanted)
+        && let Err(problem) = trainer.set_delay(wanted)
     {
-        session.messages.fail(problem);
+        messages.fail(problem);
     }
 }
 

@@ -2,15 +2,17 @@
 
 use super::trainer_timing;
 use crate::text::format::{number, short_time};
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
+use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::{HandDevice, spec_sentences};
 use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::trainer::trial::Direction;
-use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
 use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
@@ -96,33 +98,33 @@ impl Panel for DeviceDetail {
         ScrollArea::vertical().id_salt("device detail").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             if ui.available_width() < TWO_COLUMNS {
-                abilities(ui, session, &spec);
-                values(ui, session);
+                abilities(ui, &mut session.training.trainer, &mut session.messages, &spec);
+                values(ui, &session.training.trainer);
                 return;
             }
             let half = 0.5 * (ui.available_width() - space::M);
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = space::M;
-                column(ui, half, |ui| abilities(ui, session, &spec));
-                column(ui, half, |ui| values(ui, session));
+                column(ui, half, |ui| abilities(ui, &mut session.training.trainer, &mut session.messages, &spec));
+                column(ui, half, |ui| values(ui, &session.training.trainer));
             });
         });
     }
 }
 
 /// Draws the device's description, its capabilities, and the force test.
-fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
-    about(ui, session, spec);
-    limits(ui, &session.training.trainer, spec);
-    force_test(ui, &mut session.training.trainer, spec);
-    super::passivity::passivity(ui, session);
+fn abilities(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages, spec: &DeviceSpec) {
+    about(ui, trainer, spec);
+    limits(ui, trainer, spec);
+    force_test(ui, trainer, spec);
+    super::passivity::passivity(ui, trainer, messages);
 }
 
 /// Draws the live values of the device and its timing.
-fn values(ui: &mut Ui, session: &Session) {
-    live(ui, &session.training.trainer);
-    super::answers::answers(ui, &session.training.trainer);
-    trainer_timing::timing(ui, &session.training.trainer);
+fn values(ui: &mut Ui, trainer: &Trainer) {
+    live(ui, trainer);
+    super::answers::answers(ui, trainer);
+    trainer_timing::timing(ui, trainer);
 }
 
 fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
@@ -133,9 +135,8 @@ fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
+fn about(ui: &mut Ui, trainer: &Trainer, spec: &DeviceSpec) {
     plain_card(ui, &spec.name, |ui| {
-        let trainer = &session.training.trainer;
         let what = match trainer.operator {
             Operator::You => trainer.hand.sentence(),
             Operator::Scripted => words::SCRIPT_MORE,

@@ -1,14 +1,17 @@
 //! The devices page, left column: all devices for the fingers, one per line, to choose from.
 
 use super::remote::RemoteCard;
-use crate::ui::icons::Icon;
+use crate::ui::document::Document;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{card, plain_card};
+use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::HandDevice;
-use crate::ui::trainer::live::Operator;
-use crate::ui::widgets::{card, plain_card};
+use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::workspace::Workspace;
 use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, Ui};
 use haptics::device::haply;
@@ -62,21 +65,22 @@ impl Panel for DeviceList {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, words::BUILT_IN, |ui| {
                 for hand in [HandDevice::Mouse, HandDevice::Touch, HandDevice::Keyboard] {
-                    chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
+                    chosen = chosen.take().or(row(ui, &session.training.trainer, Choice::Hand(hand), Ok(())));
                 }
                 #[cfg(feature = "gamepad")]
                 {
-                    chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Gamepad), Ok(())));
+                    chosen =
+                        chosen.take().or(row(ui, &session.training.trainer, Choice::Hand(HandDevice::Gamepad), Ok(())));
                 }
-                chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
+                chosen = chosen.take().or(row(ui, &session.training.trainer, Choice::Scripted, Ok(())));
                 let log = session.document.prepared().map(drop).ok_or(words::OPEN_A_LOG);
-                chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
+                chosen = chosen.take().or(row(ui, &session.training.trainer, Choice::Hand(HandDevice::Replay), log));
             });
-            chosen = chosen.take().or(self.boards(ui, session));
-            chosen = chosen.take().or(self.remote.ui(ui, session));
+            chosen = chosen.take().or(self.boards(ui, &session.training.trainer));
+            chosen = chosen.take().or(self.remote.ui(ui, &mut session.training.trainer));
         });
         if let Some(choice) = chosen {
-            take(session, choice);
+            take(&session.document, &mut session.training.trainer, &mut session.messages, choice);
         }
     }
 }
@@ -90,7 +94,7 @@ impl DeviceList {
         ui.ctx().request_repaint_after(LOOK_AGAIN);
     }
 
-    fn boards(&self, ui: &mut Ui, session: &Session) -> Option<Choice> {
+    fn boards(&self, ui: &mut Ui, trainer: &Trainer) -> Option<Choice> {
         let found = match self.ports.len() {
             0 => words::NO_PORT_FOUND.to_owned(),
             1 => words::ONE_PORT_FOUND.to_owned(),
@@ -106,7 +110,7 @@ impl DeviceList {
                 for left in &self.ports {
                     for right in self.ports.iter().filter(|right| *right != left) {
                         let hand = HandDevice::Haply(left.clone(), right.clone());
-                        chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
+                        chosen = chosen.take().or(row(ui, trainer, Choice::Hand(hand), Ok(())));
                     }
                 }
                 if self.ports.len() < 2 {
@@ -120,9 +124,8 @@ impl DeviceList {
 }
 
 /// Draws one device as a clickable line. Returns its choice when it was clicked.
-pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
+pub(super) fn row(ui: &mut Ui, trainer: &Trainer, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
-    let trainer = &session.training.trainer;
     let (title, sentence) = match &choice {
         Choice::Hand(hand) => (hand.title(), hand.sentence()),
         Choice::Scripted => (words::SCRIPTED_OPERATOR.to_owned(), words::SCRIPTED_OPERATOR_MORE),
@@ -152,16 +155,16 @@ pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<
 }
 
 /// Restarts the engine with the device; a problem is reported.
-fn take(session: &mut Session, choice: Choice) {
-    let log = session.document.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
+fn take(document: &Document, trainer: &mut Trainer, messages: &mut Messages, choice: Choice) {
+    let log = document.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
     let taken = match choice {
         Choice::Hand(hand) => {
-            session.training.trainer.settings.log = log;
-            session.training.trainer.take_up(hand)
+            trainer.settings.log = log;
+            trainer.take_up(hand)
         }
-        Choice::Scripted => session.training.trainer.hand_to(Operator::Scripted),
+        Choice::Scripted => trainer.hand_to(Operator::Scripted),
     };
     if let Err(problem) = taken {
-        session.messages.fail(problem);
+        messages.fail(problem);
     }
 }

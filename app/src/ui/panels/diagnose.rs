@@ -1,17 +1,22 @@
 //! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
 use crate::ui::atlas::Sheet;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, StartFrom};
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{compact, empty_state, primary_button, segmented, sheet};
 use crate::ui::panel::{Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::residual_plot::{cloud_plot, force_plot, has_directions, inks};
 use crate::ui::plots::residuals::{Cloud, Residuals};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
@@ -105,10 +110,14 @@ impl Panel for DiagnosePanel {
             let curves = answer.as_ref().and_then(|a| a.residuals.get(of).filter(|r| !r.is_empty()));
             let atlas = answer.as_ref().and_then(|a| Some((&**a, a.atlas.get(of).filter(|sheet| !sheet.is_empty())?)));
             match (curves, atlas) {
-                (Some(curves), None) => draw(ui, session, curves, false),
-                (Some(curves), Some(_)) if !session.diagnosing.shows_atlas => draw(ui, session, curves, true),
+                (Some(curves), None) => draw(ui, &mut session.document, &mut session.diagnosing, curves, false),
+                (Some(curves), Some(_)) if !session.diagnosing.shows_atlas => {
+                    draw(ui, &mut session.document, &mut session.diagnosing, curves, true);
+                }
                 // Tasks without a single coordinate have no curves along it.
-                (curves, Some((answer, sheet))) => suspects(ui, session, answer, sheet, curves.is_some()),
+                (curves, Some((answer, sheet))) => {
+                    suspects(ui, &mut session.document, &mut session.diagnosing, answer, sheet, curves.is_some());
+                }
                 (None, None) => nothing(ui, session),
             }
         });
@@ -120,7 +129,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         let text = words::NOTHING_YET_MORE;
         empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+                files::ask(ui.ctx(), &mut session.jobs, dialogs::OPEN_LOG);
             }
             if ui.link(words::RECORD_ONE).clicked() {
                 session.workspace = Workspace::Train;
@@ -138,13 +147,19 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     } else if let Some(problem) = session.diagnosing.problem.clone() {
         empty_state(ui, (Icon::Doubt, words::CANNOT), &problem, |ui| {
             if primary_button(ui, true, (Icon::Open, words::OPEN_ANOTHER)).on_hover_text(words::OPEN_KEYS).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+                files::ask(ui.ctx(), &mut session.jobs, dialogs::OPEN_LOG);
             }
             ui.add_space(space::XS);
-            start_from(ui, session);
+            start_from(ui, &session.document, &session.calibration, &mut session.diagnosing);
             if ui.link(words::AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                diagnosing::diagnose(session, &ctx);
+                diagnosing::diagnose(
+                    &session.document,
+                    &session.calibration,
+                    &mut session.diagnosing,
+                    &mut session.jobs,
+                    &ctx,
+                );
             }
         });
     } else if session.diagnosing.answer.is_some() {
@@ -152,24 +167,36 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         empty_state(ui, (Icon::Curves, words::NO_CURVES), text, |_| {});
     } else {
         let text = words::ASK_MORE;
-        empty_state(ui, (Icon::Diagnose, words::ASK), text, |ui| begin(ui, session));
+        empty_state(ui, (Icon::Diagnose, words::ASK), text, |ui| {
+            begin(ui, &session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs);
+        });
     }
 }
 
 /// Draws the button, and the chooser of the base model where there is a choice.
-fn begin(ui: &mut Ui, session: &mut Session) {
-    start_from(ui, session);
+fn begin(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+) {
+    start_from(ui, document, calibration, diagnosing);
     if primary_button(ui, true, (Icon::Diagnose, words::BEGIN)).clicked() {
         let ctx = ui.ctx().clone();
-        diagnosing::diagnose(session, &ctx);
+        diagnosing::diagnose(document, calibration, diagnosing, jobs, &ctx);
     }
 }
 
 /// Draws the chooser of a mechanism's base model; true if the choice changed.
-pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
-    let task = session.calibration.choice.task;
-    let mechanism =
-        session.document.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
+pub(super) fn start_from(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+) -> bool {
+    let task = calibration.choice.task;
+    let mechanism = document.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
     if !mechanism {
         return false;
     }
@@ -181,7 +208,7 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     let changed = ui
         .scope(|ui| {
             ui.set_max_width(CHOICES);
-            segmented(ui, &mut session.diagnosing.from, &choices)
+            segmented(ui, &mut diagnosing.from, &choices)
         })
         .inner;
     ui.add_space(space::S);
@@ -189,7 +216,14 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
 }
 
 /// Draws the atlas with its heading.
-fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, has_curves: bool) {
+fn suspects(
+    ui: &mut Ui,
+    document: &mut Document,
+    diagnosing: &mut Diagnosing,
+    answer: &Answer,
+    sheet: &Sheet,
+    has_curves: bool,
+) {
     ui.spacing_mut().item_spacing.y = space::XS;
     head(ui, words::ATLAS_HEADING, sheet.unit(), |ui| {
         let (p, inks) = (palette(ui), inks(ui));
@@ -198,27 +232,27 @@ fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, 
         key(ui, p.accent, 2.0, words::SUSPECT_ALONE);
         key(ui, inks.model, 2.0, words::LEFT_OVER);
         if has_curves {
-            views(ui, session);
+            views(ui, diagnosing);
         }
-        which(ui, session);
+        which(ui, document);
     });
     let text = words::ATLAS_MORE;
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     ui.add_space(space::XS);
-    super::atlas::show(ui, session, sheet, &answer.diagnosis);
+    super::atlas::show(ui, diagnosing, sheet, &answer.diagnosis);
 }
 
 /// Draws the switch between curves and atlas.
-fn views(ui: &mut Ui, session: &mut Session) {
-    let text = if session.diagnosing.shows_atlas { words::TO_CURVES } else { words::TO_ATLAS };
+fn views(ui: &mut Ui, diagnosing: &mut Diagnosing) {
+    let text = if diagnosing.shows_atlas { words::TO_CURVES } else { words::TO_ATLAS };
     let hint = words::SWITCH_MORE;
     if ui.link(text).on_hover_text(hint).clicked() {
-        session.diagnosing.shows_atlas = !session.diagnosing.shows_atlas;
+        diagnosing.shows_atlas = !diagnosing.shows_atlas;
     }
     ui.add_space(space::S);
 }
 
-fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals, has_atlas: bool) {
+fn draw(ui: &mut Ui, document: &mut Document, diagnosing: &mut Diagnosing, curves: &Residuals, has_atlas: bool) {
     let height = ui.available_height();
     let gap = space::S;
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -230,9 +264,9 @@ fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals, has_atlas: bool)
         key(ui, inks.model, 2.0, words::MODEL);
         key(ui, inks.measured, 2.0, words::MEASURED);
         if has_atlas {
-            views(ui, session);
+            views(ui, diagnosing);
         }
-        which(ui, session);
+        which(ui, document);
     });
     let upper = (TIME_SHARE * height).max(90.0);
     force_plot(ui, upper - HEAD, curves);
@@ -265,24 +299,24 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
 }
 
 /// Draws the chooser of the shown recording, if there are several.
-fn which(ui: &mut Ui, session: &mut Session) {
-    if session.document.recordings.len() < 2 {
+fn which(ui: &mut Ui, document: &mut Document) {
+    if document.recordings.len() < 2 {
         return;
     }
     // As tall as the text beside it.
     ui.spacing_mut().button_padding = vec2(space::S, 0.0);
-    let mut chosen = session.document.current;
-    let name = |k: usize| session.document.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
+    let mut chosen = document.current;
+    let name = |k: usize| document.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
     let list = ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0);
     let list = list.show_ui(ui, |ui| {
-        for k in 0..session.document.recordings.len() {
+        for k in 0..document.recordings.len() {
             ui.selectable_value(&mut chosen, k, name(k));
         }
     });
     let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::WHICH);
     list.response.widget_info(label);
-    if chosen != session.document.current {
-        session.document.select(chosen);
+    if chosen != document.current {
+        document.select(chosen);
     }
 }
 

@@ -4,16 +4,22 @@ use super::{causes, check, diagnose, next_experiment, why_not};
 use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, EXTEND};
+use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
@@ -71,26 +77,40 @@ impl Panel for DiagnosisPanel {
         let Some(answer) = session.diagnosing.answer.clone() else { return };
         ScrollArea::vertical().id_salt("diagnosis").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            verdict(ui, session, &answer);
-            next_experiment::settled(ui, session, &answer.diagnosis);
+            verdict(ui, &session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &answer);
+            next_experiment::settled(ui, &session.document, &answer.diagnosis);
             next_experiment::card(ui, session, &answer.diagnosis);
             extension(ui, session, &answer);
             for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
                 causes::cause(ui, k + 1, cause, &answer.diagnosis);
             }
             by_state(ui, &answer.diagnosis);
-            check::card(ui, session, &answer.diagnosis);
-            why_not::card(ui, session, &answer.diagnosis);
+            check::card(
+                ui,
+                &session.document,
+                &session.calibration,
+                &mut session.diagnosing,
+                &mut session.jobs,
+                &answer.diagnosis,
+            );
+            why_not::card(ui, &mut session.diagnosing, &answer.diagnosis);
             hidden(ui, &answer.diagnosis);
             warnings(ui, &answer.diagnosis);
         });
     }
 }
 
-fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
+fn verdict(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &mut Diagnosing,
+    jobs: &mut Jobs<Session>,
+    answer: &Answer,
+) {
     let d = &answer.diagnosis;
     let (mut again, mut changed) = (false, false);
-    let busy = session.jobs.is_running(DIAGNOSE);
+    let busy = jobs.is_running(DIAGNOSE);
     card(
         ui,
         words::DIAGNOSIS,
@@ -104,7 +124,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
         |ui| {
             ui.add(egui::Label::new(theme::strong(headline(d))).wrap());
             ui.add_space(space::XS);
-            changed = diagnose::start_from(ui, session);
+            changed = diagnose::start_from(ui, document, calibration, diagnosing);
             let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
             let unit = &compared_unit(d);
             level(ui, words::MODEL, d.baseline.heldout_rms_n, most, unit, inks.model);
@@ -117,7 +137,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     );
     if again || changed {
         let ctx = ui.ctx().clone();
-        diagnosing::diagnose(session, &ctx);
+        diagnosing::diagnose(document, calibration, diagnosing, jobs, &ctx);
     }
 }
 
@@ -206,7 +226,13 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             ui.horizontal(|ui| {
                 if primary_button(ui, !busy, (Icon::Extend, words::EXTEND_THE_MODEL)).clicked() {
                     let ctx = ui.ctx().clone();
-                    diagnosing::extend_model(session, &ctx);
+                    diagnosing::extend_model(
+                        &session.document,
+                        &session.calibration,
+                        &session.diagnosing,
+                        &mut session.jobs,
+                        &ctx,
+                    );
                 }
                 if busy {
                     ui.add(egui::Spinner::new().size(16.0));
@@ -239,16 +265,21 @@ fn before_after(ui: &mut Ui, d: &Findings) {
 }
 
 fn feel(ui: &mut Ui, session: &mut Session) {
-    let comparison = diagnosing::comparison(session);
+    let comparison = diagnosing::comparison(&session.diagnosing);
     ui.horizontal(|ui| {
         if primary_button(ui, comparison.is_ok(), (Icon::Feel, words::FEEL_IT_IN_TRAIN))
             .on_hover_text(words::FEEL_IT_IN_TRAIN_MORE)
             .clicked()
         {
-            diagnosing::feel(session);
+            diagnosing::feel(
+                &mut session.workspace,
+                &session.diagnosing,
+                &mut session.training.trainer,
+                &mut session.messages,
+            );
         }
         if ui.button((Icon::Save, words::SAVE_WORLD)).on_hover_text(words::SAVE_WORLD_MORE).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, files::SAVE_EXTENDED);
+            files::ask(ui.ctx(), &mut session.jobs, dialogs::SAVE_EXTENDED);
         }
     });
     if let Err(problem) = comparison {

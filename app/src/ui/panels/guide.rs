@@ -3,17 +3,20 @@
 
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::experiments::Experiments;
 use crate::ui::guided::{Guided, Phase};
 use crate::ui::guiding;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{primary_button, remark};
 use crate::ui::lessons::ghost::Wait;
 use crate::ui::lessons::state;
+use crate::ui::lessons::state::Lessons;
 use crate::ui::lessons::trace::Point;
 use crate::ui::scene::view::SceneResponse;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{primary_button, remark};
 use egui::{Frame, Margin, Pos2, ProgressBar, Shape, Stroke, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::HandGoal;
@@ -69,11 +72,11 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
     });
     let ctx = ui.ctx().clone();
     if begin {
-        guiding::begin_experiment(session);
+        guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
     } else if add {
         guiding::add_followed(session, &ctx);
     } else if leave {
-        guiding::leave_experiment(session);
+        guiding::leave_experiment(&mut session.experiments, &mut session.training.trainer);
     }
 }
 
@@ -121,10 +124,10 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
 }
 
 /// Draws two rings at the desired fingertip positions, filled while they should hold, and their future path.
-pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
-    let Some(guided) = &session.experiments.guided else { return };
-    let Some((step, _, goal)) = guided.now(&session.training.trainer) else { return };
-    let now_s = guided.time_s(&session.training.trainer).unwrap_or_default();
+pub fn ghost(ui: &Ui, view: &SceneResponse, experiments: &Experiments, trainer: &Trainer) {
+    let Some(guided) = &experiments.guided else { return };
+    let Some((step, _, goal)) = guided.now(trainer) else { return };
+    let now_s = guided.time_s(trainer).unwrap_or_default();
     let ahead = (0..=AHEAD_STEPS).map(|k| {
         let later_s = now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS);
         guided.table.route.at(later_s).0.center_m
@@ -134,8 +137,7 @@ pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
 }
 
 /// The same for an expert's fingers in a lesson during practice.
-pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
-    let lessons = &session.training.lessons;
+pub fn expert(ui: &Ui, view: &SceneResponse, lessons: &Lessons) {
     let Some(open) = lessons.open.as_deref().filter(|open| open.phase == state::Phase::Practising) else { return };
     let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
     let now_s = open.ghost.time_s;

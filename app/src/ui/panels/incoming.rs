@@ -1,8 +1,9 @@
 //! A long log while it is being read: every column so far, drawn from the reader's preview.
 
 use crate::text::format;
-use crate::ui::jobs::Progress;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::background::jobs::Progress;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use estimator::log::preview::{Curve, Preview};
 use estimator::log::pyramid::Band;

@@ -1,8 +1,9 @@
 //! Legends of the force gauges and of their live curve.
 
 use crate::text::format::number;
-use crate::ui::theme::{self, palette, role};
-use crate::ui::widgets::{compact, swatch};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, role};
+use crate::ui::kit::widgets::{compact, swatch};
 use egui::{Color32, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 

@@ -2,15 +2,18 @@
 
 use super::debrief;
 use crate::text::format;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::markdown;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
 use crate::ui::lessons::practising;
-use crate::ui::lessons::state::{Open, Phase};
-use crate::ui::markdown;
+use crate::ui::lessons::state::{Lessons, Open, Phase};
 use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
+use crate::ui::training::Training;
 use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;
@@ -64,33 +67,39 @@ enum Wish {
 /// Draws the whole column.
 pub fn side(ui: &mut Ui, session: &mut Session) {
     session.training.lessons.load();
-    let wish = if session.training.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
+    let wish = if session.training.lessons.open.is_some() {
+        open(ui, &mut session.training)
+    } else {
+        list(ui, &session.training.lessons)
+    };
     let ctx = ui.ctx().clone();
     match wish {
-        Some(Wish::Open(lesson)) => practising::open_lesson(session, &ctx, &lesson),
-        Some(Wish::Close) => practising::close_lesson(session),
-        Some(Wish::Watch) => practising::watch_lesson(session),
-        Some(Wish::Practise) => practising::practise_lesson(session),
-        Some(Wish::Test) => practising::test_lesson(session),
-        Some(Wish::Back) => practising::back_to_brief(session),
-        Some(Wish::End(answer)) => practising::end_lesson(session, &ctx, answer),
-        Some(Wish::OpenLog(path)) => opening::open(session, &ctx, &path),
+        Some(Wish::Open(lesson)) => {
+            practising::open_lesson(&mut session.training, &mut session.messages, &mut session.jobs, &ctx, &lesson);
+        }
+        Some(Wish::Close) => practising::close_lesson(&mut session.training, &mut session.messages),
+        Some(Wish::Watch) => practising::watch_lesson(&mut session.training, &mut session.messages),
+        Some(Wish::Practise) => practising::practise_lesson(&mut session.training, &mut session.messages),
+        Some(Wish::Test) => practising::test_lesson(&mut session.training, &mut session.messages),
+        Some(Wish::Back) => practising::back_to_brief(&mut session.training, &mut session.messages),
+        Some(Wish::End(answer)) => practising::end_lesson(&mut session.training, &mut session.jobs, &ctx, answer),
+        Some(Wish::OpenLog(path)) => opening::open(&mut session.document, &mut session.jobs, &ctx, &path),
         Some(Wish::Progress) => session.wanted_pane = Some(PanelId::PROGRESS),
         None => {}
     }
 }
 
-fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
+fn list(ui: &mut Ui, lessons: &Lessons) -> Option<Wish> {
     let mut wish = None;
     plain_card(ui, words::LESSONS, |ui| {
         ui.label(theme::caption(ui, words::LESSONS_MORE));
         ui.add_space(space::XS);
-        for (place, lesson) in session.training.lessons.all.iter().enumerate() {
+        for (place, lesson) in lessons.all.iter().enumerate() {
             if row(ui, place + 1, lesson) {
                 wish = Some(Wish::Open(Arc::clone(lesson)));
             }
         }
-        for problem in &session.training.lessons.problems {
+        for problem in &lessons.problems {
             remark(ui, Icon::Wrong, problem);
         }
     });
@@ -107,10 +116,10 @@ fn row(ui: &mut Ui, number: usize, lesson: &Lesson) -> bool {
     chosen
 }
 
-fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
+fn open(ui: &mut Ui, training: &mut Training) -> Option<Wish> {
     let mut wish = None;
-    let open = session.training.lessons.open.as_deref()?;
-    let (trainer, mut ghost_off) = (&session.training.trainer, session.training.lessons.ghost_off);
+    let open = training.lessons.open.as_deref()?;
+    let (trainer, mut ghost_off) = (&training.trainer, training.lessons.ghost_off);
     let all = |ui: &mut Ui| {
         if ui.link(words::ALL_LESSONS).clicked() {
             wish = Some(Wish::Close);
@@ -134,11 +143,11 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
             Phase::Debrief(debrief) => {
                 debrief::show(ui, debrief, open.expert.as_deref());
                 ui.add_space(space::S);
-                debriefed(ui, debrief, session.training.learning.trainee.as_deref())
+                debriefed(ui, debrief, training.learning.trainee.as_deref())
             }
         };
     });
-    session.training.lessons.ghost_off = ghost_off;
+    training.lessons.ghost_off = ghost_off;
     wish.or(asked)
 }
 
@@ -290,11 +299,11 @@ fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str)
 }
 
 /// Current instruction for the line over the picture; `None` outside of lessons.
-pub fn hint(session: &Session) -> Option<String> {
-    let open = session.training.lessons.open.as_deref()?;
+pub fn hint(training: &Training) -> Option<String> {
+    let open = training.lessons.open.as_deref()?;
     match &open.phase {
         Phase::Watching => {
-            let step = open.step(&session.training.trainer)?;
+            let step = open.step(&training.trainer)?;
             Some(open.lesson.demonstration.get(step)?.says.clone())
         }
         Phase::Practising | Phase::Testing => {

@@ -6,22 +6,28 @@ use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
 use crate::text::format::number;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::file_kind::LOAD;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, primary_button, segmented, sheet};
 use crate::ui::overlays;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::{Drawn, Sources, can_compare, curves};
-use crate::ui::plots::row::{GUTTER, PlotCache, RowInput, RowKind, axis_height, row};
 use crate::ui::plots::shift::Grasp;
+use crate::ui::plots::time_plot::{GUTTER, PlotCache, RowInput, RowKind, axis_height, row};
 use crate::ui::plots::xy::XyCache;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trying_values;
-use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
@@ -118,24 +124,26 @@ impl Panel for LogPanel {
                 return;
             }
             let Some(prepared) = session.document.prepared().cloned() else {
-                nothing_loaded(ui, session);
+                nothing_loaded(ui, &mut session.workspace, &mut session.jobs);
                 return;
             };
-            header(ui, session, &prepared);
+            header(ui, &session.document, &mut session.plots, &prepared);
             overlay_legend(ui, session);
             // Taken out of the session for as long as both are read.
             let mut plots = std::mem::take(&mut session.plots);
             let area = match plots.view {
                 LogView::Time => self.rows(ui, session, &mut plots, &prepared),
-                LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
+                LogView::Xy => {
+                    self.xy(ui, &mut session.document, &session.calibration, &session.diagnosing, &mut plots, &prepared)
+                }
             };
             let job = plots.derived.settle(ui.ctx(), &mut session.jobs, |session| &mut session.plots.derived);
             if let Some(job) = job {
                 job.if_given_up(|session, _| session.plots.give_up());
             }
             session.plots = plots;
-            band(ui, session, area);
-            transport(ui, session, area);
+            band(ui, &mut session.document, &mut session.calibration, &session.jobs, area);
+            transport(ui, &mut session.document, &session.calibration, area);
         });
     }
 }
@@ -153,29 +161,29 @@ impl Place {
     }
 }
 
-fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
+fn nothing_loaded(ui: &mut Ui, workspace: &mut Workspace, jobs: &mut Jobs<Session>) {
     let text = words::NO_RECORDING_YET_MORE;
     empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
         if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_LOG);
+            files::ask(ui.ctx(), jobs, dialogs::OPEN_LOG);
         }
         if ui.link(words::OR_RECORD_ONE).clicked() {
-            session.workspace = Workspace::Train;
+            *workspace = Workspace::Train;
         }
     });
 }
 
-fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
+fn header(ui: &mut Ui, document: &Document, plots: &mut PlotChoices, prepared: &Arc<Prepared>) {
     ui.horizontal_wrapped(|ui| {
         // As tall as the tallest, so that the rest is centred.
         ui.set_min_height(HEADER);
         ui.label(theme::heading(words::LOG));
         ui.add_space(space::S);
         let choices = [(LogView::Time, words::TIME, words::CURVES_OVER_TIME), (LogView::Xy, "XY", words::XY_MORE)];
-        segmented(ui, &mut session.plots.view, &choices);
-        if session.plots.view == LogView::Time {
-            chips(ui, &mut session.plots, prepared);
-            overlay_menu(ui, session);
+        segmented(ui, &mut plots.view, &choices);
+        if plots.view == LogView::Time {
+            chips(ui, plots, prepared);
+            overlay_menu(ui, document, plots);
             if ui.available_size_before_wrap().x > 360.0 {
                 ui.add_space(space::L);
                 ui.label(theme::caption(ui, words::WHEEL_ZOOMS_RIGHT));
@@ -200,14 +208,19 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
 }
 
 /// Sources of the shown recording's curves.
-fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
-    let analysis = session.calibration.analysis.as_ref();
+fn sources<'a>(
+    document: &'a Document,
+    calibration: &'a Calibration,
+    diagnosing: &'a Diagnosing,
+    prepared: &'a Arc<Prepared>,
+) -> Sources<'a> {
+    let analysis = calibration.analysis.as_ref();
     Sources {
-        recordings: &session.document.recordings,
+        recordings: &document.recordings,
         prepared,
-        simulated: trying_values::shown_curves(session),
-        extended: session.extended_replay(),
-        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.document.current)?.as_ref()?))),
+        simulated: trying_values::shown_curves(document, calibration),
+        extended: diagnosing.replay(document.current),
+        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(document.current)?.as_ref()?))),
     }
 }
 
@@ -238,16 +251,17 @@ fn under_hand(plots: &PlotChoices, clockless: bool) -> (Option<(String, bool)>, 
 /// Shifts the dragged recording. Returns the time of a curve that was only clicked.
 fn shifting(
     ui: &Ui,
-    session: &mut Session,
+    document: &mut Document,
+    jobs: &mut Jobs<Session>,
     plots: &mut PlotChoices,
     grasp: Option<Grasp>,
     area: Rangef,
 ) -> Option<f64> {
     plots.pointed = if let Some(Grasp::Over(place) | Grasp::Takes(place, _)) = grasp { Some(place) } else { None };
-    let clockless = session.document.prepared().is_some_and(|p| p.clockless());
-    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.document.current, clockless)) {
-        session.document.playing = false;
-        overlays::find_likeliest(session, ui.ctx(), &plots.likeliest, recording);
+    let clockless = document.prepared().is_some_and(|p| p.clockless());
+    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, document.current, clockless)) {
+        document.playing = false;
+        overlays::find_likeliest(document, jobs, ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
         plots.take_back();
@@ -258,18 +272,27 @@ fn shifting(
     let clicked = plots.let_go();
     let x = ui.input(|i| i.pointer.latest_pos()).filter(|_| clicked)?.x;
     let share = f64::from((x - area.min) / area.span().max(1.0));
-    Some(session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0))
+    Some(document.view_s.0 + share * (document.view_s.1 - document.view_s.0))
 }
 
 impl LogPanel {
     /// Draws one signal against another. Returns the horizontal extent of the slider below.
-    fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
+    fn xy(
+        &mut self,
+        ui: &mut Ui,
+        document: &mut Document,
+        calibration: &Calibration,
+        diagnosing: &Diagnosing,
+        plots: &mut PlotChoices,
+        prepared: &Arc<Prepared>,
+    ) -> Rangef {
         let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
-        let times = (session.document.view_s, session.document.cursor_s);
-        let (area, seek) = xy_view(ui, &mut self.xy, plots, &sources(session, prepared), times, height);
+        let times = (document.view_s, document.cursor_s);
+        let (area, seek) =
+            xy_view(ui, &mut self.xy, plots, &sources(document, calibration, diagnosing, prepared), times, height);
         if let Some(time) = seek {
-            session.document.playing = false;
-            session.document.seek(time);
+            document.playing = false;
+            document.seek(time);
         }
         area
     }
@@ -284,7 +307,8 @@ impl LogPanel {
     ) -> Rangef {
         let left = ui.max_rect().left() + GUTTER;
         let mut area = Rangef::new(left, ui.max_rect().right());
-        let places = places(&sources(session, prepared), plots, prepared);
+        let places =
+            places(&sources(&session.document, &session.calibration, &session.diagnosing, prepared), plots, prepared);
         if places.is_empty() {
             return area;
         }
@@ -300,7 +324,7 @@ impl LogPanel {
             let (mut seek, mut view_s, mut grasp) = (None, None, None);
             for (index, place) in places.iter().enumerate() {
                 let group = &prepared.groups[place.group];
-                let sources = sources(session, prepared);
+                let sources = sources(&session.document, &session.calibration, &session.diagnosing, prepared);
                 let last = index + 1 == places.len();
                 let input = RowInput {
                     index,
@@ -323,7 +347,7 @@ impl LogPanel {
                 (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
                 grasp = grasp.or(outcome.grasp);
             }
-            seek = seek.or(shifting(ui, session, plots, grasp, area));
+            seek = seek.or(shifting(ui, &mut session.document, &mut session.jobs, plots, grasp, area));
             if let Some(view) = view_s {
                 session.document.view_s = view;
             }

@@ -1,8 +1,8 @@
 //! Marks over the trainer's picture: flashes of impacts, and the device's position while its tips are on a virtual
 //! coupling.
 
+use crate::ui::kit::theme::role;
 use crate::ui::scene::view::SceneResponse;
-use crate::ui::theme::role;
 use crate::ui::trainer::impacts::Impacts;
 use egui::{Color32, Pos2, Stroke, Ui};
 use haptics::Vec2;

@@ -3,12 +3,13 @@
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::assistant::readings::{NEEDLE, only_thing};
-use crate::ui::icons::Icon;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::calibration::Calibration;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, card, compact, plain_card, remark, segmented};
 use crate::ui::trainer::live::Trainer;
 use crate::ui::trainer::watch::{Watch, task_of as watched_task};
-use crate::ui::widgets::{bar, card, compact, plain_card, remark, segmented};
 use egui::{Align, Layout, RichText, Ui};
 use estimator::estimate::Parameter;
 use estimator::online::information::Enough;
@@ -194,18 +195,17 @@ fn wish(enough: &Enough, factor: f64, unit: &str) -> String {
 }
 
 /// The card under the parameters of a loaded recording.
-pub fn of_recording(ui: &mut Ui, session: &Session) {
-    let Some(analysis) = session.calibration.analysis.as_ref().filter(|_| !session.calibration.enough.is_empty())
-    else {
+pub fn of_recording(ui: &mut Ui, calibration: &Calibration) {
+    let Some(analysis) = calibration.analysis.as_ref().filter(|_| !calibration.enough.is_empty()) else {
         return;
     };
-    let done = session.calibration.enough.iter().filter(|e| e.share >= 1.0).count();
+    let done = calibration.enough.iter().filter(|e| e.share >= 1.0).count();
     plain_card(ui, words::ENOUGH_DATA, |ui| {
         ui.label(theme::caption(
             ui,
-            format!("{done} of {} parameters are known as well as wanted.", session.calibration.enough.len()),
+            format!("{done} of {} parameters are known as well as wanted.", calibration.enough.len()),
         ));
-        let missing: Vec<Enough> = session.calibration.enough.iter().filter(|e| e.share < 1.0).cloned().collect();
+        let missing: Vec<Enough> = calibration.enough.iter().filter(|e| e.share < 1.0).cloned().collect();
         rows(ui, &analysis.fit.parameters, &missing, None);
     });
 }

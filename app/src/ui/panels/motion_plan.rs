@@ -3,10 +3,11 @@
 use crate::experiment::motion_plan::MotionPlan;
 use crate::text::format;
 use crate::ui::experimenting;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::palette;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette};
 use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use estimator::diagnose::Experiment;
 use haptics::law::Coordinate;
@@ -40,7 +41,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = if experimenting::path_of_tool(session).is_some() {
+    let hint = if experimenting::path_of_tool(&session.document, &session.calibration).is_some() {
         words::SAVE_TOOL_MORE
     } else {
         words::SAVE_COORDINATE_MORE

@@ -6,14 +6,22 @@ use crate::experiment::rehearse::{Outcome, Rehearsal};
 use crate::text::diagnosis_words::{listed, one, small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::diagnosis_state::is_mechanism;
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::experimenting;
 use crate::ui::experiments::{REHEARSE, ROUNDS, Stage};
 use crate::ui::files;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
+use crate::ui::message_list::Messages;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
+use crate::ui::trainer::live::Trainer;
 use egui::{Align, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Findings, NextExperiment};
 use haptics::law::Coordinate;
@@ -56,21 +64,21 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
         bar(ui, next.expected_power, 1.0, None, palette(ui).accent);
         ui.add_space(space::XS);
         if let Some(asked) = &next.experiment {
-            let coordinate = driven(session, diagnosis);
+            let coordinate = driven(&session.document, &session.calibration, diagnosis);
             perform(ui, session, next, coordinate.is_some());
             if let Some(coordinate) = coordinate.filter(|_| session.experiments.shows_plan) {
                 motion_plan::show(ui, session, asked, coordinate);
             }
         }
-        rehearsal(ui, session, next);
+        rehearsal(ui, &session.diagnosing, &session.training.trainer, &mut session.messages, &mut session.jobs, next);
         load(ui, session);
     });
 }
 
 /// Coordinate of a directly driven mechanism; `None` for objects that the hand of Train can hold.
-fn driven(session: &Session, diagnosis: &Findings) -> Option<Coordinate> {
-    let task = session.calibration.choice.task;
-    let is_mechanism = session.document.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
+fn driven(document: &Document, calibration: &Calibration, diagnosis: &Findings) -> Option<Coordinate> {
+    let task = calibration.choice.task;
+    let is_mechanism = document.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
     is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
 }
 
@@ -85,7 +93,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
              objects are simulated: it shows what would come out, and is no measurement."
         );
         if primary_button(ui, !busy, (Icon::Rehearse, words::REHEARSE)).on_hover_text(hint).clicked() {
-            experimenting::rehearse(session, &ctx);
+            experimenting::rehearse(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
         }
         if is_driven {
             let hint = words::PLAN_MORE;
@@ -125,11 +133,18 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
 }
 
 /// Draws the result of the simulation.
-fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
-    if let Some(problem) = &session.diagnosing.rehearsal_problem {
+fn rehearsal(
+    ui: &mut Ui,
+    diagnosing: &Diagnosing,
+    trainer: &Trainer,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+    next: &NextExperiment,
+) {
+    if let Some(problem) = &diagnosing.rehearsal_problem {
         remark(ui, Icon::Doubt, problem);
     }
-    let Some(rehearsal) = session.diagnosing.rehearsal.clone() else { return };
+    let Some(rehearsal) = diagnosing.rehearsal.clone() else { return };
     ui.add_space(space::XS);
     ui.separator();
     let note = words::SIMULATED;
@@ -143,7 +158,7 @@ fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     ui.add(egui::Label::new(theme::caption(ui, summary(&rehearsal, next))).wrap());
     if let Some(k) = add {
         let ctx = ui.ctx().clone();
-        experimenting::add_rehearsed(session, &ctx, k);
+        experimenting::add_rehearsed(diagnosing, trainer, messages, jobs, &ctx, k);
     }
 }
 
@@ -205,7 +220,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if icon_button(ui, Icon::More, true, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-            files::ask(&ctx, &mut session.jobs, files::ADD_EXPERIMENT);
+            files::ask(&ctx, &mut session.jobs, dialogs::ADD_EXPERIMENT);
         }
         let path = session.experiments.path_field.trim().to_owned();
         if entered && !path.is_empty() {
@@ -215,7 +230,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Questions resolved by a later recording, and simulated recordings: above the causes.
-pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Findings) {
+pub fn settled(ui: &mut Ui, document: &Document, diagnosis: &Findings) {
     if !diagnosis.settled.is_empty() {
         plain_card(ui, words::SETTLED, |ui| {
             for settled in &diagnosis.settled {
@@ -225,7 +240,7 @@ pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Findings) {
             }
         });
     }
-    let simulated = experimenting::simulated(session);
+    let simulated = experimenting::simulated(document);
     if !simulated.is_empty() {
         plain_card(ui, words::NOT_MEASURED, |ui| {
             let text = format!(

@@ -1,11 +1,15 @@
 //! Recordings overlaid on the shown one: the menu that chooses them, and the legend with their shifts.
 
-use crate::ui::icons::{self, Icon};
+use crate::ui::document::Document;
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, recording as color, space};
+use crate::ui::kit::widgets::{quiet_icon_button, swatch};
 use crate::ui::overlays;
 use crate::ui::overlays::ALIGN;
+use crate::ui::plots::choices::PlotChoices;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, recording as color, space};
-use crate::ui::widgets::{quiet_icon_button, swatch};
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Ui};
 
@@ -27,8 +31,8 @@ mod words {
 const LONGEST_NAME: usize = 22;
 
 /// Draws the button with the list of the loaded recordings, if there are several.
-pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
-    if session.document.recordings.len() < 2 {
+pub fn overlay_menu(ui: &mut Ui, document: &Document, plots: &mut PlotChoices) {
+    if document.recordings.len() < 2 {
         return;
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -36,13 +40,13 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
         egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new(words::OVERLAY).size(11.5))).small();
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.set_min_width(220.0);
-        for recording in 0..session.document.recordings.len() {
-            let name = session.document.recordings[recording].recording.name.clone();
-            let here = recording == session.document.current;
-            let mut on = here || session.plots.overlaid.iter().any(|o| o.recording == recording);
+        for recording in 0..document.recordings.len() {
+            let name = document.recordings[recording].recording.name.clone();
+            let here = recording == document.current;
+            let mut on = here || plots.overlaid.iter().any(|o| o.recording == recording);
             let words = if here { format!("{name} (shown)") } else { name };
             if ui.add_enabled(!here, egui::Checkbox::new(&mut on, words)).changed() {
-                overlays::toggle_overlay(session, recording);
+                overlays::toggle_overlay(plots, recording);
             }
         }
     });
@@ -89,17 +93,17 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
         .clicked()
     {
         let ctx = ui.ctx().clone();
-        overlays::align(session, &ctx, recording);
+        overlays::align(&session.document, &mut session.jobs, &ctx, recording);
     }
-    let known = overlays::first_contact_s(session, recording).is_some()
-        && overlays::first_contact_s(session, session.document.current).is_some();
+    let known = overlays::first_contact_s(&session.calibration, recording).is_some()
+        && overlays::first_contact_s(&session.calibration, session.document.current).is_some();
     let (hint, why) = (words::FIRST_CONTACT_MORE, words::FIRST_CONTACT_NOT);
     let button = egui::Button::new(words::FIRST_CONTACT).small();
     if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {
-        overlays::align_by_contact(session, recording);
+        overlays::align_by_contact(&session.document, &session.calibration, &mut session.plots, recording);
     }
     if quiet_icon_button(ui, Icon::Close, true, words::TAKE_AWAY).on_hover_text(words::TAKE_AWAY).clicked() {
-        overlays::toggle_overlay(session, recording);
+        overlays::toggle_overlay(&mut session.plots, recording);
     }
 }
 

@@ -1,14 +1,15 @@
 //! The editor of one parameter: a trial value is simulated at once, and prior knowledge is set here.
 
 use crate::text::format::{self, Quantity};
+use crate::ui::calibration::Calibration;
 use crate::ui::fit_choice::Stated;
-use crate::ui::icons::Icon;
-use crate::ui::session::Session;
-use crate::ui::teach;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::tooltips;
+use crate::ui::kit::widgets::{call, card, compact, segmented};
 use crate::ui::trying_values;
 use crate::ui::what_if::residual_rms;
-use crate::ui::widgets::{call, card, compact, segmented};
 use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
@@ -50,36 +51,36 @@ enum Source {
 }
 
 /// Draws the card of the selected parameter, if there is one.
-pub fn selected(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
-    let Some(name) = session.calibration.selected_parameter.clone() else { return };
+pub fn selected(ui: &mut Ui, calibration: &mut Calibration) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
+    let Some(name) = calibration.selected_parameter.clone() else { return };
     let Some(parameter) = analysis.fit.parameters.iter().find(|p| p.full_name() == name) else { return };
     let quantity = format::parameter(&parameter.name, parameter.value);
     let heading = format!("{} · {}", format::object(&parameter.object), quantity.label.to_lowercase());
     let mut close = false;
     let leave = |ui: &mut Ui| close = ui.link(words::CLOSE).clicked();
     card(ui, &heading, leave, |ui| {
-        if let Some(lesson) = teach::parameter(&parameter.name) {
+        if let Some(lesson) = tooltips::parameter(&parameter.name) {
             ui.label(theme::caption(ui, format!("{} {}", lesson.what, lesson.formula)));
             ui.add_space(space::XS);
         }
-        try_another(ui, session, parameter, &quantity);
+        try_another(ui, calibration, parameter, &quantity);
         ui.add_space(space::S);
-        state(ui, session, parameter, &quantity);
+        state(ui, calibration, parameter, &quantity);
     });
     if close {
-        session.calibration.selected_parameter = None;
+        calibration.selected_parameter = None;
     }
 }
 
-fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
+fn try_another(ui: &mut Ui, calibration: &mut Calibration, parameter: &Parameter, quantity: &Quantity) {
     let name = parameter.full_name();
     let Some(fitted) = parameter.value.filter(|_| parameter.identified) else {
         ui.label(theme::caption(ui, words::NO_VALUE));
         return;
     };
     ui.label(theme::strong(words::TRY_ANOTHER_VALUE));
-    let tried = session.calibration.what_if.values.get(&name).copied();
+    let tried = calibration.what_if.values.get(&name).copied();
     let reach = (SIGMAS * parameter.std_error.unwrap_or(0.0)).max(SHARE * fitted.abs()).max(1e-9);
     let mut shown = tried.unwrap_or(fitted) * quantity.factor;
     let range = (fitted - reach) * quantity.factor..=(fitted + reach) * quantity.factor;
@@ -93,21 +94,20 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
         call(&slid, words::ANOTHER_VALUE);
         call(&typed, words::ANOTHER_VALUE_AS_A_NUMBER);
         if slid.changed() || typed.changed() {
-            trying_values::try_value(session, &name, Some(shown / quantity.factor));
+            trying_values::try_value(calibration, &name, Some(shown / quantity.factor));
         }
     });
-    outcome(ui, session, tried.is_some());
+    outcome(ui, calibration, tried.is_some());
 }
 
 /// Draws the force residual of the trial values, beside that of the fit.
-fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
-    if !session.calibration.what_if.is_on() {
+fn outcome(ui: &mut Ui, calibration: &mut Calibration, here: bool) {
+    if !calibration.what_if.is_on() {
         ui.label(theme::caption(ui, words::THE_SIMULATED_CURVES));
         return;
     }
     let p = palette(ui);
-    let (fitted, tried) =
-        (residual_rms(&session.calibration.replays), residual_rms(&session.calibration.what_if.replays));
+    let (fitted, tried) = (residual_rms(&calibration.replays), residual_rms(&calibration.what_if.replays));
     if let (Some(fitted), Some(tried)) = (fitted, tried) {
         let change = 100.0 * (tried / fitted.max(1e-12) - 1.0);
         let color = if change > 1.0 { p.caution } else { p.good };
@@ -122,10 +122,10 @@ fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
     } else {
         ui.label(theme::caption(ui, words::REPLAYING));
     }
-    let several = session.calibration.what_if.values.len() - usize::from(here);
+    let several = calibration.what_if.values.len() - usize::from(here);
     compact(ui, |ui| {
         if ui.link(words::BACK_TO_THE_FITTED).clicked() {
-            session.calibration.what_if.forget();
+            calibration.what_if.forget();
         }
         if several > 0 {
             ui.label(theme::caption(ui, format!("{several} more tried")));
@@ -133,9 +133,9 @@ fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
     });
 }
 
-fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
+fn state(ui: &mut Ui, calibration: &mut Calibration, parameter: &Parameter, quantity: &Quantity) {
     let name = Stated::name_of(parameter);
-    let stated = &mut session.calibration.choice.stated;
+    let stated = &mut calibration.choice.stated;
     let before = if stated.known.contains_key(&name) {
         Source::Known
     } else if stated.prior.contains_key(&name) {
@@ -154,8 +154,7 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
         stated.known.remove(&name);
         stated.prior.remove(&name);
         // The slider's value is the one to keep.
-        let value =
-            session.calibration.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
+        let value = calibration.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
         let std = parameter.std_error.filter(|e| *e > 0.0).unwrap_or_else(|| (0.1 * value.abs()).max(1e-6));
         match source {
             Source::Known => drop(stated.known.insert(name.clone(), value)),

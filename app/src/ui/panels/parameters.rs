@@ -1,15 +1,21 @@
 //! The fitted parameters: value ± standard error in readable units. Unidentifiable ones are greyed, with the reason.
 
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::fit_choice::Stated;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::tooltips;
+use crate::ui::kit::widgets::{card, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
 use crate::ui::refits::{FIT, SIMULATE};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card, remark};
-use crate::ui::{stage, teach};
+use crate::ui::stage;
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
@@ -68,18 +74,18 @@ impl Panel for ParametersPanel {
             },
             |ui| match &analysis {
                 Some(analysis) => {
-                    table(ui, session, &analysis.fit);
-                    quality(ui, session, &analysis.fit);
+                    table(ui, &mut session.calibration, &analysis.fit);
+                    quality(ui, &session.document, &session.calibration, &session.jobs, &analysis.fit);
                 }
-                None => nothing(ui, session, busy),
+                None => nothing(ui, &session.calibration, busy),
             },
         );
     }
 }
 
 /// Explains why there is no table yet.
-fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
-    let (title, text) = match (&session.calibration.fit_problem, busy) {
+fn nothing(ui: &mut Ui, calibration: &Calibration, busy: bool) {
+    let (title, text) = match (&calibration.fit_problem, busy) {
         (_, true) => (words::FITTING, words::FITTING_MORE),
         (Some(problem), _) => (words::NO_FIT, problem.as_str()),
         _ => (words::NOTHING_MEASURED_YET, words::NOTHING_MEASURED_YET_MORE),
@@ -88,7 +94,7 @@ fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
     ui.label(theme::caption(ui, text));
 }
 
-fn table(ui: &mut Ui, session: &mut Session, fit: &Fit) {
+fn table(ui: &mut Ui, calibration: &mut Calibration, fit: &Fit) {
     let mut objects: Vec<&str> = Vec::new();
     for parameter in &fit.parameters {
         if !objects.contains(&parameter.object.as_str()) {
@@ -121,7 +127,7 @@ fn table(ui: &mut Ui, session: &mut Session, fit: &Fit) {
             for object in objects {
                 heading(&mut body, object);
                 for parameter in fit.parameters.iter().filter(|p| p.object == object) {
-                    line(&mut body, session, parameter);
+                    line(&mut body, calibration, parameter);
                 }
             }
         });
@@ -140,12 +146,12 @@ fn heading(body: &mut TableBody<'_>, object: &str) {
     });
 }
 
-fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) {
+fn line(body: &mut TableBody<'_>, calibration: &mut Calibration, parameter: &Parameter) {
     let full = parameter.full_name();
     let quantity = format::parameter(&parameter.name, parameter.value);
-    let stated = is_stated(session, parameter);
+    let stated = is_stated(calibration, parameter);
     body.row(LINE, |mut row| {
-        row.set_selected(session.calibration.selected_parameter.as_ref() == Some(&full));
+        row.set_selected(calibration.selected_parameter.as_ref() == Some(&full));
         let name = quantity.label.clone();
         let shown = parameter.value.filter(|_| parameter.identified);
         row.col(|ui| {
@@ -180,8 +186,8 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
         let response = row.response();
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Row, true, &full));
         if response.clicked() {
-            let again = session.calibration.selected_parameter.as_ref() == Some(&full);
-            session.calibration.selected_parameter = (!again).then(|| full.clone());
+            let again = calibration.selected_parameter.as_ref() == Some(&full);
+            calibration.selected_parameter = (!again).then(|| full.clone());
         }
         response.on_hover_ui(|ui| explain(ui, parameter));
     });
@@ -195,8 +201,8 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
 }
 
 /// Icon and word beside parameters with a user-defined prior, bound or value.
-fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static str)> {
-    let (stated, name) = (&session.calibration.choice.stated, Stated::name_of(parameter));
+fn is_stated(calibration: &Calibration, parameter: &Parameter) -> Option<(Icon, &'static str)> {
+    let (stated, name) = (&calibration.choice.stated, Stated::name_of(parameter));
     if stated.known.contains_key(&name) {
         Some((Icon::Lock, "frozen"))
     } else if stated.prior.contains_key(&name) {
@@ -209,7 +215,7 @@ fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static
 /// Tooltip: meaning, origin of the value, or the reason why there is none.
 fn explain(ui: &mut Ui, parameter: &Parameter) {
     ui.set_max_width(320.0);
-    if let Some(lesson) = teach::parameter(&parameter.name) {
+    if let Some(lesson) = tooltips::parameter(&parameter.name) {
         ui.label(lesson.what);
         if !lesson.formula.is_empty() {
             ui.label(RichText::new(lesson.formula).italics().color(palette(ui).secondary));
@@ -223,7 +229,7 @@ fn explain(ui: &mut Ui, parameter: &Parameter) {
 }
 
 /// Draws how well the model reproduces the measurement.
-fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
+fn quality(ui: &mut Ui, document: &Document, calibration: &Calibration, jobs: &Jobs<Session>, fit: &Fit) {
     ui.add_space(space::S);
     if let Some(quality) = &fit.quality {
         let text = format!(
@@ -235,9 +241,9 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
         );
         ui.label(theme::caption(ui, text));
     }
-    if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
-        residual(ui, session, simulation);
-    } else if session.jobs.is_running(SIMULATE) {
+    if let Some(simulation) = calibration.replay(document.current).and_then(|r| r.simulation.as_ref()) {
+        residual(ui, document, simulation);
+    } else if jobs.is_running(SIMULATE) {
         ui.label(theme::caption(ui, words::REPLAYING_THE_MOTION));
     }
 }
@@ -246,8 +252,8 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
 const DEPARTS: f64 = 0.5;
 
 /// Draws the force residual of the simulation in the fitted world.
-fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
-    let Some(prepared) = session.document.prepared() else { return };
+fn residual(ui: &mut Ui, document: &Document, simulation: &Simulation) {
+    let Some(prepared) = document.prepared() else { return };
     // Taken together: a channel that carries little force may be entirely wrong.
     let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {

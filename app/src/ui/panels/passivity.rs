@@ -1,11 +1,12 @@
 //! The passivity observer's reading, and the switch of the controller.
 
 use crate::text::format::number;
-use crate::ui::icons::Icon;
-use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{card, fact, remark};
+use crate::ui::message_list::Messages;
 use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
-use crate::ui::widgets::{card, fact, remark};
+use crate::ui::trainer::live::Trainer;
 use egui::{Align, Layout, Ui};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
@@ -32,12 +33,12 @@ const GIVEN_OUT_J: f64 = -0.5e-3;
 const STRENGTHS: [(&str, f64); 3] = [("0.5", 0.5), ("2", USUAL_CONTROL_N_S_M), ("10", 10.0)];
 
 /// The card beside the trainer's picture and on the devices page.
-pub fn passivity(ui: &mut Ui, session: &mut Session) {
-    let Some(energy_j) = session.training.trainer.scene().map(|(snapshot, _)| snapshot.tick.energy_j) else { return };
-    let before = session.training.trainer.control_n_s_m();
+pub fn passivity(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages) {
+    let Some(energy_j) = trainer.scene().map(|(snapshot, _)| snapshot.tick.energy_j) else { return };
+    let before = trainer.control_n_s_m();
     let (mut on, mut most) = (before.is_some(), before.unwrap_or(USUAL_CONTROL_N_S_M));
     // The servo restarts, which would end a recording.
-    let free = !session.training.trainer.is_recording();
+    let free = !trainer.is_recording();
     let switch = |ui: &mut Ui| {
         let response = ui.add_enabled(free, egui::Checkbox::new(&mut on, words::CONTROLLER));
         response.on_hover_text(WHY).on_disabled_hover_text(words::NOT_WHILE_A_RECORDING);
@@ -54,9 +55,9 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
     });
     let wanted = on.then_some(most);
     if wanted != before
-        && let Err(problem) = session.training.trainer.set_control(wanted)
+        && let Err(problem) = trainer.set_control(wanted)
     {
-        session.messages.fail(problem);
+        messages.fail(problem);
     }
 }
 

@@ -2,16 +2,19 @@
 
 use crate::history::attempt::Attempt;
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::dialogs;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
-use crate::ui::learning::{Learned, Practised};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette, space};
+use crate::ui::kit::widgets::{call, compact, empty_state, plain_card};
+use crate::ui::learning::{Learned, Learning, Practised};
 use crate::ui::panel::{Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::{call, compact, empty_state, plain_card};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
 use egui::{
@@ -99,7 +102,7 @@ impl Panel for ProgressPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, words::WHO_PRACTISES, |ui| who(ui, session));
+            plain_card(ui, words::WHO_PRACTISES, |ui| who(ui, &mut session.training.learning));
             if session.training.learning.attempts.is_empty() {
                 let text = match &session.training.learning.trainee {
                     Some(name) => {
@@ -110,14 +113,13 @@ impl Panel for ProgressPanel {
                 empty_state(ui, (Icon::Progress, words::NO_ATTEMPTS_YET), &text, |_| {});
                 return;
             }
-            plain_card(ui, words::LEARNING, |ui| learning(ui, session));
-            plain_card(ui, words::ATTEMPTS, |ui| attempts(ui, session));
+            plain_card(ui, words::LEARNING, |ui| learning(ui, &mut session.training.learning));
+            plain_card(ui, words::ATTEMPTS, |ui| attempts(ui, &session.training.learning, &mut session.jobs));
         });
     }
 }
 
-fn who(ui: &mut Ui, session: &mut Session) {
-    let learning = &mut session.training.learning;
+fn who(ui: &mut Ui, learning: &mut Learning) {
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         let shown = learning.trainee.clone().unwrap_or_else(|| words::NOBODY_YET.to_owned());
@@ -144,17 +146,16 @@ fn who(ui: &mut Ui, session: &mut Session) {
     if let Some(name) = chosen {
         learning.choose(&name);
     }
-    if !session.training.learning.is_kept() {
+    if !learning.is_kept() {
         let text = words::NOTHING_IS_KEPT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     }
 }
 
-fn learning(ui: &mut Ui, session: &mut Session) {
-    lessons(ui, session);
-    let learned = session.training.learning.learned.clone();
-    let expert =
-        session.training.learning.shown().and_then(|p| session.training.learning.experts.get(&p.lesson).copied());
+fn learning(ui: &mut Ui, learning: &mut Learning) {
+    lessons(ui, learning);
+    let learned = learning.learned.clone();
+    let expert = learning.shown().and_then(|p| learning.experts.get(&p.lesson).copied());
     if learned.tries.is_empty() {
         ui.label(theme::caption(ui, words::NONE_OF_THESE));
         return;
@@ -165,8 +166,8 @@ fn learning(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Draws the chooser of the lesson.
-fn lessons(ui: &mut Ui, session: &mut Session) {
-    let (practised, shown) = (session.training.learning.practised(), session.training.learning.shown());
+fn lessons(ui: &mut Ui, learning: &mut Learning) {
+    let (practised, shown) = (learning.practised(), learning.shown());
     let mut chosen: Option<Practised> = None;
     ui.horizontal(|ui| {
         let words = shown.as_ref().map(Practised::words).unwrap_or_default();
@@ -182,7 +183,7 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
         call(&list.response, words::LESSON);
     });
     if chosen.is_some() {
-        session.training.learning.look_at(chosen);
+        learning.look_at(chosen);
     }
     let (p, model) = (palette(ui), inks(ui).model);
     ui.horizontal_wrapped(|ui| {
@@ -358,9 +359,9 @@ fn when(attempt: &Attempt) -> String {
     attempt.began.strftime(DATE_FORMAT).to_string()
 }
 
-fn attempts(ui: &mut Ui, session: &mut Session) {
+fn attempts(ui: &mut Ui, learning: &Learning, jobs: &mut Jobs<Session>) {
     compact(ui, |ui| {
-        let all = session.training.learning.learned.attempts.len();
+        let all = learning.learned.attempts.len();
         ui.label(theme::caption(
             ui,
             if all == 1 { words::ONE_ATTEMPT_ALONE.to_owned() } else { format!("{all} attempts.") },
@@ -368,14 +369,14 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let hint = words::SAVE_AS_A_TABLE_MORE;
             if ui.link(words::SAVE_AS_A_TABLE).on_hover_text(hint).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::SAVE_HISTORY);
+                files::ask(ui.ctx(), jobs, dialogs::SAVE_HISTORY);
             }
         });
     });
     ui.add_space(space::XS);
     let p = palette(ui);
     ui.spacing_mut().interact_size.y = ROW;
-    let rows = &session.training.learning.learned.attempts;
+    let rows = &learning.learned.attempts;
     // In a narrow panel the table is wider than its card.
     ScrollArea::horizontal().id_salt("table").show(ui, |ui| table(ui, rows, p));
 }

@@ -1,18 +1,24 @@
 //! The left column of the calibration: choice of the recording, its task, refit, save.
 
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::by_hand;
+use crate::ui::calibration::Calibration;
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::files::{self, Dialog};
 use crate::ui::fit_choice::Stated;
 use crate::ui::fitting;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{call, fact, icon_button, plain_card, primary_button};
+use crate::ui::message_list::Messages;
 use crate::ui::opening;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::refits::FIT;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{call, fact, icon_button, plain_card, primary_button};
 use crate::ui::workspace::Workspace;
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
@@ -91,49 +97,61 @@ impl Panel for RecordingPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, words::RECORDING, |ui| source(ui, session));
+            plain_card(ui, words::RECORDING, |ui| {
+                source(ui, &mut session.document, &mut session.wanted_pane, &mut session.messages, &mut session.jobs);
+            });
             if session.document.prepared().is_some() {
-                plain_card(ui, words::FIT, |ui| fit(ui, session));
-                plain_card(ui, words::SAVE, |ui| self.save(ui, session));
+                plain_card(ui, words::FIT, |ui| {
+                    fit(ui, &session.document, &mut session.calibration, &mut session.messages, &mut session.jobs);
+                });
+                plain_card(ui, words::SAVE, |ui| {
+                    self.save(ui, &session.document, &session.calibration, &mut session.jobs);
+                });
             }
         });
     }
 }
 
-fn source(ui: &mut Ui, session: &mut Session) {
+fn source(
+    ui: &mut Ui,
+    document: &mut Document,
+    wanted_pane: &mut Option<PanelId>,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
     let ctx = ui.ctx().clone();
     let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(size, layout, |ui| {
         if icon_button(ui, Icon::Open, true, words::OPEN).on_hover_text(words::OPEN_MORE).clicked() {
-            files::ask(&ctx, &mut session.jobs, files::OPEN_LOG);
+            files::ask(&ctx, jobs, dialogs::OPEN_LOG);
         }
-        let field = TextEdit::singleline(&mut session.document.path_field).hint_text(words::PATH);
+        let field = TextEdit::singleline(&mut document.path_field).hint_text(words::PATH);
         ui.add(field.desired_width(ui.available_width()))
     });
     let enter = response.inner.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     ui.horizontal_wrapped(|ui| {
-        let named = !session.document.path_field.trim().is_empty();
+        let named = !document.path_field.trim().is_empty();
         if enter && named {
-            let path = PathBuf::from(session.document.path_field.trim());
-            opening::open_any(session, &ctx, &path);
+            let path = PathBuf::from(document.path_field.trim());
+            opening::open_any(document, wanted_pane, messages, jobs, &ctx, &path);
         }
-        let named = named || session.document.path.is_some();
+        let named = named || document.path.is_some();
         let hint = words::MAP_MORE;
         if ui.add_enabled(named, egui::Button::new((Icon::Columns, words::MAP))).on_hover_text(hint).clicked() {
-            opening::map_columns(session, &ctx, None);
+            opening::map_columns(document, jobs, &ctx, None);
         }
     });
-    let Some(prepared) = session.document.prepared().cloned() else {
+    let Some(prepared) = document.prepared().cloned() else {
         ui.label(theme::caption(ui, words::DROP));
         return;
     };
     ui.add_space(space::XS);
     let recording = &prepared.recording;
-    if session.document.recordings.len() > 1 {
-        choose_trial(ui, session);
+    if document.recordings.len() > 1 {
+        choose_trial(ui, document);
     } else {
-        fact(ui, words::NAME, recording.name.clone()).on_hover_text(whole_path(session));
+        fact(ui, words::NAME, recording.name.clone()).on_hover_text(whole_path(document));
     }
     fact(ui, words::LENGTH, recording.duration_s().map_or_else(|| words::NO_CLOCK.to_owned(), |d| format!("{d:.1} s")));
     fact(ui, words::SAMPLES, format::grouped(recording.len()));
@@ -146,13 +164,13 @@ fn source(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-fn whole_path(session: &Session) -> String {
-    session.document.path.as_ref().map(|path| path.display().to_string()).unwrap_or_default()
+fn whole_path(document: &Document) -> String {
+    document.path.as_ref().map(|path| path.display().to_string()).unwrap_or_default()
 }
 
-fn choose_trial(ui: &mut Ui, session: &mut Session) {
-    let names: Vec<String> = session.document.recordings.iter().map(|p| p.recording.name.clone()).collect();
-    let mut chosen = session.document.current;
+fn choose_trial(ui: &mut Ui, document: &mut Document) {
+    let names: Vec<String> = document.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let mut chosen = document.current;
     let list = ComboBox::from_id_salt("trial")
         .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
         .selected_text(&names[chosen])
@@ -163,100 +181,106 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
             }
         });
     call(&list.response, words::WHICH);
-    if chosen != session.document.current {
-        session.document.select(chosen);
+    if chosen != document.current {
+        document.select(chosen);
     }
 }
 
-fn fit(ui: &mut Ui, session: &mut Session) {
-    super::task_choice::task_choice(ui, session);
-    method(ui, session);
-    thresholds(ui, session);
-    part(ui, session);
-    by_hand(ui, session);
-    let running = session.jobs.is_running(FIT);
+fn fit(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &mut Calibration,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
+    super::task_choice::task_choice(ui, document, calibration, messages);
+    method(ui, calibration);
+    thresholds(ui, document, calibration);
+    part(ui, document, calibration);
+    by_hand(ui, document, calibration, jobs);
+    let running = jobs.is_running(FIT);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        let text = if session.calibration.analysis.is_some() { words::REFIT } else { words::FIT };
+        let text = if calibration.analysis.is_some() { words::REFIT } else { words::FIT };
         if primary_button(ui, !running, (Icon::Fit, text)).clicked() {
             let ctx = ui.ctx().clone();
-            fitting::refit(session, &ctx);
+            fitting::refit(document, calibration, jobs, &ctx);
         }
         if running {
             ui.add(egui::Spinner::new().size(18.0));
             ui.label(theme::caption(ui, words::FITTING));
-        } else if session.calibration.stale {
+        } else if calibration.stale {
             ui.label(egui::RichText::new(words::CHANGED).size(11.5).color(palette(ui).caution));
-        } else if let Some(took) = session.calibration.refits.took() {
+        } else if let Some(took) = calibration.refits.took() {
             let text = format!("took {}", format::short_time(took.as_secs_f64()));
             ui.label(theme::caption(ui, text));
         }
     });
-    let hint = if session.calibration.analysis.is_some() && !session.calibration.refits.quick() {
+    let hint = if calibration.analysis.is_some() && !calibration.refits.quick() {
         words::FOLLOW_SLOW
     } else {
         words::FOLLOW_MORE
     };
-    ui.checkbox(&mut session.calibration.refits.live, words::FOLLOW).on_hover_text(hint);
+    ui.checkbox(&mut calibration.refits.live, words::FOLLOW).on_hover_text(hint);
 }
 
 /// Draws the chooser of the fitted time range.
-fn part(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.document.prepared().filter(|p| !p.clockless()) else { return };
-    let (whole, shown) = (prepared.span(), session.document.view_s);
+fn part(ui: &mut Ui, document: &Document, calibration: &mut Calibration) {
+    let Some(prepared) = document.prepared().filter(|p| !p.clockless()) else { return };
+    let (whole, shown) = (prepared.span(), document.view_s);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::caption(ui, words::FITTED));
-        let words = match session.calibration.choice.only_s {
+        let words = match calibration.choice.only_s {
             None => words::ALL.to_owned(),
             Some((from, to)) => format!("{} to {} s", format::number(from, 2), format::number(to, 2)),
         };
         ui.label(egui::RichText::new(words).size(12.0));
     });
-    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && session.calibration.choice.only_s != Some(shown);
-    if !zoomed && session.calibration.choice.only_s.is_none() {
+    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && calibration.choice.only_s != Some(shown);
+    if !zoomed && calibration.choice.only_s.is_none() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
         if zoomed && ui.link(words::ONLY_SHOWN).on_hover_text(words::ONLY_SHOWN_MORE).clicked() {
-            session.calibration.choice.only_s = Some(shown);
+            calibration.choice.only_s = Some(shown);
         }
-        if session.calibration.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
-            session.calibration.choice.only_s = None;
+        if calibration.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
+            calibration.choice.only_s = None;
         }
     });
 }
 
 /// Draws the manually set states and parameter values, with a button to clear them.
-fn by_hand(ui: &mut Ui, session: &mut Session) {
-    if session.calibration.choice.segments.contains_key(&session.document.current) {
+fn by_hand(ui: &mut Ui, document: &Document, calibration: &mut Calibration, jobs: &mut Jobs<Session>) {
+    if calibration.choice.segments.contains_key(&document.current) {
         ui.horizontal_wrapped(|ui| {
             ui.label(theme::caption(ui, words::BY_HAND));
             if ui.link(words::FIND_AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                by_hand::forget_states(session, &ctx);
+                by_hand::forget_states(document, calibration, jobs, &ctx);
             }
         });
     }
-    let stated = session.calibration.choice.stated.len();
+    let stated = calibration.choice.stated.len();
     if stated > 0 {
         ui.horizontal_wrapped(|ui| {
             let s = if stated == 1 { "" } else { "s" };
             ui.label(theme::caption(ui, format!("{stated} statement{s} about parameters")));
             if ui.link(words::FORGET).clicked() {
-                session.calibration.choice.stated = Stated::default();
+                calibration.choice.stated = Stated::default();
             }
         });
     }
 }
 
-fn method(ui: &mut Ui, session: &mut Session) {
+fn method(ui: &mut Ui, calibration: &mut Calibration) {
     ui.horizontal(|ui| {
         ui.label(theme::caption(ui, words::STATES_BY));
         let name = |method: Method| match method {
             Method::Threshold => words::RULES,
             Method::Hmm => words::HMM,
         };
-        let choice = &mut session.calibration.choice.method;
+        let choice = &mut calibration.choice.method;
         let list = ComboBox::from_id_salt("method")
             .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
             .selected_text(name(*choice))
@@ -270,14 +294,14 @@ fn method(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn thresholds(ui: &mut Ui, session: &mut Session) {
-    let used = session.segmentation().map(|s| s.thresholds);
+fn thresholds(ui: &mut Ui, document: &Document, calibration: &mut Calibration) {
+    let used = calibration.segmentation(document.current).map(|s| s.thresholds);
     let default = used.unwrap_or(Thresholds { velocity_m_s: 0.05, force_n: 0.05 });
-    let mut given = session.calibration.choice.thresholds.is_some();
+    let mut given = calibration.choice.thresholds.is_some();
     let response = ui.checkbox(&mut given, words::THRESHOLDS);
     response.on_hover_text(words::THRESHOLDS_MORE);
-    session.calibration.choice.thresholds = given.then(|| session.calibration.choice.thresholds.unwrap_or(default));
-    if let Some(thresholds) = &mut session.calibration.choice.thresholds {
+    calibration.choice.thresholds = given.then(|| calibration.choice.thresholds.unwrap_or(default));
+    if let Some(thresholds) = &mut calibration.choice.thresholds {
         ui.horizontal(|ui| {
             ui.label(theme::caption(ui, words::FORCE));
             ui.add(
@@ -301,32 +325,31 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
 }
 
 impl RecordingPanel {
-    fn save(&mut self, ui: &mut Ui, session: &mut Session) {
+    fn save(&mut self, ui: &mut Ui, document: &Document, calibration: &Calibration, jobs: &mut Jobs<Session>) {
         if self.log.is_empty() {
             "recording.csv".clone_into(&mut self.log);
             "world.json".clone_into(&mut self.world);
             "report.html".clone_into(&mut self.report);
         }
         ui.label(theme::caption(ui, words::SAVE_LOG));
-        if save_line(ui, session, &mut self.log, (files::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
-            files::save_log(ui.ctx(), session, &self.log);
+        if save_line(ui, jobs, &mut self.log, (dialogs::SAVE_LOG, words::WHERE_LOG, words::WRITE_LOG), true) {
+            files::save_log(ui.ctx(), document, calibration, jobs, &self.log);
         }
         ui.label(theme::caption(ui, words::SAVE_WORLD));
-        let fitted = session.calibration.analysis.is_some();
-        if save_line(ui, session, &mut self.world, (files::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted)
-        {
-            files::save_world(ui.ctx(), session, &self.world);
+        let fitted = calibration.analysis.is_some();
+        if save_line(ui, jobs, &mut self.world, (dialogs::SAVE_WORLD, words::WHERE_WORLD, words::WRITE_WORLD), fitted) {
+            files::save_world(ui.ctx(), calibration, jobs, &self.world);
         }
         ui.label(theme::caption(ui, words::SAVE_REPORT));
-        let is_file = !session.document.sources.is_empty();
+        let is_file = !document.sources.is_empty();
         if save_line(
             ui,
-            session,
+            jobs,
             &mut self.report,
-            (files::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
+            (dialogs::SAVE_REPORT, words::WHERE_REPORT, words::WRITE_REPORT),
             is_file,
         ) {
-            files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
+            files::save_report(ui.ctx(), document, calibration, jobs, PathBuf::from(self.report.trim()));
         }
     }
 }
@@ -334,7 +357,7 @@ impl RecordingPanel {
 /// Draws a path field with `…` and `Save`; true if it should be saved there.
 fn save_line(
     ui: &mut Ui,
-    session: &mut Session,
+    jobs: &mut Jobs<Session>,
     field: &mut String,
     (dialog, place, does): (Dialog, &str, &str),
     enabled: bool,
@@ -344,7 +367,7 @@ fn save_line(
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let save = icon_button(ui, Icon::Save, enabled, does).on_hover_text(does);
             if icon_button(ui, Icon::More, enabled, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, dialog);
+                files::ask(ui.ctx(), jobs, dialog);
             }
             let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
             edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, enabled, place));

@@ -1,13 +1,13 @@
 //! The devices page, left column: settings of a remote device.
 
 use super::devices::{Choice, row};
-use crate::ui::icons::Icon;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, space};
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{plain_card, remark};
 use crate::ui::trainer::hand::HandDevice;
-use crate::ui::trainer::live::Operator;
+use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::trainer::remote::Remote;
-use crate::ui::widgets::{plain_card, remark};
 use egui::{TextEdit, Ui, vec2};
 use haptics::device::udp::{Key, PORT};
 use std::path::Path;
@@ -50,13 +50,13 @@ pub struct RemoteCard {
 
 impl RemoteCard {
     /// Draws the card. Returns the choice when the device was requested.
-    pub(super) fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<Choice> {
+    pub(super) fn ui(&mut self, ui: &mut Ui, trainer: &mut Trainer) -> Option<Choice> {
         let mut chosen = None;
         plain_card(ui, words::OVER_THE_NETWORK, |ui| {
-            fields(ui, &mut session.training.trainer.settings.remote);
-            ui.checkbox(&mut session.training.trainer.settings.remote.waves, words::WAVE_VARIABLES)
+            fields(ui, &mut trainer.settings.remote);
+            ui.checkbox(&mut trainer.settings.remote.waves, words::WAVE_VARIABLES)
                 .on_hover_text(words::WAVE_VARIABLES_MORE);
-            let remote = session.training.trainer.settings.remote.clone();
+            let remote = trainer.settings.remote.clone();
             self.doubt(&remote.key);
             for doubt in &self.doubts {
                 remark(ui, Icon::Doubt, doubt);
@@ -72,8 +72,7 @@ impl RemoteCard {
                 None => Ok(()),
             };
             let choice = Choice::Hand(HandDevice::Udp);
-            chosen = row(ui, session, choice.clone(), ready);
-            let trainer = &session.training.trainer;
+            chosen = row(ui, trainer, choice.clone(), ready);
             let runs = trainer.operator == Operator::You && trainer.hand == HandDevice::Udp;
             if runs && self.in_use.as_ref().is_some_and(|used| *used != remote) {
                 let again = egui::Button::new(words::OPEN_AGAIN_WITH_THESE);

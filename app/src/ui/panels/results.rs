@@ -3,17 +3,23 @@
 use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{card, plain_card, primary_button, remark};
 use crate::ui::lessons::practising;
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::plots::doubts::places;
+use crate::ui::plots::data_warnings::places;
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card, plain_card, primary_button, remark};
+use crate::ui::training::Training;
 use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Ui};
 use egui_tiles::ContainerKind;
@@ -78,18 +84,18 @@ impl Panel for ResultsPanel {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             self.parameters.ui(ui, session);
-            super::parameter_editor::selected(ui, session);
-            super::measured::of_recording(ui, session);
-            constraints(ui, session);
-            warnings(ui, session);
-            train_with_it(ui, session);
+            super::parameter_editor::selected(ui, &mut session.calibration);
+            super::measured::of_recording(ui, &session.calibration);
+            constraints(ui, &session.calibration);
+            warnings(ui, &mut session.document, &session.calibration);
+            train_with_it(ui, &mut session.workspace, &session.calibration, &mut session.training, &mut session.jobs);
             diagnose(ui, session);
         });
     }
 }
 
-fn constraints(ui: &mut Ui, session: &Session) {
-    let Some(analysis) = session.calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
+fn constraints(ui: &mut Ui, calibration: &Calibration) {
+    let Some(analysis) = calibration.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else {
         return;
     };
     plain_card(ui, words::CONSTRAINTS, |ui| {
@@ -172,15 +178,15 @@ fn facts(constraint: &Constraint) -> Vec<String> {
     facts
 }
 
-fn warnings(ui: &mut Ui, session: &mut Session) {
-    let Some(prepared) = session.document.prepared().cloned() else { return };
+fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration) {
+    let Some(prepared) = document.prepared().cloned() else { return };
     let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for warning in &prepared.recording.warnings {
         texts.push((sentence(&warning.text), places(&prepared, warning)));
     }
-    let analysis = session.calibration.analysis.clone();
+    let analysis = calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
-    let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
+    let segmented = calibration.segmentation(document.current).into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
         if !texts.iter().any(|(t, _)| *t == text) {
             texts.push((text, Vec::new()));
@@ -203,12 +209,12 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             ui.scope(|ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 remark(ui, Icon::Doubt, text);
-                jump = jump.or(go_there(ui, &places, session.document.cursor_s, prepared.clockless()));
+                jump = jump.or(go_there(ui, &places, document.cursor_s, prepared.clockless()));
             });
         }
     });
     if let Some((from, to)) = jump {
-        session.document.look_at(from, to);
+        document.look_at(from, to);
     }
 }
 
@@ -240,14 +246,26 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
-                diagnosing::diagnose(session, &ctx);
+                diagnosing::diagnose(
+                    &session.document,
+                    &session.calibration,
+                    &mut session.diagnosing,
+                    &mut session.jobs,
+                    &ctx,
+                );
             }
         }
     });
 }
 
-fn train_with_it(ui: &mut Ui, session: &mut Session) {
-    let Some(analysis) = session.calibration.analysis.clone() else { return };
+fn train_with_it(
+    ui: &mut Ui,
+    workspace: &mut Workspace,
+    calibration: &Calibration,
+    training: &mut Training,
+    jobs: &mut Jobs<Session>,
+) {
+    let Some(analysis) = calibration.analysis.clone() else { return };
     if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
         return;
     }
@@ -256,13 +274,13 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
             if primary_button(ui, true, (Icon::Touch, words::TRAIN_IN_THIS_WORLD)).clicked() {
-                session.training.train_calibrated = true;
-                session.workspace = Workspace::Train;
+                training.train_calibrated = true;
+                *workspace = Workspace::Train;
             }
             let hint = words::PRACTISE_ON_THIS_MORE;
             if ui.button((Icon::Lesson, words::PRACTISE_ON_THIS)).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
-                practising::practise_on_this(session, &ctx);
+                practising::practise_on_this(calibration, jobs, &ctx);
             }
         });
     });

@@ -3,13 +3,16 @@
 
 use super::rules_table::{states, subtasks};
 use crate::text::format;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::editing_rules;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::space;
+use crate::ui::kit::widgets::{card_with_head, primary_button, remark};
 use crate::ui::panel::Panel;
 use crate::ui::rules::Rules;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, space};
-use crate::ui::widgets::{card_with_head, primary_button, remark};
 use egui::{DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::definition::Definition;
 use haptics::recording::Task;
@@ -54,7 +57,7 @@ enum Asked {
 
 impl Panel for RulesPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        editing_rules::follow(ui.ctx(), session);
+        editing_rules::follow(ui.ctx(), &session.document, &mut session.calibration, &mut session.jobs);
         let Some(mut open) = session.calibration.rules.take() else { return };
         let (seen, before) = (open.draft.clone(), open.before.clone());
         let mut asked = Asked::Nothing;
@@ -72,7 +75,7 @@ impl Panel for RulesPanel {
                     subtasks(ui, &mut open);
                 });
                 ui.separator();
-                thresholds(ui, &mut open, session);
+                thresholds(ui, &mut open, &session.document, &session.calibration);
                 foot(ui, &mut open)
             },
         );
@@ -83,8 +86,14 @@ impl Panel for RulesPanel {
         session.calibration.rules = Some(open);
         match asked {
             Asked::Close => session.calibration.rules = None,
-            Asked::Reset => reset(session),
-            Asked::Nothing if save => editing_rules::save(ui.ctx(), session),
+            Asked::Reset => reset(&mut session.calibration),
+            Asked::Nothing if save => editing_rules::save(
+                ui.ctx(),
+                &session.document,
+                &mut session.calibration,
+                &mut session.messages,
+                &mut session.jobs,
+            ),
             Asked::Nothing | Asked::Add => {}
         }
     }
@@ -112,19 +121,19 @@ fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
     asked
 }
 
-fn reset(session: &mut Session) {
-    let Some(open) = session.calibration.rules.as_mut() else { return };
+fn reset(calibration: &mut Calibration) {
+    let Some(open) = calibration.rules.as_mut() else { return };
     open.draft = open.before.clone();
     (open.fault, open.untried) = (None, true);
 }
 
 /// Draws the thresholds with hysteresis. A needle has none.
-fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
+fn thresholds(ui: &mut Ui, open: &mut Rules, document: &Document, calibration: &Calibration) {
     if open.draft.like == Task::Needle {
         ui.label(theme::caption(ui, words::A_NEEDLES_PHASES));
         return;
     }
-    let used = session.segmentation().map(|s| s.thresholds);
+    let used = calibration.segmentation(document.current).map(|s| s.thresholds);
     let policy = &mut open.draft.thresholds;
     ui.horizontal(|ui| {
         let one = |ui: &mut Ui, label: &str, value: &mut Option<f64>, learned: f64, factor: f64, unit: &str| {

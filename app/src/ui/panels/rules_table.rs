@@ -2,10 +2,11 @@
 
 use super::rules::parameter;
 use crate::text::states::state_name;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space, state_color};
+use crate::ui::kit::widgets::{call, quiet_icon_button, swatch};
 use crate::ui::rules::Rules;
-use crate::ui::theme::{self, palette, space, state_color};
-use crate::ui::widgets::{call, quiet_icon_button, swatch};
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 use estimator::segment::definition::{Step, Subtasks, signals};

@@ -1,8 +1,13 @@
 //! The 3D view of the recording: the hand follows the cursor; path, forces and constraints are overlaid.
 
 use super::rules::RulesPanel;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::{self, Icon};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, sheet};
 use crate::ui::panel::{Framing, Panel, Picture, Registration, SCENE};
 use crate::ui::panel_id::PanelId;
 use crate::ui::prepare::Prepared;
@@ -15,8 +20,6 @@ use crate::ui::scene::rig::Rig;
 use crate::ui::scene::view::{Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{palette, space};
-use crate::ui::widgets::{empty_state, sheet};
 use crate::ui::workspace::Workspace;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
@@ -95,11 +98,11 @@ impl Panel for ScenePanel {
                 return;
             };
             if prepared.tips.is_none() && prepared.tool.is_none() {
-                self.one_coordinate(ui, session, &prepared);
+                self.one_coordinate(ui, &session.document, &prepared);
                 return;
             }
-            self.set_up(session, &prepared);
-            let world = scene_world(session, &prepared);
+            self.set_up(&session.document, &session.calibration, &prepared);
+            let world = scene_world(&session.calibration, &prepared);
             let (state, options) = options_for(session, &prepared, &world);
             let legend = self.legend(ui, session, &prepared);
             let (mut above, mut strip) = (ui.available_rect_before_wrap(), ui.available_rect_before_wrap());
@@ -111,15 +114,15 @@ impl Panel for ScenePanel {
             if let Some(legend) = legend {
                 legend.show(ui, strip);
             }
-            layers(ui, view.inner.rect, session);
+            layers(ui, view.inner.rect, &mut session.layers);
         });
     }
 }
 
 impl ScenePanel {
     /// Draws a recording without a position in space.
-    fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
-        let Some(mechanism) = Mechanism::of(prepared, session.document.cursor_s) else {
+    fn one_coordinate(&mut self, ui: &mut Ui, document: &Document, prepared: &Arc<Prepared>) {
+        let Some(mechanism) = Mechanism::of(prepared, document.cursor_s) else {
             let text = words::THIS_RECORDING_HAS;
             empty_state(ui, (Icon::Scene, words::NOTHING_TO_SHOW), text, |_| {});
             return;
@@ -136,13 +139,13 @@ impl ScenePanel {
         if !session.layers.legend || room.x < WIDE || room.y < HIGH {
             return None;
         }
-        self.compare(session, prepared);
+        self.compare(&session.document, &session.calibration, &session.layers, prepared);
         Some(Legend::new(ui, room.x, session, prepared, self.likeness.as_ref().map(|(_, like)| like)))
     }
 
     /// Compares the replay with the recording, once per replay.
-    fn compare(&mut self, session: &Session, prepared: &Prepared) {
-        let found = session.replay().zip(session.calibration.analysis.as_ref()).filter(|_| session.layers.replay);
+    fn compare(&mut self, document: &Document, calibration: &Calibration, layers: &SceneLayers, prepared: &Prepared) {
+        let found = calibration.replay(document.current).zip(calibration.analysis.as_ref()).filter(|_| layers.replay);
         let Some((replay, analysis)) = found else {
             self.likeness = None;
             return;
@@ -155,8 +158,8 @@ impl ScenePanel {
 
     /// Resets the camera's home for another recording or fit, which changes the extent of the picture; a camera that
     /// was moved stays.
-    fn set_up(&mut self, session: &Session, prepared: &Arc<Prepared>) {
-        self.home(camera_for(session, prepared), prepared);
+    fn set_up(&mut self, document: &Document, calibration: &Calibration, prepared: &Arc<Prepared>) {
+        self.home(camera_for(document, calibration, prepared), prepared);
     }
 
     fn home(&mut self, home: Camera, prepared: &Arc<Prepared>) {
@@ -191,7 +194,7 @@ const SWITCHES: [Switch; 7] = [
 ];
 
 /// Draws the switches in the corner of the picture; a small picture has them in a menu.
-fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
+fn layers(ui: &mut Ui, rect: Rect, layers: &mut SceneLayers) {
     let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - RESET, 26.0));
     // A child of its own: it covers the picture and takes no space.
     let rows =
@@ -200,7 +203,6 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     ui.spacing_mut().button_padding = vec2(9.0, 2.0);
     ui.spacing_mut().interact_size.y = 22.0;
-    let layers = &mut session.layers;
     if rect.width() >= WIDE {
         for (label, hint, of) in SWITCHES {
             toggle(&mut ui, of(layers), label, hint);

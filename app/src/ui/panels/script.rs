@@ -1,10 +1,11 @@
 //! The scripted operator: its skill level, its deliberate mistake, and replaying it.
 
 use crate::operator;
-use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::{call, compact};
+use crate::ui::message_list::Messages;
+use crate::ui::trainer::live::Trainer;
 use crate::ui::trainer::script::Script;
-use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
 
@@ -23,9 +24,9 @@ mod words {
 }
 
 /// Content of the operator's card while the script moves the fingers.
-pub fn script(ui: &mut Ui, session: &mut Session) {
-    let before = session.training.trainer.script.clone();
-    let possible = session.training.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
+pub fn script(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages) {
+    let before = trainer.script.clone();
+    let possible = trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
     let mut wanted = before.clone();
     labelled(ui, words::SKILL, |ui| level(ui, &mut wanted));
     let none_here = possible.is_empty();
@@ -36,9 +37,9 @@ pub fn script(ui: &mut Ui, session: &mut Session) {
             mistake(ui, &mut wanted, &possible);
         }
     });
-    let over = session.training.trainer.performance_over();
+    let over = trainer.performance_over();
     let mut again = wanted != before;
-    session.training.trainer.script = wanted;
+    trainer.script = wanted;
     compact(ui, |ui| {
         let text = if over { words::DONE } else { words::WORKS_LIKE_A_PERSON };
         ui.label(theme::caption(ui, text));
@@ -46,8 +47,8 @@ pub fn script(ui: &mut Ui, session: &mut Session) {
             again |= ui.link(words::WATCH_AGAIN).on_hover_text(words::WATCH_AGAIN_MORE).clicked();
         });
     });
-    if again && let Err(problem) = session.training.trainer.restart() {
-        session.messages.fail(problem);
+    if again && let Err(problem) = trainer.restart() {
+        messages.fail(problem);
     }
 }
 

@@ -4,18 +4,24 @@ use super::boundaries;
 use super::rules::parameter;
 use crate::text::format;
 use crate::text::states::{state_of_task, state_short};
+use crate::ui::background::jobs::Jobs;
 use crate::ui::by_hand;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space, state_color};
+use crate::ui::kit::widgets::{card, compact, empty_state, swatch};
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, palette, space, state_color};
-use crate::ui::widgets::{card, compact, empty_state, swatch};
 use crate::ui::workspace::Workspace;
-use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use egui::{
+    Align, Align2, FontId, Layout, Pos2, Rangef, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, vec2,
+};
 use egui_extras::{Column, TableBuilder};
 use egui_tiles::ContainerKind;
 use estimator::segment::agreement::Score;
@@ -80,7 +86,8 @@ pub struct SegmentsPanel;
 
 impl Panel for SegmentsPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
+        let sequence =
+            session.calibration.segmentation(session.document.current).map(Segmentation::sequence).unwrap_or_default();
         card(
             ui,
             words::STATES_AND_SUBTASKS,
@@ -91,15 +98,15 @@ impl Panel for SegmentsPanel {
                 }
             },
             |ui| {
-                if session.segmentation().is_none() {
+                if session.calibration.segmentation(session.document.current).is_none() {
                     empty_state(ui, (Icon::States, words::NO_STATES_YET), words::NO_STATES_YET_MORE, |_| {});
                     return;
                 }
                 let left = ui.max_rect().left() + 76.0;
                 let area = Rangef::new(left, ui.max_rect().right());
-                band(ui, session, area);
+                band(ui, &mut session.document, &mut session.calibration, &session.jobs, area);
                 ui.add_space(space::S);
-                intervals(ui, session);
+                intervals(ui, &mut session.document, &session.calibration);
             },
         );
     }
@@ -110,10 +117,10 @@ fn spaced(sequence: &str) -> String {
 }
 
 /// Draws the band between the given edges, with its names to the left, and the legend below.
-pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
-    let busy = session.jobs.is_running(FIT);
-    let analysis = session.calibration.analysis.clone();
-    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref());
+pub fn band(ui: &mut Ui, document: &mut Document, calibration: &mut Calibration, jobs: &Jobs<Session>, area: Rangef) {
+    let busy = jobs.is_running(FIT);
+    let analysis = calibration.analysis.clone();
+    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(document.current)?.as_ref());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());
     let p = palette(ui);
     let label = |y: f32, text: &str| {
@@ -129,7 +136,7 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     label(band.center().y, words::STATES);
     ui.painter().rect_filled(band, 4, p.sunken);
     let Some(segmentation) = segmentation else {
-        let clockless = session.document.prepared().is_some_and(|p| p.clockless());
+        let clockless = document.prepared().is_some_and(|p| p.clockless());
         let text = match (busy, clockless, analysis.is_some()) {
             (true, ..) => words::FITTING,
             (_, true, _) => words::NO_STATES_THEY,
@@ -140,38 +147,35 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
         return;
     };
     label(band.bottom() + 2.0 + 0.5 * SUBTASKS, words::SUBTASKS);
-    draw_states(ui, session, segmentation, band);
-    draw_subtasks(ui, session, segmentation, Rect::from_x_y_ranges(area, band.bottom() + 2.0..=rect.bottom()));
+    draw_states(ui, document, calibration, segmentation, band);
+    draw_subtasks(ui, document, segmentation, Rect::from_x_y_ranges(area, band.bottom() + 2.0..=rect.bottom()));
     legend(ui, segmentation, area.min - rect.left());
 }
 
-fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
-    let (from, to) = session.document.view_s;
+fn x_of(document: &Document, area: Rangef, time: f64) -> f32 {
+    let (from, to) = document.view_s;
     let share = ((time - from) / (to - from).max(1e-12)).clamp(-1.0, 2.0);
     (area.min + share as f32 * area.span()).clamp(area.min, area.max)
 }
 
-fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, band: Rect) {
+fn draw_states(
+    ui: &mut Ui,
+    document: &mut Document,
+    calibration: &mut Calibration,
+    segmentation: &Segmentation,
+    band: Rect,
+) {
     let (mut seek, mut change) = (None, None);
-    let can_be_set = by_hand::states_can_be_set(session);
-    let fits_without_states = by_hand::fits_without_states(session);
+    let can_be_set = by_hand::states_can_be_set(calibration);
+    let fits_without_states = by_hand::fits_without_states(document, calibration);
     let some_menu_is_open = egui::Popup::is_any_open(ui.ctx());
     for (index, interval) in segmentation.states.iter().enumerate() {
-        let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
+        let (left, right) = (x_of(document, band.x_range(), interval.t0), x_of(document, band.x_range(), interval.t1));
         if right - left < 0.4 {
             continue;
         }
         let rect = Rect::from_x_y_ranges(left..=(right - 0.5).max(left + 0.5), band.y_range());
-        let color = state_color(ui.visuals().dark_mode, interval.state);
-        ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
-        let ink = theme::ink_on(color);
-        if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, interval.state), ink) {
-            caption(ui, rect, state_short(interval.state), ink);
-        }
-        let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, interval.state))
-        });
+        let response = draw_state(ui, rect, segmentation, index);
         // Menus and tooltips of hundreds of states would take most of the frame time.
         if !response.hovered() && !response.clicked() && !some_menu_is_open {
             continue;
@@ -182,13 +186,13 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         if response.clicked() {
             seek = ui.input(|i| i.pointer.interact_pos()).map(|at| {
                 let share = f64::from((at.x - band.left()) / band.width());
-                session.document.view_s.0 + share * (session.document.view_s.1 - session.document.view_s.0)
+                document.view_s.0 + share * (document.view_s.1 - document.view_s.0)
             });
         }
         if can_be_set {
-            change = change.or(boundaries::menu(&response, segmentation, index, session));
+            change = change.or(boundaries::menu(&response, segmentation, index, document));
         } else if fits_without_states {
-            boundaries::stretch_menu(&response, (interval.t0, interval.t1), session);
+            boundaries::stretch_menu(&response, (interval.t0, interval.t1), calibration);
         }
         let by_model = segmentation.posterior.is_some();
         let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
@@ -200,16 +204,30 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         });
     }
     if can_be_set {
-        change = change.or(boundaries::handles(ui, session.document.view_s, segmentation, band));
+        change = change.or(boundaries::handles(ui, document.view_s, segmentation, band));
     }
     if let Some(change) = &change {
-        by_hand::set_states(session, change);
+        by_hand::set_states(document, calibration, change);
     }
     if let Some(time) = seek {
-        session.document.seek(time);
+        document.seek(time);
     }
-    let x = x_of(session, band.x_range(), session.document.cursor_s);
+    let x = x_of(document, band.x_range(), document.cursor_s);
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
+}
+
+/// Draws one state as a box with its name.
+fn draw_state(ui: &Ui, rect: Rect, segmentation: &Segmentation, index: usize) -> Response {
+    let state = segmentation.states[index].state;
+    let color = state_color(ui.visuals().dark_mode, state);
+    ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
+    let ink = theme::ink_on(color);
+    if rect.width() > LEAST_WORD && !caption(ui, rect, state_of_task(segmentation, state), ink) {
+        caption(ui, rect, state_short(state), ink);
+    }
+    let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, state_of_task(segmentation, state)));
+    response
 }
 
 /// Draws text in a box if it fits.
@@ -253,10 +271,10 @@ fn runs(segmentation: &Segmentation) -> Vec<(Range<f64>, String)> {
     runs
 }
 
-fn draw_subtasks(ui: &mut Ui, session: &Session, segmentation: &Segmentation, line: Rect) {
+fn draw_subtasks(ui: &mut Ui, document: &Document, segmentation: &Segmentation, line: Rect) {
     let p = palette(ui);
     for (range, name) in runs(segmentation) {
-        let (left, right) = (x_of(session, line.x_range(), range.start), x_of(session, line.x_range(), range.end));
+        let (left, right) = (x_of(document, line.x_range(), range.start), x_of(document, line.x_range(), range.end));
         if right - left < 3.0 {
             continue;
         }
@@ -321,10 +339,9 @@ fn agreement(ui: &mut Ui, score: &Score) {
 }
 
 /// Draws all intervals as a list: for reading, and for the screenshot of this panel.
-fn intervals(ui: &mut Ui, session: &mut Session) {
-    let analysis = session.calibration.analysis.clone();
-    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.document.current)?.as_ref())
-    else {
+fn intervals(ui: &mut Ui, document: &mut Document, calibration: &Calibration) {
+    let analysis = calibration.analysis.clone();
+    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(document.current)?.as_ref()) else {
         return;
     };
     let dark = ui.visuals().dark_mode;
@@ -363,6 +380,6 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
             });
         });
     if let Some(time) = seek {
-        session.document.seek(time);
+        document.seek(time);
     }
 }

@@ -1,17 +1,19 @@
 //! Sensitivity of the result to the parameters, and their correlations: bars, and a matrix.
 
 use crate::text::format;
+use crate::ui::calibration::Calibration;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette, space};
+use crate::ui::kit::widgets::{bar, compact, empty_state, plain_card, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::sensitivity::SENSITIVITY;
 use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::wanting_sensitivity;
-use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
 use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_tiles::ContainerKind;
@@ -65,7 +67,7 @@ pub struct SensitivityPanel;
 impl Panel for SensitivityPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
-        wanting_sensitivity::want_sensitivity(session, &ctx);
+        wanting_sensitivity::want_sensitivity(&session.document, &session.calibration, &mut session.jobs, &ctx);
         let Some(found) = session.calibration.sensitivity.clone().filter(|_| session.calibration.analysis.is_some())
         else {
             let busy = session.jobs.is_running(SENSITIVITY);
@@ -80,13 +82,13 @@ impl Panel for SensitivityPanel {
         };
         ScrollArea::vertical().id_salt("sensitivity").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, words::WHAT_THE_FORCE, |ui| effects(ui, session, &found.effects));
+            plain_card(ui, words::WHAT_THE_FORCE, |ui| effects(ui, &mut session.calibration, &found.effects));
             plain_card(ui, words::WHAT_GOES_TOGETHER, |ui| together(ui, &found.groups));
         });
     }
 }
 
-fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
+fn effects(ui: &mut Ui, calibration: &mut Calibration, effects: &[Effect]) {
     let text =
         format!("Change of the simulated force when a parameter is {} % larger.", format::number(100.0 * CHANGE, 0));
     ui.label(theme::caption(ui, text));
@@ -110,7 +112,7 @@ fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
         });
         let hint = format!("{}{uncertain}\nClick to try another value.", words(&effect.name));
         if response.on_hover_text(hint).clicked() {
-            session.calibration.selected_parameter = Some(effect.name.clone());
+            calibration.selected_parameter = Some(effect.name.clone());
         }
     }
 }

@@ -3,11 +3,13 @@
 use crate::tasks::Chosen;
 use crate::text::format;
 use crate::text::sentence::sentence;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::editing_rules;
-use crate::ui::icons::Icon;
-use crate::ui::session::Session;
-use crate::ui::theme;
-use crate::ui::widgets::call;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::widgets::call;
+use crate::ui::message_list::Messages;
 use egui::{ComboBox, Ui};
 use estimator::segment::definition::{Definition, SIDECAR_KEY};
 use estimator::segment::library;
@@ -35,14 +37,14 @@ enum Picked {
 }
 
 /// Draws the drop-down, and the button to the task's rules.
-pub fn task_choice(ui: &mut Ui, session: &mut Session) {
+pub fn task_choice(ui: &mut Ui, document: &Document, calibration: &mut Calibration, messages: &mut Messages) {
     let mut picked = None;
     ui.horizontal(|ui| {
         ui.label(theme::caption(ui, words::TASK));
-        let prepared = session.document.prepared().cloned();
+        let prepared = document.prepared().cloned();
         let told = prepared.as_ref().map_or("unknown".to_owned(), |p| told(&p.recording, p.task));
         let automatic = format!("Automatic ({told})");
-        let choice = &session.calibration.choice;
+        let choice = &calibration.choice;
         let text = match (&choice.own, choice.task) {
             (Some(own), _) => own.name.clone(),
             (None, Some(task)) => format::object(task.name()),
@@ -78,15 +80,15 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
         call(&list.response, words::TASK);
     });
     match picked {
-        Some(Picked::Automatic) => set(session, None, None),
-        Some(Picked::BuiltIn(task)) => set(session, Some(task), None),
+        Some(Picked::Automatic) => set(document, calibration, messages, None, None),
+        Some(Picked::BuiltIn(task)) => set(document, calibration, messages, Some(task), None),
         Some(Picked::Own(name)) => match Chosen::find(&name) {
-            Ok(task) => set(session, Some(task.like()), task.own().cloned().map(Arc::new)),
-            Err(error) => session.messages.fail(sentence(&error.to_string())),
+            Ok(task) => set(document, calibration, messages, Some(task.like()), task.own().cloned().map(Arc::new)),
+            Err(error) => messages.fail(sentence(&error.to_string())),
         },
         None => {}
     }
-    edit(ui, session);
+    edit(ui, document, calibration, messages);
 }
 
 /// Name of the task as which a recording is read.
@@ -95,18 +97,24 @@ fn told(recording: &Recording, task: Option<Task>) -> String {
     own.or(task.map(Task::name)).unwrap_or("unknown").replace('-', " ")
 }
 
-fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) {
-    (session.calibration.choice.task, session.calibration.choice.own) = (task, own);
-    if session.calibration.rules.take().is_some() {
-        session.calibration.rules = editing_rules::open(session);
+fn set(
+    document: &Document,
+    calibration: &mut Calibration,
+    messages: &mut Messages,
+    task: Option<Task>,
+    own: Option<Arc<Definition>>,
+) {
+    (calibration.choice.task, calibration.choice.own) = (task, own);
+    if calibration.rules.take().is_some() {
+        calibration.rules = editing_rules::open(document, calibration, messages);
     }
 }
 
 /// Opens and closes the rules.
-fn edit(ui: &mut Ui, session: &mut Session) {
-    let open = session.calibration.rules.is_some();
+fn edit(ui: &mut Ui, document: &Document, calibration: &mut Calibration, messages: &mut Messages) {
+    let open = calibration.rules.is_some();
     let hint = words::RULES_MORE;
     if ui.button((Icon::Rules, if open { words::CLOSE_RULES } else { words::RULES })).on_hover_text(hint).clicked() {
-        session.calibration.rules = if open { None } else { editing_rules::open(session) };
+        calibration.rules = if open { None } else { editing_rules::open(document, calibration, messages) };
     }
 }

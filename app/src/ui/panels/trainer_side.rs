@@ -2,16 +2,21 @@
 
 use super::legend;
 use crate::text::format;
-use crate::ui::icons::Icon;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibration::Calibration;
+use crate::ui::dialogs;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, role, space};
+use crate::ui::kit::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
+use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::hand::HandDevice;
 use crate::ui::trainer::history::History;
 use crate::ui::trainer::live::{Operator, Trainer};
-use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, recorder};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
@@ -92,33 +97,51 @@ impl Panel for TrainerSide {
             if session.training.lessons.shown {
                 super::lessons::side(ui, session);
             } else {
-                super::compare::compare(ui, session);
-                world(ui, session);
-                operator(ui, session);
-                plain_card(ui, words::RECORDING, |ui| recorder::controls(ui, session));
+                super::compare::compare(ui, &mut session.training.trainer, &mut session.messages);
+                world(
+                    ui,
+                    &session.calibration,
+                    &mut session.training.trainer,
+                    &mut session.messages,
+                    &mut session.jobs,
+                );
+                operator(ui, &mut session.workspace, &mut session.training.trainer, &mut session.messages);
+                plain_card(ui, words::RECORDING, |ui| {
+                    recorder::controls(
+                        ui,
+                        &mut session.document,
+                        &mut session.training.trainer,
+                        &mut session.messages,
+                        &mut session.jobs,
+                    );
+                });
             }
             forces(ui, &session.training.trainer);
-            super::assistant::assistant(ui, session);
+            super::assistant::assistant(ui, &mut session.training);
             if !session.training.lessons.shown {
                 super::measured::beside(ui, &mut session.training.trainer);
             }
-            super::delay::delay(ui, session);
-            super::comfort::card(ui, session);
+            super::delay::delay(ui, &mut session.training.trainer, &mut session.messages);
+            super::comfort::card(ui, &mut session.training.comfort);
             if session.training.lessons.shown {
                 return;
             }
-            super::passivity::passivity(ui, session);
+            super::passivity::passivity(ui, &mut session.training.trainer, &mut session.messages);
             super::trainer_timing::timing(ui, &session.training.trainer);
         });
     }
 }
 
-fn world(ui: &mut Ui, session: &mut Session) {
-    let calibrated =
-        session.calibration.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
-    session.training.trainer.calibrated = calibrated.map(|a| a.world.clone());
-    let (has_calibrated, has_file) =
-        (session.training.trainer.calibrated.is_some(), session.training.trainer.file.is_some());
+fn world(
+    ui: &mut Ui,
+    calibration: &Calibration,
+    trainer: &mut Trainer,
+    messages: &mut Messages,
+    jobs: &mut Jobs<Session>,
+) {
+    let calibrated = calibration.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
+    trainer.calibrated = calibrated.map(|a| a.world.clone());
+    let (has_calibrated, has_file) = (trainer.calibrated.is_some(), trainer.file.is_some());
     let (mut chosen, mut again) = (None, false);
     let start_over = |ui: &mut Ui| {
         again = ui.link(words::START_OVER).on_hover_text(words::START_OVER_MORE).clicked();
@@ -139,37 +162,38 @@ fn world(ui: &mut Ui, session: &mut Session) {
         for pair in choices.chunks(2) {
             ui.columns(pair.len(), |columns| {
                 for (ui, (choice, label, hint, missing)) in columns.iter_mut().zip(pair) {
-                    chosen = chosen.or(world_choice(ui, session, *choice, (label, hint), *missing));
+                    chosen = chosen.or(world_choice(ui, trainer, jobs, *choice, (label, hint), *missing));
                 }
             });
         }
     });
     if again {
-        chosen = Some(session.training.trainer.choice);
+        chosen = Some(trainer.choice);
     }
     if let Some(choice) = chosen
-        && let Err(problem) = session.training.trainer.choose(choice)
+        && let Err(problem) = trainer.choose(choice)
     {
-        session.messages.fail(problem);
+        messages.fail(problem);
     }
 }
 
 /// Draws one entry of the list, with its `missing` requirement. Returns the choice when it was clicked.
 fn world_choice(
     ui: &mut Ui,
-    session: &mut Session,
+    trainer: &Trainer,
+    jobs: &mut Jobs<Session>,
     choice: WorldChoice,
     (label, hint): (&str, &str),
     missing: Option<&str>,
 ) -> Option<WorldChoice> {
     compact(ui, |ui| {
-        let on = session.training.trainer.choice == choice;
+        let on = trainer.choice == choice;
         let response = ui.add_enabled(missing.is_none(), egui::RadioButton::new(on, label));
         let response = response.on_hover_text(hint).on_disabled_hover_text(missing.unwrap_or(hint));
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link(words::OPEN).clicked() {
-                    files::ask(ui.ctx(), &mut session.jobs, files::OPEN_WORLD);
+                    files::ask(ui.ctx(), jobs, dialogs::OPEN_WORLD);
                 }
             });
         }
@@ -177,8 +201,8 @@ fn world_choice(
     })
 }
 
-fn operator(ui: &mut Ui, session: &mut Session) {
-    let mut operator = session.training.trainer.operator;
+fn operator(ui: &mut Ui, workspace: &mut Workspace, trainer: &mut Trainer, messages: &mut Messages) {
+    let mut operator = trainer.operator;
     let choices =
         [(Operator::You, words::YOU, words::YOU_MORE), (Operator::Scripted, words::SCRIPTED, words::SCRIPTED_MORE)];
     let mut changed = false;
@@ -187,36 +211,33 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         words::OPERATOR,
         30.0,
         |ui| changed = segmented(ui, &mut operator, &choices),
-        |ui| operator_state(ui, session),
+        |ui| operator_state(ui, workspace, trainer, messages),
     );
-    if changed && let Err(problem) = session.training.trainer.hand_to(operator) {
-        session.messages.fail(problem);
+    if changed && let Err(problem) = trainer.hand_to(operator) {
+        messages.fail(problem);
     }
 }
 
-fn operator_state(ui: &mut Ui, session: &mut Session) {
-    match session.training.trainer.operator {
+fn operator_state(ui: &mut Ui, workspace: &mut Workspace, trainer: &mut Trainer, messages: &mut Messages) {
+    match trainer.operator {
         Operator::You => {
-            let text = match session.training.trainer.hand {
+            let text = match trainer.hand {
                 HandDevice::Mouse => {
-                    format!(
-                        "Mouse · pinch strength {} N",
-                        format::number(session.training.trainer.pinch.strength_n(), 1)
-                    )
+                    format!("Mouse · pinch strength {} N", format::number(trainer.pinch.strength_n(), 1))
                 }
-                _ => session.training.trainer.hand.title(),
+                _ => trainer.hand.title(),
             };
             compact(ui, |ui| {
                 ui.label(theme::caption(ui, text));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     if ui.link(words::DEVICES).on_hover_text(words::DEVICES_MORE).clicked() {
-                        session.workspace = Workspace::Devices;
+                        *workspace = Workspace::Devices;
                     }
                 });
             });
         }
         Operator::Scripted => {
-            super::script::script(ui, session);
+            super::script::script(ui, trainer, messages);
         }
     }
 }

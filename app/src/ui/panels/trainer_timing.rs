@@ -1,9 +1,10 @@
 //! Timing of the servo, in numbers.
 
 use crate::text::format;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{card, fact};
 use crate::ui::trainer::live::Trainer;
-use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
 use haptics::servo::timing::{RECENT_S, Timing};

@@ -2,19 +2,23 @@
 
 use super::{guide, lessons, marks, steering};
 use crate::ui::assistant::draw;
+use crate::ui::experiments::Experiments;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, key_hint, sheet};
+use crate::ui::message_list::Messages;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::scene::rig::Rig;
 use crate::ui::scene::view::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::hand::{HandDevice, Steering};
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::trainer::task::task_hint;
-use crate::ui::widgets::{empty_state, key_hint, sheet};
+use crate::ui::training::Training;
 use crate::ui::workspace::Workspace;
 use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
@@ -123,7 +127,7 @@ pub struct TrainerView {
     /// True if the window had the focus in the previous frame.
     had_focus: bool,
     #[cfg(feature = "sound")]
-    sound: Option<Result<crate::ui::sound::Sound, String>>,
+    sound: Option<Result<crate::ui::kit::sound::Sound, String>>,
 }
 
 impl Default for TrainerView {
@@ -153,7 +157,7 @@ impl Panel for TrainerView {
         if let Err(problem) = session.training.trainer.ensure_running() {
             session.messages.fail(problem);
         }
-        super::compare::key(ui, session);
+        super::compare::key(ui, &mut session.training.trainer, &mut session.messages);
         let has_focus = ui.input(|i| i.focused);
         // Without a window manager nothing ever has the focus, so none can be lost.
         if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.training.comfort.pauses {
@@ -163,7 +167,7 @@ impl Panel for TrainerView {
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
         session.training.trainer.update(frame_s);
         #[cfg(feature = "sound")]
-        self.knock(session);
+        self.knock(&mut session.training, &mut session.messages);
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some((snapshot, world)) = session.training.trainer.scene() else {
@@ -181,11 +185,11 @@ impl Panel for TrainerView {
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
             session.training.trainer_place = Some(view.place(ui));
-            over(ui, &view, session);
+            over(ui, &view, &session.experiments, &session.training);
             if session.training.trainer.held().is_some() {
                 super::comfort::paused(ui, view.rect, &mut session.training.trainer);
             } else {
-                operate(ui, &view, session, frame_s);
+                operate(ui, &view, &session.experiments, &mut session.training, &mut session.messages, frame_s);
                 guide::card(ui, &view, session);
             }
             if let Some(fault) = fault {
@@ -201,66 +205,73 @@ impl Panel for TrainerView {
 }
 
 /// Lets the trainee steer the fingers, or names the operator that does.
-fn operate(ui: &mut Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
-    if session.training.trainer.operator != Operator::You || session.training.trainer.hand == HandDevice::Replay {
-        let hint = lessons::hint(session);
-        pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.training.trainer)));
+fn operate(
+    ui: &mut Ui,
+    view: &SceneResponse,
+    experiments: &Experiments,
+    training: &mut Training,
+    messages: &mut Messages,
+    frame_s: f64,
+) {
+    if training.trainer.operator != Operator::You || training.trainer.hand == HandDevice::Replay {
+        let hint = lessons::hint(training);
+        pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&training.trainer)));
         return;
     }
-    if let Err(problem) = steering::touches(ui, view, &mut session.training.trainer) {
-        session.messages.fail(problem);
+    if let Err(problem) = steering::touches(ui, view, &mut training.trainer) {
+        messages.fail(problem);
     }
-    steering::keys(ui, &mut session.training.trainer);
-    if matches!(session.training.trainer.steering, Steering::Mouse(_)) {
-        steer(ui, view, session, frame_s);
+    steering::keys(ui, &mut training.trainer);
+    if matches!(training.trainer.steering, Steering::Mouse(_)) {
+        steer(ui, view, training, frame_s);
     }
-    hints(ui, view.rect, &session.training.trainer.hand, session.training.comfort.left_handed);
-    if let Some(hint) = lessons::hint(session) {
+    hints(ui, view.rect, &training.trainer.hand, training.comfort.left_handed);
+    if let Some(hint) = lessons::hint(training) {
         pill(ui, view.rect, &hint);
-    } else if let Some((_, world)) = session.training.trainer.scene().filter(|_| session.experiments.guided.is_none()) {
+    } else if let Some((_, world)) = training.trainer.scene().filter(|_| experiments.guided.is_none()) {
         pill(ui, view.rect, task_hint(world));
     }
 }
 
 /// Draws the overlays of the picture.
-fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
-    if let Some((snapshot, _)) = session.training.trainer.scene() {
+fn over(ui: &mut Ui, view: &SceneResponse, experiments: &Experiments, training: &Training) {
+    if let Some((snapshot, _)) = training.trainer.scene() {
         marks::device(ui, view, snapshot);
     }
-    marks::flashes(ui, view, &session.training.trainer.impacts);
-    draw::draw(ui, view, session);
-    guide::ghost(ui, view, session);
-    guide::expert(ui, view, session);
+    marks::flashes(ui, view, &training.trainer.impacts);
+    draw::draw(ui, view, training);
+    guide::ghost(ui, view, experiments, &training.trainer);
+    guide::expert(ui, view, &training.lessons);
 }
 
 impl TrainerView {
     /// Plays impacts, slips and excessive forces. The first of them opens the audio output; a machine without sound is
     /// reported once.
     #[cfg(feature = "sound")]
-    fn knock(&mut self, session: &mut Session) {
-        let struck_m_s = session.training.trainer.struck_m_s.take();
-        let limit_n = session.training.trainer.config().limits.max_force_n;
-        let seen = session.training.trainer.seen().filter(|_| session.training.trainer.held().is_none());
+    fn knock(&mut self, training: &mut Training, messages: &mut Messages) {
+        let struck_m_s = training.trainer.struck_m_s.take();
+        let limit_n = training.trainer.config().limits.max_force_n;
+        let seen = training.trainer.seen().filter(|_| training.trainer.held().is_none());
         let slip_m_s = seen.map_or(0.0, crate::ui::trainer::heard::slip_m_s);
         let excess = seen.is_some_and(|state| state.tip_force_n.iter().any(|force| force.norm() > limit_n));
         if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
             return;
         }
-        match self.sound.get_or_insert_with(crate::ui::sound::Sound::open) {
+        match self.sound.get_or_insert_with(crate::ui::kit::sound::Sound::open) {
             Ok(sound) => {
-                sound.follow(session.training.comfort.loudness(), slip_m_s, excess);
+                sound.follow(training.comfort.loudness(), slip_m_s, excess);
                 if let Some(speed_m_s) = struck_m_s {
                     sound.strike(speed_m_s);
                 }
             }
-            Err(problem) if !problem.is_empty() => session.messages.fail(std::mem::take(problem)),
+            Err(problem) if !problem.is_empty() => messages.fail(std::mem::take(problem)),
             Err(_) => {}
         }
     }
 }
 
-fn steer(ui: &Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
-    let (pinches, trainer) = (session.training.comfort.pinches(), &mut session.training.trainer);
+fn steer(ui: &Ui, view: &SceneResponse, training: &mut Training, frame_s: f64) {
+    let (pinches, trainer) = (training.comfort.pinches(), &mut training.trainer);
     let response = &view.response;
     let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
     if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {

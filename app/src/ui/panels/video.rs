@@ -2,15 +2,19 @@
 
 use crate::text::file_name::name_of;
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::dialogs;
+use crate::ui::document::Document;
 use crate::ui::gallery::sample::Sample;
-use crate::ui::icons::Icon;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
 use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::showing_video;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::videos::{ALIGN_VIDEO, State};
-use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
+use crate::ui::videos::{ALIGN_VIDEO, State, Videos};
 use crate::ui::workspace::Workspace;
 use crate::ui::{files, stage};
 use crate::video::reading::Video;
@@ -85,70 +89,70 @@ impl Panel for VideoPanel {
         let ctx = ui.ctx().clone();
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            match showing_video::video(session, &ctx) {
-                State::None => none(ui, session),
+            match showing_video::video(&session.document, &mut session.jobs, &ctx) {
+                State::None => none(ui, &session.document, &mut session.jobs),
                 State::Reading => {
                     empty_state(ui, words::READING, words::READING_MORE, |ui| {
                         ui.spinner();
                     });
                 }
-                State::Failed(problem) => failed(ui, session, &problem),
-                State::There(video) => shown(ui, session, &video),
+                State::Failed(problem) => failed(ui, &mut session.document, &mut session.jobs, &problem),
+                State::There(video) => shown(ui, &mut session.document, &mut session.jobs, &video),
             }
         });
     }
 }
 
-fn none(ui: &mut Ui, session: &mut Session) {
-    let loaded = session.document.prepared().is_some();
+fn none(ui: &mut Ui, document: &Document, jobs: &mut Jobs<Session>) {
+    let loaded = document.prepared().is_some();
     let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
     empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
         if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
-            files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
+            files::ask(ui.ctx(), jobs, dialogs::OPEN_VIDEO);
         }
     });
 }
 
-fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
+fn failed(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, problem: &str) {
     empty_state(ui, (Icon::Doubt, words::FAILED), problem, |ui| {
         ui.horizontal(|ui| {
             // Buttons in the middle of the text's line.
             ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
             if ui.button((Icon::Reload, words::AGAIN)).clicked() {
-                showing_video::read_video_again(session);
+                showing_video::read_video_again(document);
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
-                files::ask(ui.ctx(), &mut session.jobs, files::OPEN_VIDEO);
+                files::ask(ui.ctx(), jobs, dialogs::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
-                showing_video::forget_video(session);
+                showing_video::forget_video(document, jobs);
             }
         });
     });
 }
 
-fn shown(ui: &mut Ui, session: &mut Session, video: &Arc<Video>) {
+fn shown(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video: &Arc<Video>) {
     let whole = ui.available_rect_before_wrap();
     let (above, below) = whole.split_top_bottom_at_y((whole.bottom() - CONTROLS).max(whole.top()));
-    picture(ui, session, video, above.shrink(1.0));
+    picture(ui, document, jobs, video, above.shrink(1.0));
     let layout = Layout::top_down(Align::Min);
     ui.scope_builder(egui::UiBuilder::new().max_rect(below).layout(layout), |ui| {
         egui::Frame::new()
             .inner_margin(Margin::symmetric(space::M as i8, 6))
-            .show(ui, |ui| controls(ui, session, video));
+            .show(ui, |ui| controls(ui, document, jobs, video));
     });
 }
 
-fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
+fn picture(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video: &Arc<Video>, room: Rect) {
     let p = palette(ui);
     let corners = CornerRadius { nw: theme::CARD_RADIUS, ne: theme::CARD_RADIUS, sw: 0, se: 0 };
     ui.painter().rect_filled(room, corners, p.sunken);
-    let time_s = showing_video::video_time_s(session).unwrap_or(0.0);
+    let time_s = showing_video::video_time_s(document).unwrap_or(0.0);
     let now = video.index_at(time_s);
     // Before its start and after its end, its first and last frame are shown, dimmed.
     let index = now.unwrap_or(if time_s < 0.0 { 0 } else { video.count() - 1 });
     let ctx = ui.ctx().clone();
-    let texture = showing_video::video_picture(session, &ctx, video, index);
+    let texture = showing_video::video_picture(document, jobs, &ctx, video, index);
     let size = vec2(video.size[0] as f32, video.size[1] as f32);
     let scale = (room.width() / size.x).min(room.height() / size.y).max(0.0);
     let at = Rect::from_center_size(room.center(), size * scale);
@@ -158,7 +162,7 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
     }
     let response = ui.interact(room, ui.scope_id().with("video picture"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, words::PICTURE));
-    scrub(session, video, &response);
+    scrub(document, video, &response);
     if now.is_none() {
         let text = if time_s < 0.0 {
             format!("The video begins in {} s", format::number(-time_s, 1))
@@ -177,76 +181,76 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
 
 /// Scrubs through the video by dragging across the picture: its width is ten seconds, or the whole length if that is
 /// shorter.
-fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
+fn scrub(document: &mut Document, video: &Video, response: &egui::Response) {
     let by = response.drag_delta().x;
     if !response.dragged() || by == 0.0 {
         return;
     }
     let step_s = f64::from(by / response.rect.width().max(1.0)) * video.duration_s().min(10.0);
-    session.document.playing = false;
-    match session.document.videos.loose_s {
-        Some(loose_s) => session.document.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
-        None => session.document.seek(session.document.cursor_s + step_s),
+    document.playing = false;
+    match document.videos.loose_s {
+        Some(loose_s) => document.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
+        None => document.seek(document.cursor_s + step_s),
     }
 }
 
-fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
+fn controls(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video: &Video) {
     ui.spacing_mut().interact_size.y = 20.0;
     ui.spacing_mut().button_padding.y = 2.0;
-    let loose = session.document.videos.loose_s;
+    let loose = document.videos.loose_s;
     ui.horizontal(|ui| {
         let mut by_itself = loose.is_some();
         let hint = words::BY_ITSELF_MORE;
         if ui.checkbox(&mut by_itself, words::BY_ITSELF).on_hover_text(hint).changed() {
-            showing_video::loosen_video(session, by_itself);
+            showing_video::loosen_video(document, by_itself);
         }
         if loose.is_none() {
-            place(ui, session);
+            place(ui, document, jobs);
         } else if ui.button(words::TOGETHER).on_hover_text(words::TOGETHER_MORE).clicked() {
-            showing_video::video_belongs_here(session);
+            showing_video::video_belongs_here(document);
         }
     });
-    ui.horizontal(|ui| match session.document.videos.loose_s {
-        Some(at_s) => runner(ui, session, video, at_s),
-        None => facts(ui, session, video),
+    ui.horizontal(|ui| match document.videos.loose_s {
+        Some(at_s) => runner(ui, &mut document.videos, video, at_s),
+        None => facts(ui, document, jobs, video),
     });
 }
 
 /// Draws the position of the video in time.
-fn place(ui: &mut Ui, session: &mut Session) {
-    let Some(mut begins_at_s) = showing_video::video_source(session).map(|s| s.begins_at_s) else { return };
+fn place(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>) {
+    let Some(mut begins_at_s) = showing_video::video_source(document).map(|s| s.begins_at_s) else { return };
     ui.label(theme::caption(ui, words::BEGINS));
     let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
     let hint = words::BEGINS_MORE;
     if ui.add(drag).on_hover_text(hint).changed() {
-        showing_video::shift_video(session, begins_at_s);
+        showing_video::shift_video(document, begins_at_s);
     }
-    let free = !session.jobs.is_running(ALIGN_VIDEO);
+    let free = !jobs.is_running(ALIGN_VIDEO);
     let hint = words::ALIGN_MORE;
     let align = ui.add_enabled(free, egui::Button::new((Icon::Align, words::ALIGN))).on_hover_text(hint);
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));
     if align.clicked() {
         let ctx = ui.ctx().clone();
-        showing_video::align_video(session, &ctx);
+        showing_video::align_video(document, jobs, &ctx);
     }
 }
 
 /// Draws a scrubber while the video is unlinked.
-fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
+fn runner(ui: &mut Ui, videos: &mut Videos, video: &Video, mut at_s: f64) {
     let step_s = 1.0 / video.rate_hz;
     ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);
     let slider = Slider::new(&mut at_s, 0.0..=(video.duration_s() - step_s).max(0.0));
     if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text(words::WHERE).changed() {
-        session.document.videos.loose_s = Some(at_s);
+        videos.loose_s = Some(at_s);
     }
 }
 
-fn facts(ui: &mut Ui, session: &mut Session, video: &Video) {
-    let Some(file) = showing_video::video_source(session).map(|s| s.file.clone()) else { return };
+fn facts(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video: &Video) {
+    let Some(file) = showing_video::video_source(document).map(|s| s.file.clone()) else { return };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let away = quiet_icon_button(ui, Icon::Close, true, words::REMOVE).on_hover_text(words::REMOVE);
         if away.clicked() {
-            showing_video::forget_video(session);
+            showing_video::forget_video(document, jobs);
         }
         let [wide, high] = video.size;
         let facts = format!("{wide} × {high}, {} s", format::number(video.duration_s(), 1));

@@ -3,9 +3,10 @@
 use crate::text::diagnosis_words::{small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, compact, plain_card};
+use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{bar, compact, plain_card};
 use egui::{Align, ComboBox, Layout, RichText, Ui};
 use estimator::diagnose::Diagnosis;
 use haptics::law;
@@ -23,12 +24,12 @@ mod words {
 }
 
 /// Card below the causes.
-pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
+pub fn card(ui: &mut Ui, diagnosing: &mut Diagnosing, diagnosis: &Diagnosis) {
     let mut others: Vec<&str> =
         law::causes().map(|c| c.id).filter(|id| diagnosis.causes.iter().all(|c| c.id != *id)).collect();
     others.sort_by_key(|id| title(id));
     plain_card(ui, words::CARD, |ui| {
-        let asked = &mut session.diagnosing.asked_about;
+        let asked = &mut diagnosing.asked_about;
         let shown = asked.as_deref().map_or(words::CHOOSE_A_CAUSE.to_owned(), title);
         let list = ComboBox::from_id_salt("why not").width(ui.available_width() - 22.0).selected_text(shown);
         let list = list.show_ui(ui, |ui| {

@@ -2,16 +2,17 @@
 
 use crate::text::format;
 use crate::text::states::state_name;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::kit::widgets::{call, compact, segmented, swatch};
 use crate::ui::plots::axes::AXIS_WIDTH;
 use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
 use crate::ui::plots::curves::Sources;
 use crate::ui::plots::derived::Recipe;
 use crate::ui::plots::levels::Levels;
-use crate::ui::plots::row::GUTTER;
+use crate::ui::plots::time_plot::GUTTER;
 use crate::ui::plots::xy::{XyCache, XyInput, xy_plot};
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{call, compact, segmented, swatch};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;

@@ -1,7 +1,7 @@
 //! Axes with even ticks and quiet labels.
 
 use crate::text::format;
-use crate::ui::theme::Palette;
+use crate::ui::kit::theme::Palette;
 use egui::{FontId, Rangef, Vec2};
 use egui_plot::{AxisHints, GridMark, Plot};
 use std::fmt::Debug;

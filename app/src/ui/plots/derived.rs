@@ -2,7 +2,7 @@
 //! than a frame allows, and kept while it is shown.
 
 use super::levels::Levels;
-use crate::ui::jobs::{JobKind, Jobs, Started, Ticket, change, no_change};
+use crate::ui::background::jobs::{JobKind, Jobs, Started, Ticket, change, no_change};
 use crate::ui::prepare::Prepared;
 use estimator::signal::transform::{Transform, mean};
 use std::collections::{HashMap, HashSet};

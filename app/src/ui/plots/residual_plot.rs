@@ -2,7 +2,7 @@
 
 use super::axes::{still_plot, time_axis, variable_axis};
 use super::residuals::{Cloud, Residuals, Suspect};
-use crate::ui::theme::{Palette, palette, role};
+use crate::ui::kit::theme::{Palette, palette, role};
 use egui::{Color32, Sense, Ui};
 use egui_plot::{FilledArea, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
 use render::ColorRole;

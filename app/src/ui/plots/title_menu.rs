@@ -1,8 +1,9 @@
 //! The title of a plot, with the menu of its transforms.
 
 use super::choices::{GroupChoice, name};
-use super::row::RowInput;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::plots::time_plot::RowInput;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Sense, Stroke, Ui, vec2};
 use estimator::signal::transform::Transform;

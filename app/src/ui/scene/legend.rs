@@ -4,11 +4,13 @@ use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use crate::text::format::{number, significant};
-use crate::ui::icons::{self, Icon};
+use crate::ui::calibration::Calibration;
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme::{palette, role, space};
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::likeness::Likeness;
 use crate::ui::session::Session;
-use crate::ui::theme::{palette, role, space};
 use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 use estimator::estimate::{Constraint, ConstraintKind, Phase, StrokePhase};
 use render::ColorRole;
@@ -123,7 +125,7 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
     let layers = session.layers;
     let mut rows = Vec::new();
     if layers.path {
-        rows.extend(paths(session, prepared));
+        rows.extend(paths(&session.calibration, prepared));
     }
     if layers.forces_on_path {
         rows.push(Row::new(Mark::Arrow, ColorRole::Measured, format!("Force of the hand, {}", scale(prepared))));
@@ -133,19 +135,22 @@ fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> 
         rows.push(Row::new(Mark::Arrow, ColorRole::Constraint, text));
     }
     if layers.constraints {
-        for marked in markers::of(session, prepared) {
+        for marked in markers::of(&session.document, &session.calibration, prepared) {
             rows.extend(of_constraint(&marked, session.document.cursor_s));
         }
     }
-    if layers.contacts && prepared.tips.is_some() && session.replay().is_some_and(|r| r.film.is_some()) {
+    if layers.contacts
+        && prepared.tips.is_some()
+        && session.calibration.replay(session.document.current).is_some_and(|r| r.film.is_some())
+    {
         rows.push(Row::new(Mark::Ring, ColorRole::Measured, "Contact of the replay, by its force"));
     }
     rows.extend(of_replay(layers, likeness));
     rows
 }
 
-fn paths(session: &Session, prepared: &Prepared) -> Vec<Row> {
-    if follows_fingers(session, prepared) {
+fn paths(calibration: &Calibration, prepared: &Prepared) -> Vec<Row> {
+    if follows_fingers(calibration, prepared) {
         let row = |finger, text| Row::new(Mark::Line, ColorRole::Finger(finger), text);
         return vec![row(0, "Path of the left finger"), row(1, "Path of the right finger")];
     }

@@ -1,8 +1,9 @@
 //! Detected constraints as marks in the picture.
 
 use super::overlay::bounds;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::prepare::Prepared;
-use crate::ui::session::Session;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;
 use haptics::world::Guide;
@@ -27,10 +28,10 @@ pub struct Marked<'a> {
 }
 
 /// Constraints of the fit that belong to a recording.
-pub fn of<'a>(session: &'a Session, prepared: &Prepared) -> Vec<Marked<'a>> {
-    let Some(analysis) = &session.calibration.analysis else { return Vec::new() };
+pub fn of<'a>(document: &'a Document, calibration: &'a Calibration, prepared: &Prepared) -> Vec<Marked<'a>> {
+    let Some(analysis) = &calibration.analysis else { return Vec::new() };
     let of_this = |c: &&Constraint| {
-        session.document.recordings.len() < 2 || c.recording.as_deref().is_none_or(|name| names(prepared, name))
+        document.recordings.len() < 2 || c.recording.as_deref().is_none_or(|name| names(prepared, name))
     };
     analysis.fit.constraints.iter().filter(of_this).map(|c| marked(c, prepared)).collect()
 }

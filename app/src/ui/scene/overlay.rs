@@ -2,6 +2,8 @@
 //! constraints.
 
 use super::{markers, vectors};
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use haptics::Vec2;
@@ -10,8 +12,8 @@ use render::{Camera, ColorRole, ConstraintMarker, FingerStyle, Trajectory, ViewO
 use std::sync::Arc;
 
 /// World of a recording: the fitted one, or an empty table with the recording's hand.
-pub fn scene_world(session: &Session, prepared: &Prepared) -> Arc<World> {
-    if let Some(analysis) = &session.calibration.analysis
+pub fn scene_world(calibration: &Calibration, prepared: &Prepared) -> Arc<World> {
+    if let Some(analysis) = &calibration.analysis
         && prepared.tips.is_some()
     {
         return Arc::new(analysis.world.clone());
@@ -34,7 +36,7 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
             state.input.tip_in_world[finger] = tip.position[sample];
             state.tip_force_n[finger] = tip.force.as_ref().map_or_else(Vec2::zeros, |f| f[sample]);
         }
-        if let Some(film) = session.replay().and_then(|r| r.film.as_ref()) {
+        if let Some(film) = session.calibration.replay(session.document.current).and_then(|r| r.film.as_ref()) {
             film.pose(session.document.cursor_s, &mut state);
         }
         options.show_contacts = session.layers.contacts;
@@ -46,11 +48,12 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
         options.force_scale_m_per_n = force_scale(prepared);
     }
     if session.layers.path {
-        options.trajectories = trajectories(session, prepared);
+        options.trajectories = trajectories(&session.document, &session.calibration, prepared);
     }
-    let markers: Vec<ConstraintMarker> = markers::of(session, prepared).into_iter().filter_map(|m| m.marker).collect();
+    let markers: Vec<ConstraintMarker> =
+        markers::of(&session.document, &session.calibration, prepared).into_iter().filter_map(|m| m.marker).collect();
     if session.layers.forces_on_path {
-        options.force_vectors = vectors::net(session, prepared);
+        options.force_vectors = vectors::net(&session.document, prepared);
     }
     if session.layers.unexplained {
         options.force_vectors.extend(vectors::unexplained(session, prepared, markers.first()));
@@ -82,11 +85,11 @@ fn virtual_hand(state: &State, world: &World) -> Option<State> {
 }
 
 /// Camera that shows the whole recording, with a nearby centre of rotation.
-pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
+pub fn camera_for(document: &Document, calibration: &Calibration, prepared: &Prepared) -> Camera {
     match bounds(prepared) {
         Some((mut low, mut high)) if prepared.tool.is_some() => {
             let extent = (high - low).norm();
-            for marked in markers::of(session, prepared) {
+            for marked in markers::of(document, calibration, prepared) {
                 if let Some(ConstraintMarker::Revolute { center_m, radius_m, .. }) = marked.marker
                     && radius_m < 1.5 * extent
                 {
@@ -121,23 +124,23 @@ pub fn force_scale(prepared: &Prepared) -> f32 {
 }
 
 /// Samples of the path inside the plots' time window.
-pub fn window(session: &Session, prepared: &Prepared) -> Vec<usize> {
-    let (from, to) = session.document.view_s;
+pub fn window(document: &Document, prepared: &Prepared) -> Vec<usize> {
+    let (from, to) = document.view_s;
     let visible = |i: &&usize| prepared.times[**i] >= from && prepared.times[**i] <= to;
     prepared.path_samples.iter().filter(visible).copied().collect()
 }
 
 /// True if each finger has a path of its own; fingers on a crank share one.
-pub fn follows_fingers(session: &Session, prepared: &Prepared) -> bool {
-    let turns = session.calibration.analysis.as_ref().is_some_and(|a| a.world.crank.is_some());
+pub fn follows_fingers(calibration: &Calibration, prepared: &Prepared) -> bool {
+    let turns = calibration.analysis.as_ref().is_some_and(|a| a.world.crank.is_some());
     prepared.tips.is_some() && !turns
 }
 
-fn trajectories(session: &Session, prepared: &Prepared) -> Vec<Trajectory> {
-    let samples = window(session, prepared);
+fn trajectories(document: &Document, calibration: &Calibration, prepared: &Prepared) -> Vec<Trajectory> {
+    let samples = window(document, prepared);
     let curve = |points_m: Vec<Vec2>, role, width_px| Trajectory { points_m, role, width_px, dashed: false };
     match &prepared.tips {
-        Some(tips) if follows_fingers(session, prepared) => (0..2)
+        Some(tips) if follows_fingers(calibration, prepared) => (0..2)
             .map(|f| curve(samples.iter().map(|i| tips[f].position[*i]).collect(), ColorRole::Finger(f), 1.2))
             .collect(),
         _ => {

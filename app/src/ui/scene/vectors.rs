@@ -2,6 +2,8 @@
 //! explains (figure 5.12).
 
 use super::overlay::window;
+use crate::ui::calibration::Calibration;
+use crate::ui::document::Document;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use haptics::Vec2;
@@ -11,11 +13,11 @@ use render::{ColorRole, ConstraintMarker, ForceVector};
 const VECTORS: usize = 48;
 
 /// Net force of the hand, at even intervals.
-pub fn net(session: &Session, prepared: &Prepared) -> Vec<ForceVector> {
+pub fn net(document: &Document, prepared: &Prepared) -> Vec<ForceVector> {
     let vector = |i: usize| {
         Some(ForceVector { at_m: prepared.point_at(i)?, force_n: prepared.force_at(i)?, role: ColorRole::Measured })
     };
-    thinned(session, prepared).into_iter().filter_map(vector).collect()
+    thinned(document, prepared).into_iter().filter_map(vector).collect()
 }
 
 /// Residual of the net force after weight and friction. With a known constraint it is the part perpendicular to the
@@ -30,11 +32,11 @@ pub fn unexplained(session: &Session, prepared: &Prepared, marker: Option<&Const
         };
         Some(ForceVector { at_m, force_n, role: ColorRole::Constraint })
     };
-    thinned(session, prepared).into_iter().filter_map(vector).collect()
+    thinned(&session.document, prepared).into_iter().filter_map(vector).collect()
 }
 
-fn thinned(session: &Session, prepared: &Prepared) -> Vec<usize> {
-    let samples = window(session, prepared);
+fn thinned(document: &Document, prepared: &Prepared) -> Vec<usize> {
+    let samples = window(document, prepared);
     let every = samples.len().div_ceil(VECTORS).max(1);
     samples.into_iter().step_by(every).collect()
 }
@@ -58,18 +60,28 @@ fn normal_at(marker: &ConstraintMarker, at: Vec2) -> Option<Vec2> {
 /// Simulated force at a sample: both fingers together, or the tool.
 fn predicted(session: &Session, sample: usize) -> Option<Vec2> {
     let fingers = tips(session, sample);
-    let one = || Some(Vec2::new(channel(session, "fx_N", sample)?, channel(session, "fy_N", sample)?));
+    let one = || {
+        Some(Vec2::new(
+            channel(&session.document, &session.calibration, "fx_N", sample)?,
+            channel(&session.document, &session.calibration, "fy_N", sample)?,
+        ))
+    };
     fingers.map(|[a, b]| a + b).or_else(one)
 }
 
 /// Simulated force of each finger at a sample, N.
 pub fn tips(session: &Session, sample: usize) -> Option<[Vec2; 2]> {
-    let of = |x: &str, y: &str| Some(Vec2::new(channel(session, x, sample)?, channel(session, y, sample)?));
+    let of = |x: &str, y: &str| {
+        Some(Vec2::new(
+            channel(&session.document, &session.calibration, x, sample)?,
+            channel(&session.document, &session.calibration, y, sample)?,
+        ))
+    };
     Some([of("fx1_N", "fy1_N")?, of("fx2_N", "fy2_N")?])
 }
 
-fn channel(session: &Session, name: &str, sample: usize) -> Option<f64> {
-    let simulation = session.replay()?.simulation.as_ref()?;
+fn channel(document: &Document, calibration: &Calibration, name: &str, sample: usize) -> Option<f64> {
+    let simulation = calibration.replay(document.current)?.simulation.as_ref()?;
     simulation.predicted.iter().find(|c| c.name == name)?.values.get(sample).copied()
 }
 

@@ -2,8 +2,10 @@
 
 use super::callback::{picture, pixels};
 use super::rig::Rig;
-use crate::ui::icons::{self, Icon};
-use crate::ui::theme::{self, palette};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::Icon;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::palette;
 use egui::{Key, PointerButton, Rect, Response, Sense};
 use haptics::world::{State, World};
 use render::{Camera, ViewOptions};

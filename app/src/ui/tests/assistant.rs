@@ -98,8 +98,8 @@ fn squeezing() -> Session {
     let mut session = in_train(Operator::You, WorldChoice::Blocks);
     session.training.lessons.load();
     let lesson = session.training.lessons.all.iter().find(|l| l.id == "pinch").map(Arc::clone).expect("a lesson");
-    practising::open_lesson_now(&mut session, &lesson);
-    practising::practise_lesson(&mut session);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
+    practising::practise_lesson(&mut session.training, &mut session.messages);
     let (_, world) = session.training.trainer.scene().expect("a scene");
     let block_m = world.blocks[0].start.center_m;
     for above_m in [0.03, 0.0] {
@@ -120,14 +120,15 @@ fn in_a_test_of_a_lesson_nobody_helps() {
     session.training.lessons.shown = true;
     let lesson =
         session.training.lessons.all.iter().find(|l| l.id == "lift-and-hold").map(Arc::clone).expect("a lesson");
-    practising::open_lesson_now(&mut session, &lesson);
-    practising::practise_lesson(&mut session);
-    pointer::follow_expert(&mut session, 6.0);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
+    practising::practise_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, 6.0);
     let mut harness = train_window(session);
     harness.run_steps(2);
     assert!(says(&harness, "Grip to spare"), "while practising");
-    practising::test_lesson(&mut harness.state_mut().session);
-    pointer::follow_expert(&mut harness.state_mut().session, 6.0);
+    let session = &mut harness.state_mut().session;
+    practising::test_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut harness.state_mut().session.training, 6.0);
     harness.run_steps(2);
     assert!(!says(&harness, "Grip to spare") && says(&harness, "In a test you are on your own."));
 }
@@ -137,10 +138,10 @@ fn a_finger_that_pressed_on_a_block_did_not_spoil_the_zero_of_its_sensor() {
     let mut session = in_train(Operator::You, WorldChoice::Blocks);
     session.training.lessons.load();
     let lesson = session.training.lessons.all.iter().find(|l| l.id == "stack-two").map(Arc::clone).expect("a lesson");
-    practising::open_lesson_now(&mut session, &lesson);
-    practising::practise_lesson(&mut session);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
+    practising::practise_lesson(&mut session.training, &mut session.messages);
     // The pointer comes down on the block first, and carries it then.
-    pointer::follow_expert(&mut session, 7.5);
+    pointer::follow_expert(&mut session.training, 7.5);
     let report = session.training.trainer.watch.report().expect("watched");
     let weight = report.parameters.iter().find(|p| p.name == "weight_N").expect("weighed");
     let (_, world) = session.training.trainer.scene().expect("a scene");

@@ -61,7 +61,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     let carried = table.steps.iter().position(|s| s.words == "Take hold.").expect("a step") + 1;
     // Half way through the carry the block is in the air.
     let middle_s = 0.5 * (table.steps[carried - 1].until_s + table.steps[carried].until_s);
-    guiding::follow_rings(session, middle_s);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, middle_s);
     let lifted_m = |session: &crate::ui::session::Session| {
         session
             .training
@@ -70,7 +70,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
             .map_or(0.0, |(s, w)| s.state.bodies[0].center_m.y - w.blocks[0].start.center_m.y)
     };
     assert!(lifted_m(session) > 2e-3, "lifted by {} m", lifted_m(session));
-    guiding::follow_rings(session, table.duration_s());
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, table.duration_s());
     assert!(lifted_m(session).abs() < 2e-3, "and put down again: {} m", lifted_m(session));
     harness.run_steps(2);
     until(&mut harness, "the recording", |app| {
@@ -80,7 +80,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     harness.run_steps(2);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     assert_eq!((session.workspace, settled(&harness)), (Workspace::Diagnose, pair("mass-change", "force-drift")));

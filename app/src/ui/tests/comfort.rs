@@ -100,8 +100,10 @@ fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
     // A lesson: a try begins anew, an attempt that counts too, and that is said.
     harness.state_mut().session.training.lessons.load();
     let lesson = harness.state().session.training.lessons.all[0].clone();
-    practising::open_lesson_now(&mut harness.state_mut().session, &lesson);
-    practising::test_lesson(&mut harness.state_mut().session);
+    let session = &mut harness.state_mut().session;
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
+    let session = &mut harness.state_mut().session;
+    practising::test_lesson(&mut session.training, &mut session.messages);
     trainer(&mut harness).advance(1.0);
     harness.run_steps(2);
     harness.key_press(Key::N);

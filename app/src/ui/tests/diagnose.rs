@@ -7,12 +7,13 @@ use crate::ui::diagnosis_state;
 use crate::ui::diagnosis_state::StartFrom;
 use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
 use crate::ui::follow;
+use crate::ui::kit::theme;
+use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Operator;
 use crate::ui::workspace::Workspace;
-use crate::ui::{screenshot, theme};
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -98,7 +99,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     until_done(&mut harness, EXTEND);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
     until_done(&mut harness, SIMULATE_EXTENDED);
-    let replayed = harness.state().session.extended_replay().expect("played through the extended world");
+    let replayed = harness.state().session.diagnosing.replay(0).expect("played through the extended world");
     assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
         world.crank.as_ref().expect("a crank").effects.iter().map(|e| e.law().id()).collect()
@@ -122,7 +123,7 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.training.trainer.compare = Some(diagnosing::comparison(&session).expect("a crank can be felt"));
+    session.training.trainer.compare = Some(diagnosing::comparison(&session.diagnosing).expect("a crank can be felt"));
     session.training.trainer.operator = Operator::Scripted;
     session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
@@ -231,7 +232,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
         &answer,
     );
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    let why = diagnosing::comparison(session).expect_err("nothing to hold");
+    let why = diagnosing::comparison(&session.diagnosing).expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
@@ -245,7 +246,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
 fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
-    diagnosing::diagnose(&mut session, &ctx);
+    diagnosing::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
     session.give_up(&ctx, DIAGNOSE);
     assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);

@@ -3,6 +3,7 @@
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
 use crate::ui::app::App;
+use crate::ui::background::jobs::Jobs;
 use crate::ui::experimenting;
 use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
@@ -31,8 +32,8 @@ fn saved(recording: &Recording, folder: &Path) -> PathBuf {
     path
 }
 
-pub(super) fn quiet(session: &Session) -> bool {
-    !session.jobs.is_busy()
+pub(super) fn quiet(jobs: &Jobs<Session>) -> bool {
+    !jobs.is_busy()
 }
 
 /// The ambiguous recording, opened from a file and diagnosed.
@@ -48,10 +49,11 @@ pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'
     let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     let path = saved(recording, folder);
-    opening::open(&mut harness.state_mut().session, &ctx, &path);
+    let session = &mut harness.state_mut().session;
+    opening::open(&mut session.document, &mut session.jobs, &ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.calibration.analysis.is_some() && quiet(s)
+        s.calibration.analysis.is_some() && quiet(&s.jobs)
     });
     harness.state_mut().session.workspace = Workspace::Diagnose;
     harness.run_steps(2);
@@ -112,7 +114,7 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     assert_eq!(simulated_object(&session.document.recordings[1].recording), Some("as if gravity tilt"));
@@ -150,7 +152,7 @@ fn a_loaded_recording_of_the_experiment_settles_the_question() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     assert_eq!(
         (settled_beside_friction(&harness), verdict(&harness)),
@@ -185,11 +187,11 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     assert!(harness.query_by_label("Touch nothing.").is_some());
     let session = &mut harness.state_mut().session;
     let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
-    guiding::follow_rings(session, 3.0);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.run_steps(2);
     assert!(harness.query_by_label("Take hold.").is_some());
     let session = &mut harness.state_mut().session;
-    guiding::follow_rings(session, all_s);
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, all_s);
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
@@ -199,7 +201,7 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     let session = &harness.state().session;
     let known = &session.document.recordings[1].recording.meta.known;
@@ -225,7 +227,8 @@ fn an_experiment_that_is_left_keeps_no_file() {
     assert!(harness.query_by_label_contains("SIMULATED object, as if gravity tilt").is_some());
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
-    guiding::follow_rings(&mut harness.state_mut().session, 3.0);
+    let session = &mut harness.state_mut().session;
+    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
     harness.run_steps(3);
     let session = &harness.state().session;
@@ -253,7 +256,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     assert!(harness.query_by_label("Plan of the motion, 22 s").is_some());
     harness.get_by_role_and_label(Role::Button, "Save the plan").click();
     harness.run_steps(2);
-    until(&mut harness, "the plan", |app| quiet(&app.session));
+    until(&mut harness, "the plan", |app| quiet(&app.session.jobs));
     let plan = std::fs::read_to_string(folder.path().join("recordings/plan-1.csv")).expect("written");
     assert!(plan.starts_with("t_s,q_rad\n"), "{}", &plan[..40]);
     // The real one, moved as the answer asks by the generator's own hand.
@@ -266,7 +269,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     experimenting::add_experiment(&mut harness.state_mut().session, &ctx, &path);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
-        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+        s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)
     });
     assert_eq!(settled(&harness), pair("eccentric-mass", "gravity-tilt"));
 }

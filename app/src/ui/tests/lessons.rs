@@ -5,9 +5,10 @@ use crate::ui::app::App;
 use crate::ui::lessons::pointer;
 use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Debrief, Phase};
-use crate::ui::session::Session;
+use crate::ui::message_list::Messages;
 use crate::ui::trainees;
 use crate::ui::trainer::live::Operator;
+use crate::ui::training::Training;
 use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -24,15 +25,15 @@ fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
 }
 
 /// Does an open lesson's test with the mouse; the answer to a question is that of the world that stands there.
-fn attempted(session: &mut Session) -> Debrief {
-    practising::test_lesson(session);
-    pointer::follow_expert(session, 120.0);
-    let open = session.training.lessons.open.as_ref().expect("open");
+fn attempted(training: &mut Training, messages: &mut Messages) -> Debrief {
+    practising::test_lesson(training, messages);
+    pointer::follow_expert(training, 120.0);
+    let open = training.lessons.open.as_ref().expect("open");
     let answer = open.lesson.question.as_ref().map(|_| open.variant);
-    practising::end_lesson_now(session, answer);
-    match session.training.lessons.open.as_ref().map(|open| &open.phase) {
+    practising::end_lesson_now(training, messages, answer);
+    match training.lessons.open.as_ref().map(|open| &open.phase) {
         Some(Phase::Debrief(debrief)) => (**debrief).clone(),
-        other => panic!("{other:?}: {:?}", session.messages.banners),
+        other => panic!("{other:?}: {:?}", messages.banners),
     }
 }
 
@@ -44,8 +45,8 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
     assert_eq!((session.training.lessons.all.len(), session.training.lessons.problems.len()), (11, 0));
     let mut missed = Vec::new();
     for lesson in session.training.lessons.all.clone() {
-        practising::open_lesson_now(&mut session, &lesson);
-        let debrief = attempted(&mut session);
+        practising::open_lesson_now(&mut session.training, &mut session.messages, &lesson);
+        let debrief = attempted(&mut session.training, &mut session.messages);
         if !debrief.grade.completed {
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
         }
@@ -62,7 +63,13 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = train_window(in_train(folder.path()));
     let ctx = harness.ctx.clone();
-    trainees::open_history(&mut harness.state_mut().session, &ctx, folder.path().join("history.sqlite"));
+    let session = &mut harness.state_mut().session;
+    trainees::open_history(
+        &mut session.training.learning,
+        &mut session.messages,
+        &ctx,
+        folder.path().join("history.sqlite"),
+    );
     let learning = &mut harness.state_mut().session.training.learning;
     "Ada".clone_into(&mut learning.name_field);
     learning.add_trainee();
@@ -80,12 +87,12 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     click(&mut harness, Role::Button, "Practise");
     assert_eq!(phase(&harness), Some(Phase::Practising));
     assert!(!harness.state().session.training.trainer.is_recording(), "practice is not recorded");
-    pointer::follow_expert(&mut harness.state_mut().session, 60.0);
+    pointer::follow_expert(&mut harness.state_mut().session.training, 60.0);
     harness.run_steps(3);
     assert!(harness.query_all_by_label_contains("All goals reached").next().is_some());
     click(&mut harness, Role::Button, "Take the test");
     assert!(harness.state().session.training.trainer.is_recording());
-    pointer::follow_expert(&mut harness.state_mut().session, 60.0);
+    pointer::follow_expert(&mut harness.state_mut().session.training, 60.0);
     until(&mut harness, "the debrief", |app| {
         app.session.training.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Debrief(_)))
     });
@@ -108,20 +115,20 @@ fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
     let mut session = in_train(folder.path());
     session.training.lessons.load();
     let barrel = session.training.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
-    practising::open_lesson_now(&mut session, &barrel);
-    practising::watch_lesson(&mut session);
-    practising::close_lesson(&mut session);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &barrel);
+    practising::watch_lesson(&mut session.training, &mut session.messages);
+    practising::close_lesson(&mut session.training, &mut session.messages);
     assert_eq!(session.training.trainer.operator, Operator::You, "the expert stops");
-    practising::open_lesson_now(&mut session, &barrel);
-    practising::test_lesson(&mut session);
-    pointer::follow_expert(&mut session, 3.0);
-    practising::close_lesson(&mut session);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &barrel);
+    practising::test_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, 3.0);
+    practising::close_lesson(&mut session.training, &mut session.messages);
     assert!(!session.training.trainer.is_recording() && session.training.lessons.open.is_none());
-    practising::open_lesson_now(&mut session, &barrel);
-    practising::test_lesson(&mut session);
-    pointer::follow_expert(&mut session, 120.0);
+    practising::open_lesson_now(&mut session.training, &mut session.messages, &barrel);
+    practising::test_lesson(&mut session.training, &mut session.messages);
+    pointer::follow_expert(&mut session.training, 120.0);
     let right = session.training.lessons.open.as_ref().expect("open").variant;
-    practising::end_lesson_now(&mut session, Some((right + 1) % 4));
+    practising::end_lesson_now(&mut session.training, &mut session.messages, Some((right + 1) % 4));
     let Some(Phase::Debrief(debrief)) = session.training.lessons.open.as_ref().map(|open| open.phase.clone()) else {
         panic!("no debrief: {:?}", session.messages.banners)
     };
@@ -137,13 +144,14 @@ fn a_calibrated_world_becomes_a_lesson() {
     session.training.lessons.folder = Some(folder.path().join("lessons"));
     let mut harness = train_window(session);
     let ctx = harness.ctx.clone();
-    practising::practise_on_this(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    practising::practise_on_this(&session.calibration, &mut session.jobs, &ctx);
     until(&mut harness, "the lesson", |app| {
         app.session.training.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
     });
     let session = &mut harness.state_mut().session;
     assert_eq!(session.workspace, Workspace::Train);
-    let debrief = attempted(session);
+    let debrief = attempted(&mut session.training, &mut session.messages);
     assert!(debrief.grade.completed, "{:?}", debrief.grade);
     let measured = session.calibration.analysis.as_ref().map(|a| a.world.blocks[0].mass_kg);
     let touched = session.training.trainer.standing_world().blocks.first().map(|b| b.mass_kg);

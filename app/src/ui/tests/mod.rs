@@ -26,11 +26,12 @@ mod window;
 mod workbench;
 
 use super::app::App;
-use super::jobs::JobKind;
 use super::panel::Picture;
 use super::prepare::Prepared;
 use super::session::{self, Session};
-use super::{screenshot, theme};
+use crate::ui::background::jobs::JobKind;
+use crate::ui::kit::theme;
+use crate::ui::screenshot;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::workspace::Workspace;

@@ -3,15 +3,16 @@
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
 use crate::ui::follow;
+use crate::ui::kit::theme;
 use crate::ui::panel::Panel;
 use crate::ui::panels::list::PANELS;
 use crate::ui::panels::parameters::ParametersPanel;
 use crate::ui::panels::recording::RecordingPanel;
 use crate::ui::panels::results::ResultsPanel;
 use crate::ui::refits::FIT;
+use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
-use crate::ui::{screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
 use haptics::recording::Recording;
@@ -63,12 +64,15 @@ fn refit_starts_a_job_and_brings_a_fit() {
 #[test]
 fn the_replay_lifts_the_block_as_it_was_lifted() {
     let session = session(STACK.clone());
-    let segmentation = session.segmentation().expect("segmented");
+    let segmentation = session.calibration.segmentation(session.document.current).expect("segmented");
     let carry = segmentation.states.iter().find(|i| i.state == SystemState::HoldAboveGround).expect("carried");
-    let film = session.replay().and_then(|r| r.film.clone()).expect("played");
+    let film = session.calibration.replay(session.document.current).and_then(|r| r.film.clone()).expect("played");
     let height = |t: f64| film.body_at(0, t).expect("block 1").y;
     assert!(height(0.5 * (carry.t0 + carry.t1)) - height(0.0) > 0.005);
-    assert!(!session.replay().expect("played").curves.is_empty(), "simulated forces");
+    assert!(
+        !session.calibration.replay(session.document.current).expect("played").curves.is_empty(),
+        "simulated forces"
+    );
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::diagnosis_state;
 use crate::ui::follow;
+use crate::ui::kit::theme;
 use crate::ui::overlays;
 use crate::ui::overlays::ALIGN;
 use crate::ui::panel::Panel as _;
@@ -11,10 +12,10 @@ use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
 use crate::ui::refits::{analyse, replay_all, replay_forces};
+use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::workspace::Workspace;
-use crate::ui::{screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -267,7 +268,7 @@ fn another_recording_is_laid_over_and_aligned() {
 fn an_overlay_is_shifted_by_dragging_its_number() {
     let other = again(&CRANK, "crank again", 0.0, 100);
     let mut session = two(&CRANK, other);
-    overlays::toggle_overlay(&mut session, 1);
+    overlays::toggle_overlay(&mut session.plots, 1);
     let mut harness = log(session);
     let number = harness.get_by_role(Role::SpinButton).rect().center();
     harness.drag_at(number);
@@ -288,8 +289,8 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
         let draw = |overlay: bool| {
             let mut session = two(&CRANK, again(&CRANK, "crank, second try", 0.0, 300));
             if overlay {
-                overlays::toggle_overlay(&mut session, 1);
-                overlays::shift_overlay(&mut session, 1, 0.4);
+                overlays::toggle_overlay(&mut session.plots, 1);
+                overlays::shift_overlay(&mut session.plots, 1, 0.4);
             }
             let picture = screenshot::draw(session, picture("log"), [1100, 720], dark).expect("drawn");
             keep(&format!("overlay-{overlay}-{dark}"), &picture);
@@ -305,7 +306,7 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
 fn nothing_of_the_log_is_cut_where_there_is_little_room() {
     let make = || {
         let mut session = two(&STACK, again(&STACK, "stack, the second of a long series", 0.5, 300));
-        overlays::toggle_overlay(&mut session, 1);
+        overlays::toggle_overlay(&mut session.plots, 1);
         session.plots.groups.entry("Force/N".to_owned()).or_default().left_over = true;
         session
     };

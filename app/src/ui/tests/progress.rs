@@ -4,7 +4,9 @@ use super::thresholds::LAYER;
 use super::{harness, no_driver, until};
 use crate::history::attempt::{Attempt, Conditions};
 use crate::ui::app::App;
+use crate::ui::dialogs;
 use crate::ui::gallery::practice::practice;
+use crate::ui::kit::theme;
 use crate::ui::learning::Practised;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
@@ -12,7 +14,7 @@ use crate::ui::tests::picture;
 use crate::ui::trainees;
 use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, screenshot, theme};
+use crate::ui::{files, screenshot};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -27,7 +29,8 @@ fn window<'a>(database: &Path) -> Harness<'a, App> {
     app.dock.bring(Workspace::Train, PanelId::PROGRESS);
     let mut harness = harness(app, [1280.0, 1000.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    trainees::open_history(&mut harness.state_mut().session, &ctx, database.to_path_buf());
+    let session = &mut harness.state_mut().session;
+    trainees::open_history(&mut session.training.learning, &mut session.messages, &ctx, database.to_path_buf());
     harness.run_steps(2);
     harness
 }
@@ -53,7 +56,7 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     assert!(harness.query_by_label_contains("Grace has not attempted").is_some());
     for attempt in practice() {
         assert!(trainees::keep_attempt(
-            &mut harness.state_mut().session,
+            &harness.state_mut().session.training.learning,
             Attempt { trainee: "Grace".to_owned(), ..attempt }
         ));
     }
@@ -72,7 +75,7 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
         trainee: "Grace".to_owned(),
         ..practice().remove(3)
     };
-    trainees::keep_attempt(&mut harness.state_mut().session, other);
+    trainees::keep_attempt(&harness.state_mut().session.training.learning, other);
     until(&mut harness, "the other lesson", |app| app.session.training.learning.attempts.len() == 24);
     let shown = Practised { lesson: "stack".to_owned(), conditions: delayed };
     assert_eq!(harness.state().session.training.learning.practised()[1], shown);
@@ -84,7 +87,7 @@ fn trainees_are_added_and_their_attempts_kept_shown_and_saved() {
     // A table of everything, where the dialog says.
     let table = folder.path().join("grace.csv");
     let ctx = harness.ctx.clone();
-    let answer = files::answered(files::SAVE_HISTORY, table.clone());
+    let answer = files::answered(dialogs::SAVE_HISTORY, table.clone());
     harness.state_mut().session.jobs.start(&ctx, files::SAVE, "", move |_| answer);
     until(&mut harness, "the table", |app| app.session.messages.banners.iter().any(|b| b.text == "Saved grace.csv."));
     assert_eq!(std::fs::read_to_string(&table).expect("written").lines().count(), 25);
@@ -104,8 +107,8 @@ fn an_attempt_of_another_trainee_does_not_get_among_those_that_are_shown() {
     session.training.learning.add_trainee();
     let mut mine = practice();
     mine.truncate(2);
-    trainees::keep_attempt(session, Attempt { trainee: "Grace".to_owned(), ..mine[0].clone() });
-    trainees::keep_attempt(session, mine[1].clone());
+    trainees::keep_attempt(&session.training.learning, Attempt { trainee: "Grace".to_owned(), ..mine[0].clone() });
+    trainees::keep_attempt(&session.training.learning, mine[1].clone());
     until(&mut harness, "both", |app| {
         app.session.training.learning.trainees.contains(&"Grace".to_owned())
             && !app.session.training.learning.attempts.is_empty()

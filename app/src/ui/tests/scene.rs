@@ -2,15 +2,16 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
+use crate::ui::kit::theme;
 use crate::ui::panel::Panel;
 use crate::ui::panels::scene::ScenePanel;
 use crate::ui::refits::replay_all;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::likeness::Likeness;
 use crate::ui::scene::overlay::{options_for, scene_world};
+use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;
-use crate::ui::{screenshot, theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use estimator::estimate::{Constraint, ConstraintKind, Guide, Touched};
@@ -33,7 +34,7 @@ fn with_constraint(constraint: Constraint) -> Session {
 
 fn markers(session: &Session) -> Vec<ConstraintMarker> {
     let prepared = session.document.prepared().expect("shown").clone();
-    options_for(session, &prepared, &scene_world(session, &prepared)).1.constraints
+    options_for(session, &prepared, &scene_world(&session.calibration, &prepared)).1.constraints
 }
 
 #[test]
@@ -150,7 +151,7 @@ fn the_force_that_a_crank_bears_points_along_its_radius() {
     let mut session = session(CRANK.clone());
     session.layers = SceneLayers { unexplained: true, ..session.layers };
     let prepared = session.document.prepared().expect("shown").clone();
-    let world = scene_world(&session, &prepared);
+    let world = scene_world(&session.calibration, &prepared);
     let options = options_for(&session, &prepared, &world).1;
     let center = world.crank.as_ref().expect("a crank").center_m;
     assert!(options.force_vectors.len() > 20);

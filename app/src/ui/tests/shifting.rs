@@ -14,7 +14,7 @@ const LATER_S: f64 = 1.5;
 
 fn over_each_other() -> Harness<'static, Session> {
     let mut session = two(&CRANK, again(&CRANK, "crank again", LATER_S, 0));
-    overlays::toggle_overlay(&mut session, 1);
+    overlays::toggle_overlay(&mut session.plots, 1);
     log(session)
 }
 
@@ -85,10 +85,12 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     assert_ne!(icon(&harness), CursorIcon::Grabbing);
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
-    assert!(undoing::can_undo(harness.state()));
-    undoing::undo(harness.state_mut());
+    assert!(undoing::can_undo(&harness.state().document, &harness.state().calibration, &harness.state().plots));
+    let session = harness.state_mut();
+    undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), 0.0);
-    undoing::redo(harness.state_mut());
+    let session = harness.state_mut();
+    undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), shifted_s);
 }
 

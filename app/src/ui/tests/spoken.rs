@@ -33,11 +33,17 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut crank = session(CRANK.clone());
     crank.calibration.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.calibration.rules = editing_rules::open(&mut rules);
+    rules.calibration.rules = editing_rules::open(&rules.document, &rules.calibration, &mut rules.messages);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());
-    showing_video::open_video(&mut video, std::path::Path::new("none.mp4"));
+    showing_video::open_video(
+        &mut video.document,
+        &mut video.wanted_pane,
+        &mut video.messages,
+        &mut video.jobs,
+        std::path::Path::new("none.mp4"),
+    );
     let found = [
         unnamed("XY", xy, |_| {}),
         unnamed("video", video, |_| {}),

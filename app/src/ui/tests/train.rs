@@ -46,7 +46,7 @@ fn a_built_in_world_by_name_is_that_of_the_list_and_another_one_comes_from_its_f
     let mut harness = window();
     let ctx = harness.ctx.clone();
     let mut open = |name: &str| {
-        opening::open_world(&mut harness.state_mut().session, &ctx, std::path::Path::new(name));
+        opening::open_world(&mut harness.state_mut().session.jobs, &ctx, std::path::Path::new(name));
         until_quiet(&mut harness);
         (harness.state().session.training.trainer.choice, harness.state().session.messages.banners.len())
     };

@@ -60,20 +60,25 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
 
     press(&mut harness, Role::Button, "Align video");
     until(&mut harness, "its place", |app| {
-        showing_video::video_source(&app.session).is_some_and(|v| v.begins_at_s != 0.0)
+        showing_video::video_source(&app.session.document).is_some_and(|v| v.begins_at_s != 0.0)
     });
     let first = harness.state().session.document.recordings[0].span().0;
-    let begins_at_s = showing_video::video_source(&harness.state().session).expect("a video").begins_at_s;
+    let begins_at_s = showing_video::video_source(&harness.state().session.document).expect("a video").begins_at_s;
     assert!((begins_at_s - (first - 1.7)).abs() < 0.06, "it begins at {begins_at_s} s");
     until(&mut harness, "the picture that belongs to the cursor", |app| {
         app.session.document.videos.shown() == Some(142)
     });
 
     // It is kept with the project, and goes with another recording.
-    let project = crate::ui::project_files::project_of(&harness.state().session);
+    let project = crate::ui::project_files::project_of(
+        harness.state().session.workspace,
+        &harness.state().session.document,
+        &harness.state().session.calibration,
+        &harness.state().session.plots,
+    );
     assert_eq!(project.videos, harness.state().session.document.videos.sources);
     press(&mut harness, Role::Button, "Take the video away");
-    assert!(showing_video::video_source(&harness.state().session).is_none());
+    assert!(showing_video::video_source(&harness.state().session.document).is_none());
     assert!(harness.query_by_label("Choose a video …").is_some());
 }
 
@@ -86,7 +91,13 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     let file = folder.path().join("a.mkv");
     film(&file, RATE_HZ, 100, |k| bar(k as f64 / 100.0));
     let mut session = session(STACK.clone());
-    showing_video::open_video(&mut session, &file);
+    showing_video::open_video(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &file,
+    );
     let mut harness = window(session);
     until(&mut harness, "the first picture", |app| app.session.document.videos.shown() == Some(0));
     press(&mut harness, Role::CheckBox, "By itself");
@@ -96,7 +107,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     press(&mut harness, Role::Button, "They belong together");
     let session = &harness.state().session;
     assert!(session.document.videos.loose_s.is_none());
-    assert!((showing_video::video_source(session).expect("a video").begins_at_s - 7.5).abs() < 1e-9);
+    assert!((showing_video::video_source(&session.document).expect("a video").begins_at_s - 7.5).abs() < 1e-9);
     assert_eq!(session.document.videos.shown(), Some(50), "the picture stays");
     // Before its beginning, the first picture stands there, with a word.
     harness.state_mut().session.document.seek(5.0);
@@ -117,9 +128,10 @@ fn a_video_that_stands_beside_its_log_is_found_with_its_sidecar() {
     let opened = |log: &Path| {
         let mut harness = window(empty());
         let ctx = harness.ctx.clone();
-        opening::open(&mut harness.state_mut().session, &ctx, log);
+        let session = &mut harness.state_mut().session;
+        opening::open(&mut session.document, &mut session.jobs, &ctx, log);
         until(&mut harness, "the log", |app| !app.session.document.recordings.is_empty());
-        showing_video::video_source(&harness.state().session).cloned().expect("a video")
+        showing_video::video_source(&harness.state().session.document).cloned().expect("a video")
     };
     let beside = opened(&log);
     assert_eq!((beside.file, beside.begins_at_s), (folder.path().join("run.mp4"), 0.0));
@@ -136,20 +148,42 @@ fn what_is_in_the_way_of_a_video_is_said() {
     std::fs::write(&file, b"\0\0\0\x20ftypisom\0\0\x02\0").expect("written");
     let ctx = egui::Context::default();
     let mut without = empty();
-    opening::open_any(&mut without, &ctx, &file);
+    opening::open_any(
+        &mut without.document,
+        &mut without.wanted_pane,
+        &mut without.messages,
+        &mut without.jobs,
+        &ctx,
+        &file,
+    );
     assert!(without.messages.banners[0].text.contains("open the log first"), "{:?}", without.messages.banners);
     let mut clockless = session(clockless_path());
-    opening::open_any(&mut clockless, &ctx, &file);
+    opening::open_any(
+        &mut clockless.document,
+        &mut clockless.wanted_pane,
+        &mut clockless.messages,
+        &mut clockless.jobs,
+        &ctx,
+        &file,
+    );
     assert!(clockless.messages.banners.iter().any(|b| b.text.contains("no clock")), "{:?}", clockless.messages.banners);
     if no_reader() {
         return;
     }
     let mut session = session(STACK.clone());
-    opening::open_any(&mut session, &ctx, &file);
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &file,
+    );
     let mut harness = window(session);
     until(&mut harness, "the refusal", |app| !app.session.jobs.is_busy());
-    assert!(
-        matches!(showing_video::video(&mut harness.state_mut().session, &ctx), State::Failed(why) if why.contains("no video"))
-    );
+    assert!(matches!({
+            let session = &mut harness.state_mut().session;
+            showing_video::video(&session.document, &mut session.jobs, &ctx)
+        }, State::Failed(why) if why.contains("no video")));
     assert!(harness.query_by_label("Try again").is_some());
 }

@@ -72,13 +72,15 @@ fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
     app.session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
     let mut harness = harness(app, [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
+    let session = &mut harness.state_mut().session;
+    recorder::look_for_unfinished(&ctx, &session.training.trainer, &mut session.jobs);
     until_quiet(&mut harness);
     assert!(harness.query_by_label("Dismiss").is_none(), "it has its end");
     let (cut, marker) = folder::reserve(folder.path(), "cart").expect("reserves");
     std::fs::write(&cut, &without_end).expect("writes");
     drop(marker);
-    recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
+    let session = &mut harness.state_mut().session;
+    recorder::look_for_unfinished(&ctx, &session.training.trainer, &mut session.jobs);
     until_quiet(&mut harness);
     assert_eq!(harness.state().session.document.unfinished, std::slice::from_ref(&cut));
     harness.get_by_label("Open").click();
@@ -97,7 +99,8 @@ fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
 fn a_missing_file_is_a_banner_that_can_be_dismissed() {
     let mut harness = harness(App::new(empty()), [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    opening::open(&mut harness.state_mut().session, &ctx, std::path::Path::new("/nowhere/none.csv"));
+    let session = &mut harness.state_mut().session;
+    opening::open(&mut session.document, &mut session.jobs, &ctx, std::path::Path::new("/nowhere/none.csv"));
     until(&mut harness, "the message", |app| !app.session.messages.banners.is_empty());
     assert!(harness.state().session.messages.banners[0].text.contains("none.csv"));
     harness.run_steps(2);

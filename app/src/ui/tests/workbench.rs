@@ -42,10 +42,11 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     let mut harness = window(STACK.clone());
     // The first fit tells how quick fits are.
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
     let before = weight(&harness, "block-1");
-    let states = harness.state().session.segmentation().expect("segmented").states.clone();
+    let states = harness.state().session.calibration.segmentation(0).expect("segmented").states.clone();
     let carry = states.iter().position(|i| i.subtask.as_deref() == Some("carry-block-1")).expect("carried");
     let label = format!("Boundary at {} s", crate::text::format::number(states[carry].t1, 2));
     let grip = harness.get_by_label(&label).rect().center();
@@ -58,12 +59,13 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     }
     harness.drop_at(pos2(grip.x - shift, grip.y));
     settle(&mut harness);
-    let moved = harness.state().session.segmentation().expect("segmented").states[carry].t1;
+    let moved = harness.state().session.calibration.segmentation(0).expect("segmented").states[carry].t1;
     assert!(moved < states[carry].t1 - 0.3, "{moved} from {}", states[carry].t1);
     let after = weight(&harness, "block-1");
     assert!(after.1 < before.1, "fewer samples: {} of {}", after.1, before.1);
     assert!(
-        harness.state().session.segmentation().is_some_and(|s| s.by_hand) && !harness.state().session.calibration.stale
+        harness.state().session.calibration.segmentation(0).is_some_and(|s| s.by_hand)
+            && !harness.state().session.calibration.stale
     );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut harness);
@@ -82,13 +84,17 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
         fit.parameter("mechanism", "mass_kg").expect("told").samples
     };
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
-    let (all, states) = (samples(&harness), harness.state().session.segmentation().expect("segmented").states.clone());
+    let (all, states) =
+        (samples(&harness), harness.state().session.calibration.segmentation(0).expect("segmented").states.clone());
     let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
     let place = states.iter().filter(|s| s.state == longest.state).position(|s| s.t0 == longest.t0).expect("it is one");
-    let word =
-        crate::text::states::state_of_task(harness.state().session.segmentation().expect("segmented"), longest.state);
+    let word = crate::text::states::state_of_task(
+        harness.state().session.calibration.segmentation(0).expect("segmented"),
+        longest.state,
+    );
     let shown: Vec<_> = harness.get_all_by_role_and_label(egui::Role::Button, word).collect();
     shown[place].click_secondary();
     harness.run_steps(2);
@@ -102,17 +108,21 @@ fn a_stretch_of_a_mechanism_is_fitted_alone() {
 fn another_value_is_tried_on_the_replay_and_frozen() {
     let mut harness = window(CRANK.clone());
     let ctx = harness.ctx.clone();
-    fitting::refit(&mut harness.state_mut().session, &ctx);
+    let session = &mut harness.state_mut().session;
+    fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, &ctx);
     settle(&mut harness);
     harness.get_by_label("crank.weight_N").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Crank · weight").is_some());
     let fitted = weight(&harness, "crank").0;
-    trying_values::try_value(&mut harness.state_mut().session, "crank.weight_N", Some(2.0 * fitted));
+    trying_values::try_value(&mut harness.state_mut().session.calibration, "crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
     assert!(!harness.state().session.calibration.what_if.is_behind());
-    let shown = trying_values::shown_curves(&harness.state().session).expect("curves").curves.clone();
-    let first = harness.state().session.replay().expect("replay").curves.clone();
+    let shown = trying_values::shown_curves(&harness.state().session.document, &harness.state().session.calibration)
+        .expect("curves")
+        .curves
+        .clone();
+    let first = harness.state().session.calibration.replay(0).expect("replay").curves.clone();
     assert_eq!(shown.len(), first.len());
     harness.get_by_label("Freeze").click();
     settle(&mut harness);
@@ -189,7 +199,15 @@ fn a_project_brings_back_what_was_done() {
     estimator::log::write_meta(&STACK, &log).expect("written");
     let mut harness = harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    opening::open_any(&mut harness.state_mut().session, &ctx, &log);
+    let session = &mut harness.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &log,
+    );
     settle(&mut harness);
     let session = &mut harness.state_mut().session;
     session.calibration.choice.stated.known.insert("block-1.weight_N".to_owned(), 0.5);
@@ -199,7 +217,15 @@ fn a_project_brings_back_what_was_done() {
     settle(&mut harness);
     let mut other = super::harness(App::new(empty()), [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = other.ctx.clone();
-    opening::open_any(&mut other.state_mut().session, &ctx, &file);
+    let session = &mut other.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &file,
+    );
     settle(&mut other);
     let session = &other.state().session;
     assert!(session.messages.banners.is_empty(), "{:?}", session.messages.banners);
@@ -224,7 +250,15 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     app.tour = crate::ui::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
-    opening::open_any(&mut first.state_mut().session, &ctx, &log);
+    let session = &mut first.state_mut().session;
+    opening::open_any(
+        &mut session.document,
+        &mut session.wanted_pane,
+        &mut session.messages,
+        &mut session.jobs,
+        &ctx,
+        &log,
+    );
     settle(&mut first);
     first.state_mut().session.calibration.choice.only_s = Some((1.0, 9.0));
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();

@@ -3,7 +3,10 @@
 use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::autosave::State;
+use crate::ui::calibration::Calibration;
+use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dock::name_field::Naming;
+use crate::ui::document::Document;
 use crate::ui::message_list::Tone;
 use crate::ui::overlays;
 use crate::ui::panel_id::PanelId;
@@ -27,17 +30,16 @@ fn page(app: App) -> Stage {
 }
 
 /// Another window over the same results: they take seconds to compute.
-fn like(session: &Session) -> Session {
+fn like(workspace: Workspace, document: &Document, calibration: &Calibration, diagnosing: &Diagnosing) -> Session {
     let mut other = empty();
-    other.show(session.document.recordings.clone());
-    (other.workspace, other.calibration.choice) = (session.workspace, session.calibration.choice.clone());
+    other.show(document.recordings.clone());
+    (other.workspace, other.calibration.choice) = (workspace, calibration.choice.clone());
     (other.calibration.analysis, other.calibration.replays) =
-        (session.calibration.analysis.clone(), session.calibration.replays.clone());
-    other.calibration.enough.clone_from(&session.calibration.enough);
-    other.calibration.sensitivity.clone_from(&session.calibration.sensitivity);
-    other.calibration.refits.answered(&session.calibration.choice);
-    (other.diagnosing.answer, other.diagnosing.problem) =
-        (session.diagnosing.answer.clone(), session.diagnosing.problem.clone());
+        (calibration.analysis.clone(), calibration.replays.clone());
+    other.calibration.enough.clone_from(&calibration.enough);
+    other.calibration.sensitivity.clone_from(&calibration.sensitivity);
+    other.calibration.refits.answered(&calibration.choice);
+    (other.diagnosing.answer, other.diagnosing.problem) = (diagnosing.answer.clone(), diagnosing.problem.clone());
     other
 }
 
@@ -63,14 +65,16 @@ fn workspaces_with_nothing_in_them_can_be_read() {
 fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut found = String::new();
     let mut full = diagnosed(RIPPLED.clone());
-    wanting_sensitivity::look_at_sensitivity(&mut full);
+    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
         for pane in list::of(workspace) {
-            let mut app = in_workspace(like(&full), workspace);
+            let mut app =
+                in_workspace(like(full.workspace, &full.document, &full.calibration, &full.diagnosing), workspace);
             app.dock.bring(workspace, pane);
             found += &page(app).look(&format!("{workspace:?} with {pane:?}"));
         }
-        let mut app = in_workspace(like(&full), workspace);
+        let mut app =
+            in_workspace(like(full.workspace, &full.document, &full.calibration, &full.diagnosing), workspace);
         app.dock.arranging = true;
         found += &page(app).look(&format!("{workspace:?} arranged"));
     }
@@ -81,10 +85,11 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
 fn every_panel_alone_can_be_read() {
     let mut found = String::new();
     let mut full = session(STACK.clone());
-    wanting_sensitivity::look_at_sensitivity(&mut full);
+    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in WORKSPACES {
         for pane in list::of(workspace) {
-            let mut app = in_workspace(like(&full), workspace);
+            let mut app =
+                in_workspace(like(full.workspace, &full.document, &full.calibration, &full.diagnosing), workspace);
             for other in list::of(workspace).into_iter().filter(|other| *other != pane) {
                 if app.dock.has(workspace, other) {
                     app.dock.toggle(workspace, other);
@@ -102,7 +107,7 @@ fn menus_can_be_read() {
     let mut found = String::new();
     let full = session(STACK.clone());
     for group in ["File", "Edit", "Calibrate", "Time", "View", "Help"] {
-        let mut session = like(&full);
+        let mut session = like(full.workspace, &full.document, &full.calibration, &full.diagnosing);
         for file in ["a recording with a very long name, of the third day, second try.csv", "crank.mcap"] {
             session.document.recent.note(std::path::Path::new(file));
         }
@@ -140,7 +145,7 @@ fn every_card_of_the_tour_can_be_read() {
     let mut found = String::new();
     let full = session(STACK.clone());
     for step in 0..7 {
-        let mut app = App::new(like(&full));
+        let mut app = App::new(like(full.workspace, &full.document, &full.calibration, &full.diagnosing));
         app.tour.begin_at(step);
         found += &page(app).look(&format!("tour {step}"));
     }
@@ -190,8 +195,8 @@ fn long_names_of_channels_and_recordings_can_be_read() {
     let full = over_each_other();
     for view in [LogView::Time, LogView::Xy] {
         for only in [false, true] {
-            let mut session = like(&full);
-            overlays::toggle_overlay(&mut session, 1);
+            let mut session = like(full.workspace, &full.document, &full.calibration, &full.diagnosing);
+            overlays::toggle_overlay(&mut session.plots, 1);
             session.plots.view = view;
             let mut app = App::new(session);
             for pane in [PanelId::RECORDING, PanelId::SCENE, PanelId::RESULTS].iter().filter(|_| only) {
@@ -210,7 +215,7 @@ fn every_parameter_can_be_looked_at_closely() {
         let full = session(recording);
         let fit = &full.calibration.analysis.as_ref().expect("fitted").fit;
         for name in fit.parameters.iter().map(estimator::estimate::Parameter::full_name) {
-            let mut session = like(&full);
+            let mut session = like(full.workspace, &full.document, &full.calibration, &full.diagnosing);
             session.calibration.selected_parameter = Some(name.clone());
             found += &page(App::new(session)).look(&name);
         }

@@ -1,8 +1,9 @@
 //! Pointer interaction of a plot over time.
 
-use super::row::{PlotCache, RowInput, RowOutcome};
-use super::shift::{Grasp, under};
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::plots::shift::{Grasp, under};
+use crate::ui::plots::time_plot::{PlotCache, RowInput, RowOutcome};
 use egui::{Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use egui_plot::PlotTransform;
 

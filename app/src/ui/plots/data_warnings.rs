@@ -1,7 +1,7 @@
 //! Doubtful spans of a recording: shaded where they are, explained under the pointer.
 
+use crate::ui::kit::theme::palette;
 use crate::ui::prepare::{Group, Prepared};
-use crate::ui::theme::palette;
 use egui::{Pos2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
 use haptics::recording::Warning;

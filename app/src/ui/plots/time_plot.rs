@@ -1,17 +1,18 @@
 //! One plot over time: its curves, those of the models, the noise band, the states behind them, and the cursor.
 
-use super::axes::{AXIS_WIDTH, still_plot, time_axis};
-use super::choices::GroupChoice;
-use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
-use super::decimate::{Columns, decimate_in};
-use super::doubts::shade;
-use super::gutter::gutter;
-use super::line::ThinnedLine;
-use super::react::react;
-use super::residual_plot::{BAND_SIGMAS, inks};
-use super::shift::Grasp;
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{Palette, palette};
+use crate::ui::plots::axes::{AXIS_WIDTH, still_plot, time_axis};
+use crate::ui::plots::choices::GroupChoice;
+use crate::ui::plots::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
+use crate::ui::plots::data_warnings::shade;
+use crate::ui::plots::decimate::{Columns, decimate_in};
+use crate::ui::plots::interaction::react;
+use crate::ui::plots::line::ThinnedLine;
+use crate::ui::plots::plot_header::gutter;
+use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
+use crate::ui::plots::shift::Grasp;
 use crate::ui::prepare::{Group, Prepared};
-use crate::ui::theme::{self, Palette, palette};
 use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span};
 use estimator::segment::Segmentation;

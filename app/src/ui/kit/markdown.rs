@@ -1,6 +1,7 @@
 //! Short texts in Markdown: paragraphs, emphasis, lists. Enough for lessons; nothing is fetched, nothing can be clicked.
 
-use super::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
 use egui::text::LayoutJob;
 use egui::{FontId, TextFormat, Ui};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};

@@ -1,7 +1,9 @@
 //! Small pieces that every panel is made of.
 
-use super::icons::{self, Face, Icon};
-use super::theme::{self, CARD_RADIUS, palette, space};
+use crate::ui::kit::icons;
+use crate::ui::kit::icons::{Face, Icon};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{CARD_RADIUS, palette, space};
 use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Response, RichText, Sense, Stroke, Ui, vec2};
 
 /// Side of the icon of an empty place, points.

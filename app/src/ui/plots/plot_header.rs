@@ -1,11 +1,12 @@
 //! The column left of a plot: title with its menu, unit, curves with their values at the cursor.
 
-use super::choices::GroupChoice;
-use super::curves::{Curve, Layer, NOISE_SWITCH};
-use super::row::{RowInput, RowKind, curve_color};
-use super::title_menu::title_menu;
 use crate::text::format;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::kit::theme;
+use crate::ui::kit::theme::{palette, space};
+use crate::ui::plots::choices::GroupChoice;
+use crate::ui::plots::curves::{Curve, Layer, NOISE_SWITCH};
+use crate::ui::plots::time_plot::{RowInput, RowKind, curve_color};
+use crate::ui::plots::title_menu::title_menu;
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
 /// Height of an entry, points.

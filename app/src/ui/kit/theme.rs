@@ -238,8 +238,8 @@ fn fonts() -> FontDefinitions {
     heavy.insert(0, "inter-semibold".to_owned());
     let mut icons = proportional.clone();
     icons.insert(0, "icons".to_owned());
-    fonts.font_data.insert("icons".to_owned(), Arc::new(super::icons::font()));
-    fonts.families.insert(super::icons::family(), icons);
+    fonts.font_data.insert("icons".to_owned(), Arc::new(crate::ui::kit::icons::font()));
+    fonts.families.insert(crate::ui::kit::icons::family(), icons);
     fonts.families.insert(FontFamily::Proportional, proportional);
     fonts.families.insert(semibold(), heavy);
     fonts
