@@ -1,6 +1,9 @@
 //! Motions that can be asked for: what a person, or a program that moves like one, can do with an object in half a
 //! minute.
 
+/// Time without touch that is asked for before and after a motion, s.
+pub(crate) const FREE_S: f64 = 2.0;
+
 /// One movement: target, speed, rest after it, and transverse push at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Move {
@@ -57,7 +60,7 @@ pub static LIBRARY: [Excitation; 7] = [
     Excitation {
         id: "sweep-let-go",
         words: "turn to and fro over the whole range, slowly and fast, and let go for two seconds before and after",
-        free_s: 2.0,
+        free_s: FREE_S,
         step: |k| going(side(k), one_of([0.4, 1.0, 0.7, 0.2], k / 2), 0.1, one_of([0.6, 1.2, -0.8], k)),
     },
     Excitation {
@@ -94,7 +97,7 @@ pub static LIBRARY: [Excitation; 7] = [
         id: "long-mixed",
         words: "move about as before: long and short strokes, slow and fast ones, pulling and pushing across, with two seconds of free motion \
                 before and after",
-        free_s: 2.0,
+        free_s: FREE_S,
         step: |k| {
             let to = one_of([0.9, -0.3, 0.4, -1.0, 0.1, 0.7, -0.7, 0.2, -0.1, 1.0, -0.9], k);
             let pace = one_of([0.5, 0.25, 0.9, 0.4, 0.7, 0.15, 1.0], k);

@@ -6,7 +6,7 @@ use crate::diagnose::contract::Experiment;
 /// Peak over mean speed of a movement from rest to rest.
 pub(crate) const PEAK: f64 = 1.875;
 /// Shortest duration of a back-and-forth movement, s.
-const SHORTEST_STROKE_S: f64 = 0.25;
+pub(crate) const SHORTEST_STROKE_S: f64 = 0.25;
 
 /// Minimum jerk, as a share of the way.
 pub(crate) fn smooth(u: f64) -> f64 {

@@ -18,7 +18,7 @@ const DIRECTIONS: Axis = Axis::cells(16);
 const SLACK: Axis = Axis::even(0.35, 0.8, 3);
 /// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
-const REACHES: [f64; 3] = [2.5, REACH, 20.0];
+const REACHES: Axis = Axis::geometric(0.5 * REACH, 4.0 * REACH, 4);
 /// Points: place and side of a wall.
 const WALL: &str = "wall";
 /// Points: direction of the anchor, rad, length at rest, m, and distance of the anchor in arms.
@@ -102,7 +102,7 @@ fn cables_around(near: &Near<'_>, (direction, rest): (f64, f64), distance: Optio
         };
         all.extend(cables(rest, found));
         // The same slack with another distance of the anchor.
-        for reach in REACHES.into_iter().filter(|reach| (reach - found).abs() > 1e-6) {
+        for reach in REACHES.values().filter(|reach| (reach - found).abs() > 1e-6) {
             all.extend(cables(rest + (reach - found) * radius, reach));
         }
     }

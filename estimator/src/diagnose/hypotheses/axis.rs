@@ -60,7 +60,7 @@ impl Axis {
     }
 
     /// Difference or ratio of two neighbouring coarse values.
-    fn spacing(self) -> f64 {
+    pub(crate) fn spacing(self) -> f64 {
         let intervals = self.count.saturating_sub(1).max(1) as f64;
         if self.is_geometric {
             (self.high / self.low).powf(1.0 / intervals)

@@ -6,12 +6,11 @@ use super::hypothesis::{Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
+use crate::diagnose::hypotheses::candidate::LEAST_SHARE;
 use haptics::law::{Backlash, Effect, Kind, Law as _};
 
 pub(crate) const ID: &str = "backlash";
 
-/// Least share of the force that a gap may cut off.
-const LEAST_BEHIND: f64 = 0.4;
 /// Points: half gap.
 const GAP: &str = "half gap";
 
@@ -53,7 +52,7 @@ fn behind(data: &Dictionary<'_>, way: f64) -> [Candidate; 2] {
     [(data.resisting, false), (data.predicted, true)].map(|(behind, whole)| {
         let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
         stick_phases::plays(data.track, way, whole, &mut column);
-        let share = Shape::Share { least: LEAST_BEHIND, whole: LEAST_BEHIND, most: LARGEST_SHARE };
+        let share = Shape::Share { least: LEAST_SHARE, whole: LEAST_SHARE, most: LARGEST_SHARE };
         let backlash = Candidate::one(ID, Kind::Plant, "share", "1", column).shaped(share);
         backlash.at("delta", way, data.units().length)
     })

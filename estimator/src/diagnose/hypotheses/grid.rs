@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::candidate::Candidate;
 use super::relations::Relation;
 use crate::diagnose::data::interpolation::FINE_HZ;
+use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::data::regression_data::{Place, Track};
 use std::f64::consts::TAU;
 
@@ -12,10 +13,6 @@ use std::f64::consts::TAU;
 const STEPS: f64 = 0.06;
 /// The same with inertia in the model: the filters of force and motion blur every reversal by as much.
 const STEPS_OF_MASS: f64 = 0.25;
-/// The same for a crank, in standard deviations of the summed rate noise within a row. Such noise alone builds up and
-/// releases a shorter presliding, which reduces the friction while the handle sticks, as the noise of the velocity
-/// does.
-const STEPS_OF_NOISE: f64 = 3.0;
 /// The same where the object was seen to stand, in standard deviations of its position noise.
 const SEEN: f64 = 0.5;
 /// Presliding distances and half gaps, as shares of the range of positions.
@@ -142,7 +139,7 @@ fn felt(track: &Track, fast: f64) -> f64 {
     let between_s = track.raw_period_s.max(1.0 / FINE_HZ).min(track.period_s);
     let point_s = if track.fine.is_empty() { track.period_s } else { between_s };
     if track.planar {
-        (STEPS * point_s * fast).max(STEPS_OF_NOISE * track.velocity_noise * track.period_s)
+        (STEPS * point_s * fast).max(SIGNIFICANT * track.velocity_noise * track.period_s)
     } else {
         STEPS_OF_MASS * point_s * fast
     }

@@ -6,15 +6,13 @@ use super::hypothesis::{Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
+use crate::diagnose::hypotheses::candidate::LEAST_SHARE;
 use haptics::law::{Effect, Hysteresis, Kind, LoadHysteresis};
 
 pub(crate) const ID: &str = "hysteresis";
 
-/// Least share of the friction that bends before it slides, and least share that counts as all of it.
-const LEAST_BENT: f64 = 0.3;
+/// Least share of the friction that counts as all of it.
 const ALL_BENT: f64 = 0.65;
-/// Presliding distance from which only a share of the friction may bend, in multiples of the shortest that is felt.
-const LONG_BENT: f64 = 6.0;
 /// Shape parameter of presliding that springs back along a straight line.
 const STRAIGHT_SHAPE: f64 = 0.5;
 /// Points: presliding distance.
@@ -69,8 +67,7 @@ fn bent(data: &Dictionary<'_>, way: f64, shape: f64) -> Candidate {
     stick_phases::bends(&data.track.rows, &values, &mut column);
     // Presliding of only part of the friction needs strong evidence: noise of the path during sticking looks like a
     // short bend.
-    let least = if way > LONG_BENT * data.grid.felt { LEAST_BENT } else { ALL_BENT };
     let hysteresis = Candidate::one(ID, Kind::Plant, "share", "1", column);
-    let share = Shape::Share { least, whole: ALL_BENT, most: LARGEST_SHARE };
+    let share = Shape::Share { least: LEAST_SHARE, whole: ALL_BENT, most: LARGEST_SHARE };
     hysteresis.shaped(share).at("way", way, data.units().length)
 }

@@ -13,10 +13,6 @@ pub(crate) const ID: &str = "position-ripple";
 
 /// Tried numbers of ripples per turn (over the range, if nothing turns).
 const RIPPLES: Axis = Axis::even(2.0, 40.0, 39);
-/// Least length of a ripple, in rows of the fastest motion. The rows average out a shorter one.
-const LEAST_ROWS: f64 = 1.0;
-/// Length of a ripple, in rows, below which it is averaged over each row.
-const SHORT: f64 = 25.0;
 /// Points: wave length.
 const LENGTHS: &str = "wave lengths";
 
@@ -28,7 +24,7 @@ impl Hypothesis for PositionRipple {
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
         let whole = ranges.circumference.unwrap_or(ranges.range);
         let lengths = RIPPLES.values().map(|n| whole / n).chain(shorter(ranges));
-        let least = LEAST_ROWS * ranges.fast * ranges.track.period_s;
+        let least = ranges.fast * ranges.track.period_s;
         lengths.filter(|length| *length > least).map(|length| Point::one(LENGTHS, length)).collect()
     }
 
@@ -44,9 +40,7 @@ impl Hypothesis for PositionRipple {
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
-        // A short ripple changes within a row.
-        let short = SHORT * data.track.quantile(0.9, |r| r.motion.velocity.abs()) * data.track.period_s;
-        data.points(ID, LENGTHS).map(|[length, ..]| ripple(data, length, length < short)).collect()
+        data.points(ID, LENGTHS).map(|[length, ..]| ripple(data, length)).collect()
     }
 
     fn form(&self) -> Form {
@@ -61,11 +55,11 @@ impl Hypothesis for PositionRipple {
     }
 }
 
-fn ripple(data: &Dictionary<'_>, length: f64, is_short: bool) -> Candidate {
+fn ripple(data: &Dictionary<'_>, length: f64) -> Candidate {
     let units = data.units();
     let column = |phase: f64| {
-        let values = [1.0, length, phase];
-        if is_short { data.law(&PositionRipple, &values) } else { data.law_of_place(&PositionRipple, &values) }
+        // A short ripple changes within a row.
+        data.law(&PositionRipple, &[1.0, length, phase])
     };
     let columns = vec![column(0.0), column(-FRAC_PI_2)];
     let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];

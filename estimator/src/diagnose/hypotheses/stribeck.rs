@@ -14,9 +14,9 @@ use haptics::law::{Effect, Stribeck};
 pub(crate) const ID: &str = "stribeck";
 
 /// Speeds of the decay of static friction, as shares of the usual speed.
-const SPEEDS: Axis = Axis::geometric(0.06, 0.9, 7);
+pub(crate) const SPEEDS: Axis = Axis::geometric(0.06, 0.9, 7);
 /// Exponents of that decay; 0 is the Gaussian.
-const FALLING: [f64; 2] = [0.0, 1.0];
+const FALLING: Axis = Axis::even(0.0, 1.0, 2);
 /// Ratio of speeds at which a Gaussian is most like an exponential.
 const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Number of rows, on either side, over which an acceleration is evaluated.
@@ -35,7 +35,7 @@ impl Hypothesis for Stribeck {
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
         let of = |alpha: f64| SPEEDS.values().map(move |share| Point::two(DECAY, share * ranges.fast, alpha));
-        FALLING.into_iter().flat_map(of).collect()
+        FALLING.values().flat_map(of).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {

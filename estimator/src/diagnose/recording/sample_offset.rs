@@ -1,12 +1,11 @@
 //! Sub-sample offset between force and motion, which is no delay.
 
+use crate::diagnose::data::direction::CLOCKS_S;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::hypotheses::time_delay;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::estimates::parameters;
 
-/// Largest offset of one whole sample between channels that sampling alone explains, s.
-const LARGEST_SKEW_S: f64 = 2e-3;
 /// Delay of a command that is held until the next sample, in samples: half a sample with some margin.
 const HELD_COMMAND: f64 = 0.7;
 /// Difference of the clocks and filters of two instruments, s: a smaller delay of the force is none.
@@ -22,7 +21,7 @@ pub fn skew(study: &ChannelFit, k: usize, track: &Track) -> Option<f64> {
     let found = delay.first()?;
     // A hand's force is measured; a motor's is usually the command.
     let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
-    let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
+    let ahead_s = track.raw_period_s.min(CLOCKS_S).max(held_s);
     let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }

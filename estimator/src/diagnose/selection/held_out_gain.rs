@@ -16,7 +16,7 @@ const LAGS: usize = 10;
 /// about as much there, ± twice its root.
 const TESTED: f64 = 3.0;
 /// Share of the residual power below which a change is noise.
-const LEAST_CHANGE_SHARE: f64 = 1e-3;
+pub(crate) const LEAST_CHANGE_SHARE: f64 = 1e-3;
 
 /// Sums of squares over parts of the locked blocks, and rows.
 #[derive(Default)]

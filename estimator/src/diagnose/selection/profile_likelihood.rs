@@ -1,16 +1,13 @@
 //! Uncertainty of searched values, from the likelihood of their neighbours on the grid.
 
 use super::comparison::ChannelFit;
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::hypotheses::all::is_share;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use haptics::law::{Law, PositionRipple};
 
 /// Share of the distance between two tried values that is added to the vertex's standard error.
 const OF_STEP: f64 = 0.1;
-/// Standard error of a value without a neighbour on one side, as a share of the distance to the other.
-const AT_THE_END: f64 = 0.5;
-/// Relative standard error of a value that was tried alone.
-const ALONE: f64 = 1.0;
 
 /// A searched value with one standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,7 +118,7 @@ pub fn known(study: &ChannelFit, k: usize, which: usize) -> Known {
     match neighbours(study, own, which).map(tried).into() {
         (Some(below), Some(above)) => vertex(below, (here, least), above),
         (Some((other, _)), None) | (None, Some((other, _))) => {
-            Known { value: here, std_error: AT_THE_END * (other - here).abs() }
+            Known { value: here, std_error: HALF * (other - here).abs() }
         }
         (None, None) => alone(here),
     }
@@ -187,7 +184,7 @@ fn wave([below, above]: [Option<(f64, f64)>; 2], (here, least): (f64, f64)) -> K
 }
 
 fn alone(value: f64) -> Known {
-    Known { value, std_error: ALONE * value.abs() }
+    Known { value, std_error: value.abs() }
 }
 
 /// The same cause with another value at one place.

@@ -2,9 +2,11 @@
 
 use super::normal_equations::{Solved, System};
 use super::rules::Rules;
+use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::{Form, Relation};
+use crate::diagnose::selection::normal_equations::ROUNDING;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -14,12 +16,10 @@ pub const MANY: usize = 2;
 /// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
 const MOST_CAUSES: usize = 4;
 const FRICTIONS: usize = 2;
-/// Rounds of swapping after each addition.
-const SWAP_ROUNDS: usize = 3;
+/// Number of causes, strongest first, that are tried as the first of a pair and whose products are computed ahead.
+pub(crate) const LIKELY_CAUSES: usize = 6;
 /// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
-/// Relative change of the folds' errors below which they did not test a cause.
-const UNTESTED: f64 = 1e-8;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
 
@@ -47,8 +47,6 @@ pub struct Stepwise<'a> {
     prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
 
-/// Squared correlation of two causes' estimates from which they count as one.
-const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const CANCELLED_SHARE: f64 = 0.1;
 
@@ -244,7 +242,7 @@ impl Stepwise<'_> {
     }
 
     pub(crate) fn swap(&self, chosen: &mut [usize]) {
-        for _ in 0..SWAP_ROUNDS {
+        for _ in 0..MOST_ROUNDS {
             let mut changed = false;
             for k in 0..chosen.len() {
                 let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
@@ -306,9 +304,6 @@ impl Stepwise<'_> {
             let first = self.system.base + (0..k).map(count).sum::<usize>();
             first..first + count(k)
         };
-        let covariance = |a: usize, b: usize| solved.inverse[(own(a).start, own(b).start)];
-        let single = |o: usize| count(k) == 1 && count(o) == 1;
-        let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
         let taken_back = |o: usize| {
             let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
             let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
@@ -321,7 +316,7 @@ impl Stepwise<'_> {
             self.plain_price(&rest)
                 .is_some_and(|less| less - self.price(chosen) > self.rules.sure * self.rules.threshold)
         };
-        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
+        (0..chosen.len()).filter(|o| *o != k).any(|o| taken_back(o) && !sure(o) && left(k) < left(o))
     }
 
     /// Sum of squares, over the training rows, of the contribution of these regressors to a solution.
@@ -344,7 +339,7 @@ impl Stepwise<'_> {
         // If only rows that are never held out determine it (a bias beside gravity: the free rows), the folds do not
         // change.
         let gain = before - after;
-        if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
+        if self.is_spared(chosen, k, (before, after)) {
             return self.clear(chosen, k);
         }
         gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
@@ -356,7 +351,7 @@ impl Stepwise<'_> {
         let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
         let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
         let score = self.plain_price(&without(chosen, k)).map_or(0.0, |less| less - self.price(chosen));
-        (0.0..SPARED * score).contains(&lost)
+        (-ROUNDING..SPARED * score).contains(&lost)
     }
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {

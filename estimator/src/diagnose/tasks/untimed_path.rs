@@ -6,6 +6,7 @@ use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::{Part, Told};
 use crate::diagnose::contract::NotExcited;
+use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::NO_CLOCK;
@@ -33,8 +34,6 @@ use haptics::recording::Recording;
 
 /// Number of equal parts of the path, with the mean force of each.
 const PATH_PARTS: usize = 160;
-/// Least mean number of samples per part.
-const LEAST_PART_SAMPLES: usize = 3;
 /// Tried widths of a local resistance, as shares of the range.
 const PATH_WIDTHS: Axis = Axis::geometric(0.08, 0.9, 6);
 
@@ -174,7 +173,7 @@ fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Ro
         })
         .collect();
     let Some(whole) = travelled.last().copied().filter(|w| *w > 0.0) else { return Vec::new() };
-    let count = (n / LEAST_PART_SAMPLES).clamp(1, PATH_PARTS);
+    let count = (n / FEWEST).clamp(1, PATH_PARTS);
     let axes = |names: [&str; 3]| names.map(|name| recording.channel(name).map(<[f64]>::to_vec));
     let measured = axes(["fx_N", "fy_N", "fz_N"]);
     let second = second_names(recording).map(|names| names.map(|n| recording.channel(&n).map(<[f64]>::to_vec)));

@@ -2,19 +2,16 @@
 //! handle. The recording decides between the two models.
 
 use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
+use crate::diagnose::selection::rules::THRESHOLD_SLOW;
 use crate::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
-/// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
-const LIKELIER: f64 = 60.0;
 /// Rounds in which weight and load converge.
-const LOAD_ROUNDS: usize = 3;
-/// Evidence by which a free force of gravity, of any direction, may beat the weight on the bearing. On a load in one
-/// direction only, that weight acts like a force of gravity a quarter turn ahead.
-const AS_LIKELY: f64 = 25.0;
+pub(crate) const LOAD_ROUNDS: usize = 3;
 
 /// Adds the weight on the bearing to the load if the data favour it, and returns that weight, N. `gravity_m_s2` turns
 /// it into a mass, whose centripetal force the bearing carries.
@@ -32,7 +29,7 @@ pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) 
     }
     let rows = track.along().count() as f64;
     let likelier = |a: f64, b: f64| 2.0 * rows * (a / b.max(1e-300)).ln();
-    if weight_n <= 0.0 || (likelier(before, after) < LIKELIER && !one_way(track, &other, model, fixed, &likelier)?) {
+    if weight_n <= 0.0 || (likelier(before, after) < SURE && !one_way(track, &other, model, fixed, &likelier)?) {
         return Ok(None);
     }
     put(track, weight_n, gravity_m_s2);
@@ -48,10 +45,10 @@ fn one_way(
     likelier: &dyn Fn(f64, f64) -> f64,
 ) -> Result<bool, EstimateError> {
     let after = simply(other, model, fixed, false)?;
-    if likelier(simply(track, model, fixed, false)?, after) <= LIKELIER {
+    if likelier(simply(track, model, fixed, false)?, after) <= SURE {
         return Ok(false);
     }
-    Ok(likelier(after, simply(track, model, fixed, true)?) < AS_LIKELY)
+    Ok(likelier(after, simply(track, model, fixed, true)?) < THRESHOLD_SLOW)
 }
 
 /// Residual RMS of the model with friction of every kind and a mass, N. `free` adds gravity of any direction.

@@ -2,12 +2,15 @@
 
 use super::bearing_load::{known_n, put};
 use crate::diagnose::answer::cause::unexplained;
+use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::weights;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
+use crate::diagnose::selection::rules::AS_GOOD;
+use crate::diagnose::tasks::crank::bearing_load::LOAD_ROUNDS;
 use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;
@@ -15,14 +18,6 @@ use haptics::law::{Law as _, LoadFriction, Weight};
 
 /// Causes that resemble a weight on the bearing if another cause hides it.
 const MISTAKEN: [&str; 4] = [eccentric_mass::ID, gravity_tilt::ID, force_bias::ID, force_cross_axis::ID];
-/// Margin by which the comparison with the weight on the bearing must win: −2 ln(likelihood) plus a penalty of ln(rows)
-/// for each parameter of a cause.
-const SIMPLER: f64 = 40.0;
-/// Largest ratio of residuals, with the weight on the bearing over with the causes alone, for which the full comparison
-/// is made.
-const NEARLY: f64 = 1.25;
-/// Rounds in which the weight converges beside the causes.
-const CONFOUNDING_ROUNDS: usize = 2;
 
 /// Comparison with the weight on the bearing, and that weight, N, if its residual is smaller or it needs fewer causes.
 /// `looked_at`: rows and result of the first comparison; `track`: rows as measured. Other hidden causes can keep
@@ -39,7 +34,7 @@ pub fn beside_causes(
         return Ok(None);
     }
     let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);
-    for _ in 0..CONFOUNDING_ROUNDS {
+    for _ in 0..LOAD_ROUNDS {
         if weight_n <= 0.0 {
             return Ok(None);
         }
@@ -52,7 +47,7 @@ pub fn beside_causes(
         let put_n = std::mem::replace(&mut weight_n, weight_of(&again, model, fixed));
         found = Some((put_n, other, again));
     }
-    Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
+    Ok(found.filter(|(_, other, again)| price(other, again) + SURE < price(looked_at, study)))
 }
 
 /// Quick test before the full comparison, which is slow: true if the weight on the bearing explains about as much as
@@ -75,7 +70,7 @@ fn may_be(
     };
     let with_causes = left(track, &|_| true)?;
     let on_bearing = left(&other, &|id| !MISTAKEN.contains(&id))?;
-    Ok(on_bearing < NEARLY * with_causes)
+    Ok(on_bearing < AS_GOOD * with_causes)
 }
 
 /// Weight that a comparison estimates, N.

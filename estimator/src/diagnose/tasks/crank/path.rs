@@ -1,6 +1,7 @@
 //! Path of a crank: centre and radius, and the causes that distort the circle.
 
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
+use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
@@ -19,9 +20,6 @@ const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-/// Rounds of the linearised circle fit, and rounds after which the time of a slip is known well enough.
-const CIRCLE_ROUNDS: usize = 8;
-const TIME_REFINEMENT_ROUNDS: usize = 5;
 
 /// One held sample.
 pub struct PathPoint {
@@ -113,8 +111,8 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
     let mut coarse = Course::coarse(path);
     coarse.extend(jump(path, center_m));
     let mut courses = coarse.clone();
-    let mut step_s = path.span_s() / SLIP_STARTS as f64;
-    for round in 0..CIRCLE_ROUNDS {
+    let mut step_s = path.span_s() * SLIP_STARTS.spacing();
+    for round in 0..MOST_ROUNDS {
         let made = compare(path, (center_m, &bent), &courses, rules)?;
         let solved = made.solved.as_ref().ok_or_else(no_circle)?;
         radius_m = solved.values[0];
@@ -125,7 +123,7 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
         step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
-        let settled = step.norm() < 1e-8 && (finer.is_empty() || round > TIME_REFINEMENT_ROUNDS);
+        let settled = step.norm() < 1e-8 && finer.is_empty();
         courses = [coarse.as_slice(), &finer].concat();
         study = Some(made);
         if settled && round > 1 {

@@ -1,19 +1,14 @@
 //! Unexplained residual of a crank's path, and arcs that are too short to determine their circle.
 
 use super::path::{Arm, Path, unwrapped};
+use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
+use crate::diagnose::selection::rules::MUCH;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 
-/// Generic waves round a turn, and slow ones over the recording.
-const PATH_WAVES: u32 = 4;
-const SLOW_PATH_WAVES: u32 = 4;
-/// Ratio of the path's residual to its noise from which a reason is expected.
-const STRANGE_PATH_RATIO: f64 = 2.0;
-/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
-/// than this share, is short.
-const BULGE: f64 = 12.0;
+/// Relative error of the radius from which an arc is short.
 const UNSURE: f64 = 0.05;
 
 /// Generic terms of a path: waves around the turn (those of first order belong to the circle's centre) and slow
@@ -21,12 +16,12 @@ const UNSURE: f64 = 0.05;
 fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     let angle = |i: usize| outward[i].y.atan2(outward[i].x);
     let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
-    let waves = (2..=PATH_WAVES).map(|n| {
+    let waves = (2..=FEW_WAVES).map(|n| {
         let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
         Candidate::term(format!("cos({n} theta + phi) of the path"), "m", vec![wave(f64::cos), wave(f64::sin)])
     });
     let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
-    let slow = (1..=SLOW_PATH_WAVES).map(|k| {
+    let slow = (1..=FEW_WAVES).map(|k| {
         let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
         Candidate::term(format!("cos({k} pi t/T) of the path"), "m", vec![column(&wave)])
     });
@@ -37,7 +32,7 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
-    if rms < STRANGE_PATH_RATIO * white_noise(&study.y) {
+    if rms < MUCH * white_noise(&study.y) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
@@ -59,7 +54,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let noise_m = white_noise(&study.y);
     let variance = solved.variance(study.system.rows);
     let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
-    (bulge_m < BULGE * noise_m || error_m > UNSURE * arm.radius_m).then(|| {
+    (error_m > UNSURE * arm.radius_m).then(|| {
         format!(
             "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \
              a circle may well come out too small; a centre that seems to wander in so slow or short a motion need not move: turn further",

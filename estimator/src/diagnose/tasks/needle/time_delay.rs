@@ -1,11 +1,9 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
+use crate::diagnose::data::limits::CONTACT_MARGIN_S;
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 
-/// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
-/// change their contact phase.
-const NEAR_S: f64 = 0.06;
 /// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
 /// the plain model and correlate with some delay by chance.
 const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: 60.0 };
@@ -34,8 +32,8 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
 /// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
 /// shaft at a reversal is not known well enough.
 fn is_compared(needle: &Needle, row: &Row) -> bool {
-    let at_surface = row.depth_m.abs() < NEAR_S * row.rate_m_s.abs();
-    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * NEAR_S);
+    let at_surface = row.depth_m.abs() < CONTACT_MARGIN_S * row.rate_m_s.abs();
+    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * CONTACT_MARGIN_S);
     !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
 }
 

@@ -1,5 +1,6 @@
 //! Search grids for half gaps and presliding distances: over the input's travel, then finer around the values found.
 
+use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::profile_likelihood::known;
@@ -7,8 +8,6 @@ use crate::estimate::EstimateError;
 
 /// Tried half gaps, as shares of the input's range.
 const GAPS: Axis = Axis::geometric(3e-3, 0.1, 14);
-/// Most rounds of refinement. Each divides the spacing by three.
-const GAP_ROUNDS: i32 = 5;
 /// Standard error, as a share of the distance between tried values, up to which the grid is refined. Closer values
 /// cannot be separated.
 const SHARPER: f64 = 0.3;
@@ -53,7 +52,7 @@ pub fn closer(
     once: &dyn Fn(&[Tried]) -> Result<ChannelFit, EstimateError>,
 ) -> Result<ChannelFit, EstimateError> {
     let mut study = once(tried)?;
-    for round in 0..GAP_ROUNDS {
+    for round in 0..MOST_ROUNDS as i32 {
         let step = 3.0_f64.powi(-round);
         let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);
         if !more {

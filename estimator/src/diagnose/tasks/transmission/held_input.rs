@@ -2,8 +2,9 @@
 //! act against it. (Its inertia is a small part of the force: a measured force that drove it would be followed in all
 //! its errors.)
 
-use super::rows::{Row, Seen, TRANSMISSION_ROW_HZ};
+use super::rows::{Row, Seen};
 use crate::diagnose::contract::RolloutOf;
+use crate::diagnose::data::limits::SHORTEST_S;
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Side, over, remembered};
 use crate::diagnose::free_run::windows::{Errors, NO_LAW};
@@ -83,9 +84,7 @@ impl Forward for Input {
 
     fn windows(&self) -> Vec<Vec<usize>> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
-        consecutive(&all, &|i| self.rows[i].time_s, 1.0 / TRANSMISSION_ROW_HZ, &|a, b| {
-            self.stretch[a] == self.stretch[b]
-        })
+        consecutive(&all, &|i| self.rows[i].time_s, SHORTEST_S, &|a, b| self.stretch[a] == self.stretch[b])
     }
 
     fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {

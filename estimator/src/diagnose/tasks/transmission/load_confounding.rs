@@ -2,17 +2,14 @@
 
 use super::rows::Row;
 use crate::diagnose::contract::Alternative;
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::hypotheses::{coulomb_friction, force_gain};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::{Use, solve};
 use crate::signal::noise::white_noise;
 
-/// Noise share of the load's own part from which load and dry friction count as one regressor.
-const LOAD_NOISE_SHARE: f64 = 0.5;
 /// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
 const SHAPE: f64 = 0.03;
-/// Least mean square of the load's own part, to avoid division by zero.
-const LEAST_OWN_MEAN_SQUARE: f64 = 1e-6;
 
 /// Separability of a load from dry friction.
 pub struct Confounding {
@@ -40,7 +37,7 @@ impl Confounding {
         let beside: Vec<usize> = (0..columns.len() - 1).collect();
         let solved = solve(&gram, &beside, columns.len() - 1)?;
         let loads: Vec<f64> = rows.iter().map(|r| r.load.unwrap_or(0.0)).collect();
-        let own = (solved.rss / used.len().max(1) as f64).max(LEAST_OWN_MEAN_SQUARE * f64::MIN_POSITIVE);
+        let own = (solved.rss / used.len().max(1) as f64).max(f64::MIN_POSITIVE);
         let weight = *study.solved.as_ref()?.values.get(load)?;
         let slope = *solved.values.last()?;
         let noise = ((white_noise(&loads).powi(2) + (SHAPE * slope).powi(2)) / own).min(1.0);
@@ -49,7 +46,7 @@ impl Confounding {
 
     /// True if load and dry friction are equivalent in this recording.
     pub fn is_one(&self) -> bool {
-        self.noise > LOAD_NOISE_SHARE
+        self.noise > HALF
     }
 
     /// Error of this dry friction due to the load, N or N m. Noise of a regressor biases its coefficient towards zero,

@@ -6,7 +6,9 @@ use super::rows::{Columns, Row, Seen, constants, ratio, spread};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::candidate::{LARGEST_SHARE, LEAST_SHARE};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
@@ -15,11 +17,8 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
-const LOST_MOTION_SHARES: [f64; 2] = [0.1, 2.0];
-/// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
+/// Least effect on the output, as a share of its sensor's steps. A smaller one cannot be
 /// distinguished from the steps: an output at rest reads one and the same step.
-const OUTPUT_NOISES: f64 = 2.0;
 const STEPS_OF_SENSOR: f64 = 0.5;
 
 /// The comparison.
@@ -39,16 +38,11 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
-    let share = Shape::Share {
-        least: LOST_MOTION_SHARES[0] * lever,
-        whole: f64::NEG_INFINITY,
-        most: LOST_MOTION_SHARES[1] * lever,
-    };
+    let share = Shape::Share { least: LEAST_SHARE * lever, whole: f64::NEG_INFINITY, most: LARGEST_SHARE * lever };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let least = |column: &[f64]| {
-        (OUTPUT_NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE)
-    };
+    let least =
+        |column: &[f64]| (SIGNIFICANT * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
