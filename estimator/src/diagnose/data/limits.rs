@@ -64,7 +64,7 @@ pub(crate) const REST_WINDOW_S: f64 = 0.1;
 /// Time in which a hand closes or opens, and least duration of free motion, s.
 /// Choice: no data.
 pub(crate) const HAND_CLOSES_S: f64 = 0.25;
-/// Time that nothing follows across: between joined recordings, and over a change of place, s.
+/// Pause, s: between joined recordings, over a change of place, and least duration of empty fingers.
 /// Choice: no data.
 pub(crate) const PAUSE_S: f64 = 1.0;
 /// Speed of a resting hand, m/s: a block that a finger pushes faster slides.

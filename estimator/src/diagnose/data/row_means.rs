@@ -1,7 +1,7 @@
 //! Means over the rows of a track, with the parts that many regressors share computed once.
 
+use super::limits::SLOW_ROW_S;
 use super::regression_data::{Place, Row, Span, Track, Weighing};
-use crate::diagnose::data::limits::SLOW_ROW_S;
 use haptics::law::{Effect, Motion};
 
 /// True if the rows are short for effects of position.

@@ -5,8 +5,8 @@
 //! the displacement from the middle of the stick phase, scaled to the noise of the force, so that both kinds of rows
 //! count in one comparison. Pure Coulomb friction predicts zero there.
 
+use super::limits::{AMBIGUOUS, FEWEST, SIGNIFICANT};
 use super::regression_data::{Place, Row, Track};
-use crate::diagnose::data::limits::{AMBIGUOUS, FEWEST, SIGNIFICANT};
 use haptics::Vec2;
 use haptics::law::{Hysteresis, Law, MAX_PARAMETERS, Memory, Motion};
 

@@ -13,8 +13,7 @@ use crate::diagnose::selection::comparison::ChannelFit;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
-const SHORTEST_RECORDING_S: f64 = 20.0;
-const RECORDING_LENGTHS_S: Axis = Axis::geometric(SHORTEST_RECORDING_S, 80.0, 3);
+const RECORDING_LENGTHS_S: Axis = Axis::geometric(20.0, 80.0, 3);
 pub(crate) const LIKELY: f64 = 0.8;
 /// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
 /// one because neither answer may be true (measured, `docs/diagnosis.md`).
@@ -117,7 +116,7 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
 fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
-    let mut asked = asked(track, &HANG, SHORTEST_RECORDING_S);
+    let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S.low());
     let in_steps = |weight: f64| (20.0 * weight.clamp(0.1, HEAVIEST_N)).round() / 20.0;
     if track.planar {
         let own = model.iter().zip(&solved.values).filter(|(e, _)| e.role() == haptics::law::Role::Gravity);

@@ -4,6 +4,7 @@ use super::motions::{Excitation, HANG, LIBRARY};
 use crate::diagnose::contract::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
+/// Source: 15/8 of the mean speed, the peak of a minimum-jerk movement (Flash & Hogan 1985).
 pub(crate) const PEAK: f64 = 1.875;
 /// Shortest duration of a back-and-forth movement, s.
 pub(crate) const SHORTEST_STROKE_S: f64 = 0.25;

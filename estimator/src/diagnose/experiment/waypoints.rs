@@ -1,9 +1,8 @@
 //! Motions of needles and switches: from one turning point to the next, smooth between them.
 
-use super::strokes::{PEAK, smooth};
+use super::strokes::{PEAK, SHORTEST_STROKE_S, smooth};
 use crate::diagnose::contract::Experiment;
 use crate::diagnose::data::limits::{HALF, PAUSE_S};
-use crate::diagnose::experiment::strokes::SHORTEST_STROKE_S;
 
 /// Ids of the motions.
 pub const PIERCE: &str = "pierce-slow-fast";

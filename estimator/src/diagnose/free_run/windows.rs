@@ -7,8 +7,7 @@
 use crate::diagnose::contract::{Rollout, RolloutOf};
 use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::selection::held_out_gain;
-use crate::diagnose::selection::held_out_gain::DRAWS;
-use crate::diagnose::selection::held_out_gain::LEAST_CHANGE_SHARE;
+use crate::diagnose::selection::held_out_gain::{DRAWS, LEAST_CHANGE_SHARE};
 
 /// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const ROLLOUT_WINDOW_S: f64 = 0.5;

@@ -35,6 +35,11 @@ impl Axis {
         Self { count: 2 * self.count - 1, ..self }
     }
 
+    /// The lowest value.
+    pub(crate) const fn low(self) -> f64 {
+        self.low
+    }
+
     /// The highest value.
     pub(crate) const fn high(self) -> f64 {
         self.high

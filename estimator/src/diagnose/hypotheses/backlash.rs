@@ -1,12 +1,11 @@
 //! Backlash as a hypothesis: a gap of searched width cuts off the force behind it.
 
-use super::candidate::{Candidate, LARGEST_SHARE, Shape};
+use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
-use crate::diagnose::hypotheses::candidate::LEAST_SHARE;
 use haptics::law::{Backlash, Effect, Kind, Law as _};
 
 pub(crate) const ID: &str = "backlash";

@@ -1,12 +1,12 @@
 //! A tilt as a hypothesis: of a crank's plane, of an axis, or of a slope under a linear motion.
 
+use super::axis::Axis;
 use super::candidate::Candidate;
 use super::hypothesis::{Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
-use crate::diagnose::hypotheses::axis::Axis;
 use crate::identify::linear::least_squares;
 use haptics::law::{Coordinate, Effect, GravityTilt, Kind};
 

@@ -1,12 +1,11 @@
 //! Presliding as a hypothesis: friction bends over a searched distance before it slides.
 
-use super::candidate::{Candidate, LARGEST_SHARE, Shape};
+use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
-use crate::diagnose::hypotheses::candidate::LEAST_SHARE;
 use haptics::law::{Effect, Hysteresis, Kind, LoadHysteresis};
 
 pub(crate) const ID: &str = "hysteresis";
@@ -14,6 +13,7 @@ pub(crate) const ID: &str = "hysteresis";
 /// Least share of the friction that counts as all of it.
 const ALL_BENT: f64 = 0.65;
 /// Shape parameter of presliding that springs back along a straight line.
+/// Source: Wen 1976; with β = ½ the Bouc–Wen law unloads along a straight line.
 const STRAIGHT_SHAPE: f64 = 0.5;
 /// Points: presliding distance.
 const BENT: &str = "presliding distance";

@@ -3,11 +3,10 @@
 //!
 //! These laws hold for any grip and object, so they are tested before the recording is segmented.
 
-use super::rate_signs::{mirrored, with_rates_of_motion};
+use super::rate_signs::{CORRELATED, mirrored, with_rates_of_motion};
 use super::sample_faults;
 use crate::diagnose::contract::Cause;
 use crate::diagnose::data::limits::{CERTAIN, LEAST_PHASE_SAMPLES};
-use crate::diagnose::recording::rate_signs::CORRELATED;
 use crate::segment::threshold::percentile;
 use crate::signal::noise::white_noise;
 use crate::signal::task::{Tip, is_two_fingered};
@@ -15,7 +14,7 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least force of each finger in a grip, as a share of the usual grip.
+/// Least force of a press, as a share of the usual grip, or of the strongest press against a stop.
 pub(crate) const PRESSING: f64 = 0.4;
 /// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
 pub(crate) const TRAVEL_M: f64 = 2e-3;

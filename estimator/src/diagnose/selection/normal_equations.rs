@@ -8,7 +8,6 @@ use super::layout::{Held, Layout};
 use super::noise_model::Whitening;
 use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::leave_window_out::LEAST_LEFT;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -22,7 +21,10 @@ pub(crate) const LOCKED_EVERY: usize = 4;
 /// Guard time beside a locked block, s: rows within it are not used.
 const GUARD_S: f64 = 0.1;
 /// Rounding error of sums over the rows.
+/// Derived: far above the rounding of a sum of ones (1e-16 times the rows) and far below one row.
 pub(crate) const ROUNDING: f64 = 1e-6;
+/// Least remaining share of a column's power. Below it, no remaining row determines the coefficient.
+pub(crate) const LEAST_LEFT: f64 = 0.3;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
@@ -351,6 +353,8 @@ pub(crate) struct Scaled {
 
 /// Factors the normal equations. A small ridge keeps them regular for equal columns.
 pub(crate) fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
+    /// Derived: far above the rounding of a scaled sum of squares (1e-16) and far below the distinct share of any
+    /// regressor.
     const NUMERICAL_RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =

@@ -1,12 +1,11 @@
 //! Prescreen before the noise is known: the strongest causes, from few of the products of all columns.
 
-use super::gram::{STRIP, Weighed};
+use super::gram::{PANEL, STRIP, Weighed};
 use super::layout::Layout;
 use super::normal_equations::{FOLDS, System, Use, columns_of, counted, energy, places, uses};
+use super::rules::LIKELY_CAUSES;
 use super::stepwise::{Stepwise, cheapest};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::selection::gram::PANEL;
-use crate::diagnose::selection::stepwise::LIKELY_CAUSES;
 use nalgebra::DMatrix;
 
 /// A system without whitening, whose products are computed when they are needed: those of the model with all columns,

@@ -1,10 +1,10 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::comparison::ChannelFit;
+use super::rules::LIKELY_CAUSES;
 use super::stepwise::{MANY, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
-use crate::diagnose::selection::stepwise::LIKELY_CAUSES;
 
 impl Stepwise<'_> {
     /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the

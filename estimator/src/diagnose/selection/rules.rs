@@ -4,7 +4,7 @@ use crate::diagnose::data::limits::{AMBIGUOUS, SLOW_ROW_S};
 
 /// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200.
 pub(crate) const THRESHOLD: f64 = 20.0;
-/// The same for slow rows, whose noise averages out less.
+/// The same for slow rows, whose noise averages out less, and for few observations.
 pub(crate) const THRESHOLD_SLOW: f64 = 25.0;
 /// Largest ratio of final residual to force noise under a correct model along one coordinate, whose residual also
 /// contains noise of the motion: for a noise measured in free rows, and for one estimated from fast changes.
@@ -12,7 +12,10 @@ pub(crate) const MUCH: f64 = 1.6;
 pub(crate) const MUCH_UNSEEN: f64 = 4.0;
 /// Largest ratio of residuals, after over before, of an explanation that is as good.
 pub(crate) const AS_GOOD: f64 = 1.1;
+/// Number of causes, strongest first, that are tried as the first of a pair and whose products are computed ahead.
+pub(crate) const LIKELY_CAUSES: usize = 6;
 /// Probability of an alternative below which it is excluded.
+/// Derived: 1/(1 + e³) = 0.047, an evidence margin of 6 in 2 ln(likelihood).
 pub const OPEN: f64 = 0.047;
 
 /// The limits in force for one channel. Evidence is 2 ln(likelihood ratio) less the price of the parameters.

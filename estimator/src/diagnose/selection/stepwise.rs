@@ -1,23 +1,22 @@
 //! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
 
-use super::normal_equations::{Solved, System};
+use super::normal_equations::{ROUNDING, Solved, System};
 use super::rules::Rules;
 use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::{Form, Relation};
-use crate::diagnose::selection::normal_equations::ROUNDING;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
 /// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
 /// of two.
 pub const MANY: usize = 2;
-/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
+/// Most causes at once.
 const MOST_CAUSES: usize = 4;
+/// Number of further causes if the model has no friction.
+/// Derived: dry and viscous friction, which the model then lacks.
 const FRICTIONS: usize = 2;
-/// Number of causes, strongest first, that are tried as the first of a pair and whose products are computed ahead.
-pub(crate) const LIKELY_CAUSES: usize = 6;
 /// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.

@@ -7,8 +7,7 @@ use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::all::coarse_candidates;
 use crate::diagnose::hypotheses::law_forces::needed;
-use crate::diagnose::selection::held_out_gain::DRAWS;
-use crate::diagnose::selection::held_out_gain::bootstrap;
+use crate::diagnose::selection::held_out_gain::{DRAWS, bootstrap};
 use haptics::law::{Effect, Kind};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.

@@ -20,6 +20,7 @@ const WHOLE: f64 = 0.75;
 /// Rows at either end of a carry: the ground may support the block in those before the first number. Those from the
 /// first to the second number define the carried lift. A lift off it by `END_SHARE` is partly supported.
 const END_ROWS: (usize, usize) = (4, 10);
+/// Relative change of the lift that counts, at the ends of a carry and after a block was put down.
 const END_SHARE: f64 = 0.025;
 
 /// One recording.

@@ -9,8 +9,7 @@ use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
-use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::selection::rules::{MUCH, MUCH_UNSEEN};
+use crate::diagnose::selection::rules::{MUCH, MUCH_UNSEEN, Rules};
 use crate::diagnose::tasks::baseline_models::plain_crank;
 use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
@@ -112,8 +111,8 @@ fn model_of(arm: &Arm) -> regression_data::Model {
     model
 }
 
-/// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
-/// change of sign reduces an effect that is large beside the noise.
+/// Largest residual of a mirrored axis, as a share of the residual before, if it is much larger than a measured noise.
+/// Many a change of sign reduces an effect that is large beside the noise.
 const MIRRORED_RESIDUAL_SHARE: f64 = 0.1;
 
 fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {

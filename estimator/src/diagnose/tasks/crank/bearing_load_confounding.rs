@@ -1,6 +1,6 @@
 //! Weight on a crank's bearing, compared with other hidden causes.
 
-use super::bearing_load::{known_n, put};
+use super::bearing_load::{LOAD_ROUNDS, known_n, put};
 use crate::diagnose::answer::cause::unexplained;
 use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::weights;
@@ -10,7 +10,6 @@ use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, 
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::selection::rules::AS_GOOD;
-use crate::diagnose::tasks::crank::bearing_load::LOAD_ROUNDS;
 use crate::diagnose::tasks::one_coordinate;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;

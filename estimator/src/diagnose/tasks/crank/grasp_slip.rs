@@ -14,6 +14,7 @@ pub const SLIP_STARTS: Axis = Axis::even(1.0 / 24.0, 23.0 / 24.0, 23);
 const CREEP_STARTS: Axis = Axis::even(0.0, 0.75, 4);
 const CREEP_DURATIONS: Axis = Axis::geometric(0.25, 1.0, 3);
 /// Small ridge that keeps the normal equations regular for equal regressors.
+/// Derived: far above the rounding of a sum of squares (1e-16) and far below any power of a regressor.
 const JUMP_RIDGE: f64 = 1e-9;
 
 /// Time course of a grasp's slip: start and duration. A slip without a duration is a jump.

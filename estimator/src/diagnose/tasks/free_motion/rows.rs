@@ -31,6 +31,7 @@ const RATE_BETTER: f64 = 0.3;
 const ROUNDED: f64 = 0.03;
 /// Order of the local polynomials between the rows, and their least number of samples on either side.
 const ORDER: usize = 4;
+/// Derived: the least window with more samples than the five coefficients of a polynomial of order four.
 const LEAST_HALF: usize = 3;
 
 /// The rows of one recording, with forces of zero and an inertia of one.

@@ -8,15 +8,14 @@ use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::regression_data::Span;
 use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal;
-use crate::diagnose::experiment::waypoints::HAND_SPEEDS_M_S;
-use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
+use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
 use crate::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
-/// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
+/// Half of a stroke in the hole, m.
 const HALF_STROKE_M: f64 = 2.5e-3;
 /// Time without touch before and after, s.
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \

@@ -1,7 +1,7 @@
 //! Sheet before the puncture, and sensors: force over depth against a linear spring.
 
 use super::held_needle::Pressed;
-use super::rows::{Needle, Phase, Puncture, Row};
+use super::rows::{AT_SURFACE_M, Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
@@ -17,7 +17,6 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::tasks::needle::rows::AT_SURFACE_M;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use crate::signal::noise::white_noise;

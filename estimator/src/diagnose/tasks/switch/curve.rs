@@ -5,7 +5,7 @@
 
 use super::held_knob::Captured;
 use super::model::Known;
-use super::rows::direction;
+use super::rows::{CORNER_M, direction};
 use super::throw::Push;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
@@ -23,7 +23,6 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::tasks::switch::model::CORNER_M;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};

@@ -4,13 +4,11 @@
 use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, PARTS};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
-use crate::diagnose::tasks::switch::model::CORNER_M;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use crate::segment::threshold::percentile;
 use crate::signal::noise::white_noise;
-use crate::signal::task::DERIVATIVE_WINDOW_S;
-use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
+use crate::signal::task::{DERIVATIVE_WINDOW_S, TipSeries, is_two_fingered, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -19,6 +17,8 @@ use std::ops::Range;
 const TOUCH_SHARE: f64 = 0.03;
 /// Share of the blocks that are taken as free in each part of a recording, because a finger is free at some time.
 const FREE_SHARE: f64 = 0.15;
+/// Way of a switch within which its curve is not resolved, m: at a corner, and after a reversal.
+pub(crate) const CORNER_M: f64 = 0.8e-3;
 /// Speed below which the knob may rest, m/s.
 pub(crate) const KNOB_REST_M_S: f64 = 2e-3;
 /// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.

@@ -21,6 +21,7 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Largest missing share of the world's pad compliance: ten times as stiff.
+/// Derived: 1 − 1/10, because the stiffest pads are taken as ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
 /// The comparison.

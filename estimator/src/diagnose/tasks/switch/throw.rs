@@ -3,7 +3,7 @@
 //! with the world's is a separate channel.
 
 use super::held_knob::Thrown;
-use super::rows::{Place, Row, Seen, direction};
+use super::rows::{KNOB_REST_M_S, Place, Row, Seen, direction};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
@@ -17,7 +17,6 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::tasks::switch::rows::KNOB_REST_M_S;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;

@@ -24,8 +24,10 @@ use nalgebra::{DVector, Rotation3, Vector3};
 use std::ops::Range;
 
 /// Longest time before and after a blow that is evaluated, s.
+/// Derived: eight samples of the recorded tosses at 148 Hz.
 const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
+/// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
 /// Change of the velocity there from which a blow begins, and least speed of a blow, m/s.
 const BLOW_M_S: f64 = 0.15;
@@ -34,8 +36,10 @@ const STILL_M_S: f64 = 0.10;
 /// Height within which a second corner hits at the same time, in half widths.
 const SECOND_CORNER_HEIGHT: f64 = 0.1;
 /// Ratio of a normal distribution's standard deviation to its median absolute value.
+/// Derived: 1/0.6745, the inverse median absolute deviation of a standard normal distribution (Hampel 1974).
 const OVER_MEDIAN: f64 = 1.4826;
 /// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
+/// Derived: 1/√12, the standard deviation of an even spread over one step.
 const UNSEEN: f64 = 0.29;
 
 /// The comparison.

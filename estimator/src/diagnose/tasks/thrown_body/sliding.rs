@@ -13,8 +13,7 @@ use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, visco
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
-use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::selection::rules::THRESHOLD_SLOW;
+use crate::diagnose::selection::rules::{Rules, THRESHOLD_SLOW};
 use crate::diagnose::tasks::thrown_body::powers;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;

@@ -52,13 +52,14 @@ pub fn closer(
     once: &dyn Fn(&[Tried]) -> Result<ChannelFit, EstimateError>,
 ) -> Result<ChannelFit, EstimateError> {
     let mut study = once(tried)?;
-    for round in 0..MOST_ROUNDS as i32 {
-        let step = 3.0_f64.powi(-round);
+    let mut step = 1.0;
+    for _ in 0..MOST_ROUNDS {
         let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);
         if !more {
             break;
         }
         study = once(tried)?;
+        step /= 3.0;
     }
     Ok(study)
 }

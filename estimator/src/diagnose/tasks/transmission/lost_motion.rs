@@ -7,8 +7,7 @@ use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::SIGNIFICANT;
-use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
-use crate::diagnose::hypotheses::candidate::{LARGEST_SHARE, LEAST_SHARE};
+use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
@@ -17,8 +16,9 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// Least effect on the output, as a share of its sensor's steps. A smaller one cannot be
-/// distinguished from the steps: an output at rest reads one and the same step.
+/// Least effect on the output, as a share of its sensor's steps. A smaller one cannot be distinguished
+/// from the steps: an output at rest reads one and the same step.
+/// Derived: half a step is the largest rounding error of a reading.
 const STEPS_OF_SENSOR: f64 = 0.5;
 
 /// The comparison.

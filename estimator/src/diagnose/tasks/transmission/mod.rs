@@ -33,8 +33,7 @@ use crate::segment::SystemState;
 use haptics::recording::Recording;
 use rows::{Columns, Row, Seen, columns, stretches_of};
 
-/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
-/// the parts.
+/// Least share of the parts in which work is taken, if it is taken and not given for certain.
 const PARTS_OF_ONE_SIGN: f64 = 0.9;
 
 /// True if [`driven`] handles these recordings.
