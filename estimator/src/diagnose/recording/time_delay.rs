@@ -4,6 +4,7 @@
 //! finds it ([`guess_s`]).
 
 use super::delay_scan::{Demands, look};
+use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::regression_data::{Model, Row, Track};
 use crate::diagnose::data::row_means::{Weights, column};
 use crate::diagnose::hypotheses::basis_functions::generic;
@@ -15,7 +16,7 @@ use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
 /// Demands on a guess for a repetition of the diagnosis.
-const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
+const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: SURE };
 
 /// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one
 /// that matters. Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.

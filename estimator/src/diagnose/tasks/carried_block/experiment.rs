@@ -4,6 +4,7 @@
 use super::net_force::Carry;
 use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::experiment::waypoints::HAND_SPEEDS_M_S;
 use crate::diagnose::hypotheses::axis::Axis;
@@ -17,7 +18,7 @@ const LIBRARY: [(&str, &str, f64); 2] = [
         "carry-let-go",
         "let go for two seconds before and after the carry, and hold the block still in between: a drift of the sensor stays, a lost \
          weight does not",
-        2.0,
+        FREE_S,
     ),
     ("carry-still", "lift the block and hold it still", 0.0),
 ];

@@ -5,6 +5,7 @@ use super::hole::Shaft;
 use super::rows::{AT_SURFACE_M, Needle, Phase, Row};
 use super::sheet;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::data::limits::GAP_IN_PERIODS;
 use crate::diagnose::data::regression_data::Span;
 use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal;
@@ -85,7 +86,7 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
         deepest = deepest.max(depth);
         through |= depth > motion.puncture_m();
         let Some(phase) = phase else { continue };
-        let is_new = rows.last().is_none_or(|r| r.phase != phase || time_s - r.time_s > 1.5 * period_s);
+        let is_new = rows.last().is_none_or(|r| r.phase != phase || time_s - r.time_s > GAP_IN_PERIODS * period_s);
         let stretch = rows.last().map_or(0, |r| r.stretch + usize::from(is_new));
         rows.push(Row {
             recording: 0,

@@ -1,12 +1,12 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::data::limits::CONTACT_MARGIN_S;
+use crate::diagnose::data::limits::{CONTACT_MARGIN_S, SURE};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 
 /// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
 /// the plain model and correlate with some delay by chance.
-const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: 60.0 };
+const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: SURE };
 
 /// The smoothed forces of a recording, one per sample, to which every row refers.
 pub struct Forces<'a> {

@@ -1,7 +1,7 @@
 //! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
 //! that touch nothing.
 
-use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, PARTS};
+use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
 use crate::estimate::EstimateError;
@@ -129,7 +129,7 @@ pub fn seen(recordings: &[Recording], bad: &[Vec<bool>]) -> Result<Seen, Estimat
     let rows = &all.rows;
     let free = |p: Place| matches!(p, Place::Free(..));
     let period = |i: usize| if free(rows[i].place) { FREE_EVERY as f64 } else { 1.0 } * all.period_s;
-    let apart = |i: usize| time[i] - time[i - 1] > 1.6 * period(i) || time[i] <= time[i - 1];
+    let apart = |i: usize| time[i] - time[i - 1] > GAP_IN_PERIODS * period(i) || time[i] <= time[i - 1];
     let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording || apart(i);
     all.stretch = segments(&time, f64::INFINITY, other);
     Ok(all)
