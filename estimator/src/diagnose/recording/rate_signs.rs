@@ -1,4 +1,4 @@
-use crate::signal::task::DERIVATIVE_WINDOW_S;
+use foundation::signal::task::DERIVATIVE_WINDOW_S;
 use haptics::recording::Recording;
 use std::borrow::Cow;
 

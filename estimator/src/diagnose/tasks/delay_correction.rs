@@ -7,7 +7,7 @@ use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
 use crate::diagnose::recording::time_delay::put_back;
 use crate::diagnose::selection::rules::AS_GOOD;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
 

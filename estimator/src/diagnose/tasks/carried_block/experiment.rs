@@ -9,7 +9,7 @@ use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::experiment::waypoints::HAND_SPEEDS_M_S;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
 
 /// The library: id, words, and duration without touch before and after, s.

@@ -6,7 +6,7 @@ use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use estimation::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 use std::iter::once;
 

@@ -12,7 +12,7 @@ use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::rules::{MUCH, MUCH_UNSEEN, Rules};
 use crate::diagnose::tasks::baseline_models::plain_crank;
 use crate::diagnose::tasks::one_coordinate;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
 use std::borrow::Cow;

@@ -6,7 +6,7 @@ use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
 use crate::diagnose::selection::rules::THRESHOLD_SLOW;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 

@@ -5,7 +5,7 @@ use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::rules::MUCH;
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 
 /// Relative error of the radius from which an arc is short.

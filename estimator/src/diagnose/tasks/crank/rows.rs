@@ -7,10 +7,10 @@ use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, offset
 use crate::diagnose::data::known_weight::Hung;
 use crate::diagnose::data::limits::{FAST_ROW_S, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
-use crate::estimate::EstimateError;
-use crate::signal::derive::savitzky_golay;
-use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
-use crate::signal::task::{is_two_fingered, task_signals, times, tip_series};
+use foundation::estimate::EstimateError;
+use foundation::signal::derive::savitzky_golay;
+use foundation::signal::noise::{white_noise, white_noise_under_fast_motion};
+use foundation::signal::task::{is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::hand::JointAngles;
 use haptics::law::{Coordinate, Motion};

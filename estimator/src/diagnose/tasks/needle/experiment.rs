@@ -11,7 +11,7 @@ use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.

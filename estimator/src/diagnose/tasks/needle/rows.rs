@@ -7,13 +7,13 @@ use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSE
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::selection::layout::segments;
-use crate::estimate::EstimateError;
-use crate::identify::needle::sheet::Sheet;
-use crate::identify::needle::signals::{Along, along};
-use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
-use crate::segment::SystemState;
-use crate::signal::noise::white_noise;
-use crate::signal::task::{half_width, smooth, times};
+use estimation::identify::needle::sheet::Sheet;
+use estimation::identify::needle::signals::{Along, along};
+use estimation::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{half_width, smooth, times};
+use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 use std::ops::Range;
 

@@ -23,8 +23,8 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
+use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
 /// Tried widths of a local resistance, as shares of the travel.

@@ -2,7 +2,7 @@
 
 use super::rows::{Row, direction};
 use crate::diagnose::data::limits::ASSUMED_ERROR;
-use crate::identify::switch::OBJECT;
+use estimation::identify::switch::OBJECT;
 use haptics::Vec2;
 use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;

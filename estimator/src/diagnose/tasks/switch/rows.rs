@@ -4,11 +4,11 @@
 use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
-use crate::segment::threshold::percentile;
-use crate::signal::noise::white_noise;
-use crate::signal::task::{DERIVATIVE_WINDOW_S, TipSeries, is_two_fingered, tip_series};
+use estimation::segment::threshold::percentile;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{DERIVATIVE_WINDOW_S, TipSeries, is_two_fingered, tip_series};
+use foundation::tasks::SystemState;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;

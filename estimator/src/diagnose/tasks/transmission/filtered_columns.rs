@@ -2,8 +2,8 @@
 //! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
 use crate::diagnose::data::limits::SIGNIFICANT;
-use crate::signal::noise::white_noise;
-use crate::signal::task::{half_width, smooth, smooth_value};
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{half_width, smooth, smooth_value};
 
 /// Speed below which its sign is uncertain, as a share of the largest speed.
 const LEAST_SPEED: f64 = 1e-3;

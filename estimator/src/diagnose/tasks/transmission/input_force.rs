@@ -14,8 +14,8 @@ use crate::diagnose::hypotheses::{
 };
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
-use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.

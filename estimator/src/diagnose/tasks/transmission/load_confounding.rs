@@ -6,7 +6,7 @@ use crate::diagnose::data::limits::HALF;
 use crate::diagnose::hypotheses::{coulomb_friction, force_gain};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::{Use, solve};
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
 
 /// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
 const SHAPE: f64 = 0.03;

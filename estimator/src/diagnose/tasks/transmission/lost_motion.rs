@@ -12,8 +12,8 @@ use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_del
 use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
-use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Least effect on the output, as a share of its sensor's steps. A smaller one cannot be distinguished
