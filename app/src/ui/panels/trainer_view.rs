@@ -11,7 +11,7 @@ use crate::ui::kit::widgets::{empty_state, key_hint, sheet};
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::scene::rig::Rig;
+use crate::ui::scene::camera_rig::Rig;
 use crate::ui::scene::view::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::stage;

@@ -9,7 +9,7 @@ use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme::{palette, role, space};
 use crate::ui::prepare::Prepared;
-use crate::ui::scene::likeness::Likeness;
+use crate::ui::scene::similarity::Likeness;
 use crate::ui::session::Session;
 use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 use estimator::estimate::{Constraint, ConstraintKind, Phase, StrokePhase};
