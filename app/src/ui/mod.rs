@@ -16,6 +16,7 @@ pub mod by_hand;
 pub mod calibration;
 pub mod checked;
 pub mod checking;
+pub mod column_mapping;
 pub mod comfort;
 pub mod command_palette;
 #[cfg(test)]
@@ -43,8 +44,6 @@ pub mod keys;
 pub mod kit;
 pub mod learning;
 pub mod lessons;
-pub mod mapping;
-pub mod mapping_actions;
 pub mod menu;
 pub mod message_list;
 pub mod messages;

@@ -7,8 +7,8 @@ use crate::ui::scene::layers::SceneLayers;
 
 use super::prepare::Prepared;
 use crate::ui::background::jobs::{Answer, JobKind, Jobs};
+use crate::ui::column_mapping::state::Mapping;
 use crate::ui::file_kind::LOAD;
-use crate::ui::mapping::state::Mapping;
 use crate::ui::plots::choices::PlotChoices;
 
 use super::calibration::Calibration;

@@ -63,7 +63,7 @@ impl App {
         }
         if self.session.mapping.is_some() {
             rest(ui, &mut self.session.training.trainer);
-            super::mapping::dialog::show(ui, &mut self.session);
+            crate::ui::column_mapping::dialog::show(ui, &mut self.session);
         } else {
             if !matches!(self.session.workspace, Workspace::Train | Workspace::Devices) {
                 rest(ui, &mut self.session.training.trainer);

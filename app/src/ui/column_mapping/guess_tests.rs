@@ -1,7 +1,7 @@
 //! Guesses for the headers of the project's real reference recordings, and for invented ones.
 
-use super::facts::ColumnFacts;
-use super::guess::guess;
+use crate::ui::column_mapping::facts::ColumnFacts;
+use crate::ui::column_mapping::guess::guess;
 
 /// A column of a table that makes sense for its name: `name`, or `name:first:last` where the numbers matter.
 fn column(text: &str) -> ColumnFacts {

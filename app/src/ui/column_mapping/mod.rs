@@ -3,6 +3,7 @@
 //! [`facts`] inspects the file, [`words`] and [`guess`] read the names, [`draft`] is edited and becomes the sidecar,
 //! [`preview`] loads with it in the background, [`dialog`] draws.
 
+pub mod actions;
 pub mod dialog;
 #[cfg(test)]
 mod dialog_tests;

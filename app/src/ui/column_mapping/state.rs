@@ -2,10 +2,10 @@
 
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
-use crate::ui::mapping::draft::Draft;
-use crate::ui::mapping::facts;
-use crate::ui::mapping::facts::FileFacts;
-use crate::ui::mapping::preview::Preview;
+use crate::ui::column_mapping::draft::Draft;
+use crate::ui::column_mapping::facts;
+use crate::ui::column_mapping::facts::FileFacts;
+use crate::ui::column_mapping::preview::Preview;
 use estimator::log::{LogError, sidecar_path};
 use haptics::recording::Meta;
 use std::path::{Path, PathBuf};

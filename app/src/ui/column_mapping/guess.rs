@@ -1,10 +1,10 @@
 //! Probable meaning of the columns of a foreign table, guessed from names, units and ranges. It is always only a
 //! proposal.
 
-use super::facts::ColumnFacts;
-use super::file_units::{FileUnit, unit_in};
-use super::names::{Form, find};
-use super::words::{Axis, Joint, Kind, Reading, read};
+use crate::ui::column_mapping::facts::ColumnFacts;
+use crate::ui::column_mapping::file_units::{FileUnit, unit_in};
+use crate::ui::column_mapping::names::{Form, find};
+use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read};
 use estimator::log::PAIRS;
 use estimator::log::units::{self, Dimension};
 
@@ -53,7 +53,9 @@ pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
 /// Unit of a column in the dimension of `name`: as the header states it, otherwise inferred from the range.
 pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static FileUnit>, bool) {
     let stated = unit_in(&facts.header).1;
-    let Some(dimension) = name.and_then(super::names::dimension) else { return (stated, stated.is_some()) };
+    let Some(dimension) = name.and_then(crate::ui::column_mapping::names::dimension) else {
+        return (stated, stated.is_some());
+    };
     match stated.filter(|unit| unit.dimension == dimension) {
         Some(unit) => (Some(unit), true),
         None => (by_range(facts, dimension), false),
@@ -92,7 +94,8 @@ fn clock_unit(facts: &ColumnFacts, reach: f64) -> &'static FileUnit {
         () if facts.whole && step >= 1.0 => "ms",
         () => "s",
     };
-    super::file_units::spelled(shown).unwrap_or(&super::file_units::FILE_UNITS[11])
+    crate::ui::column_mapping::file_units::spelled(shown)
+        .unwrap_or(&crate::ui::column_mapping::file_units::FILE_UNITS[11])
 }
 
 fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Candidate> {

@@ -1,8 +1,8 @@
 //! Result of a mapping: loaded in the background, a moment after the last edit.
 
-use super::draft::Draft;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{JobKind, Jobs, Ticket, change};
+use crate::ui::column_mapping::draft::Draft;
 use crate::ui::prepare::Prepared;
 use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;

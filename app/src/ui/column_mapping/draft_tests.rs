@@ -1,8 +1,8 @@
 //! Conversion from a sidecar to the dialog and back: edits are stored, everything else stays unchanged.
 
-use super::draft::{Draft, Role};
-use super::facts::{FileFacts, look};
-use super::file_units::spelled;
+use crate::ui::column_mapping::draft::{Draft, Role};
+use crate::ui::column_mapping::facts::{FileFacts, look};
+use crate::ui::column_mapping::file_units::spelled;
 use haptics::recording::{Meta, Recording};
 
 struct Table {
@@ -85,7 +85,7 @@ fn a_sidecar_comes_back_as_the_dialog_left_it() {
     let saved = draft.sidecar();
     let again = Draft::new(&table.facts, saved.clone());
     for (a, b) in draft.rows.iter().zip(&again.rows) {
-        let total = |r: &super::draft::Row| r.scale * r.unit.map_or(1.0, |u| u.factor);
+        let total = |r: &crate::ui::column_mapping::draft::Row| r.scale * r.unit.map_or(1.0, |u| u.factor);
         assert_eq!((&a.role, a.negative), (&b.role, b.negative));
         assert!((total(a) / total(b) - 1.0).abs() < 1e-12, "{a:?} {b:?}");
     }

@@ -1,13 +1,13 @@
 //! The preview: the path or the curves, missing data, and warnings.
 
-use super::preview::Seen;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
+use crate::ui::column_mapping::preview::Seen;
+use crate::ui::column_mapping::state::{Mapping, View};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{mix, palette, space};
 use crate::ui::kit::widgets::{compact, fact, remark, sheet};
-use crate::ui::mapping::state::{Mapping, View};
 use crate::ui::plots::axes::{marks, time_axis, value_axis};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::prepare::{Group, Prepared};

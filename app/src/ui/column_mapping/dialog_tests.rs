@@ -1,7 +1,7 @@
 //! The dialog driven by clicks: a foreign table becomes a fitted recording, Cancel changes nothing.
 
-use super::draft::Role;
 use crate::ui::app::App;
+use crate::ui::column_mapping::draft::Role;
 use crate::ui::kit::theme;
 use crate::ui::opening;
 use crate::ui::session::Session;

@@ -1,9 +1,9 @@
 //! The columns of the file, one per line: content, meaning, unit, sign, factor.
 
-use super::draft::{Draft, Role, Row};
-use super::file_units::FileUnit;
-use super::names::{dimension, find};
 use crate::text::format;
+use crate::ui::column_mapping::draft::{Draft, Role, Row};
+use crate::ui::column_mapping::file_units::FileUnit;
+use crate::ui::column_mapping::names::{dimension, find};
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::palette;
 use egui::{Align, ComboBox, DragValue, Label, Layout, RichText, Role as Accessible, Ui, WidgetInfo};

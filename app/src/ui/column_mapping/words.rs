@@ -1,6 +1,6 @@
 //! Reading of column names as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
 
-use super::file_units::unit_in;
+use crate::ui::column_mapping::file_units::unit_in;
 use estimator::log::units::Dimension;
 
 /// Quantity of a column.

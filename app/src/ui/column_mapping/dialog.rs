@@ -1,16 +1,16 @@
 //! The dialog's frame: heading, columns on the left, preview on the right, actions below.
 
-use super::preview::PREVIEW;
-use super::{options, plot, table};
 use crate::text::file_name::name_of;
 use crate::ui::background::jobs::Jobs;
+use crate::ui::column_mapping::actions::save;
+use crate::ui::column_mapping::preview::PREVIEW;
+use crate::ui::column_mapping::state::Mapping;
+use crate::ui::column_mapping::{options, plot, table};
 use crate::ui::files::SAVE;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{plain_card, primary_button, remark, sheet};
-use crate::ui::mapping::state::Mapping;
-use crate::ui::mapping_actions::save;
 use crate::ui::session::Session;
 use egui::{Align, CentralPanel, Frame, Key, Layout, Margin, Panel as Side, RichText, Ui};
 

@@ -2,7 +2,7 @@
 
 use crate::text::file_name::name_of;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::mapping::state::{LOOK, look_now};
+use crate::ui::column_mapping::state::{LOOK, look_now};
 use crate::ui::session::{Session, change};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Options of the whole recording: task, axis, rate, selection, known values.
 
-use super::draft::{Draft, UP, task_words};
+use crate::ui::column_mapping::draft::{Draft, UP, task_words};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;

@@ -2,8 +2,8 @@
 
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
+use crate::ui::column_mapping::state::Mapping;
 use crate::ui::files::SAVE;
-use crate::ui::mapping::state::Mapping;
 use crate::ui::opening;
 use crate::ui::session::{Session, change};
 use estimator::log::write_sidecar;

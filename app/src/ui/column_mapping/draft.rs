@@ -1,10 +1,11 @@
 //! The mapping that is being edited, and its conversion from and to a sidecar. Fields that the dialog does not show
 //! stay unchanged.
 
-use super::facts::{ColumnFacts, FileFacts};
-use super::file_units::{FileUnit, spelled};
-use super::guess::{guess, unit_of};
-use super::names::{self, Form, dimension};
+use crate::ui::column_mapping::facts::{ColumnFacts, FileFacts};
+use crate::ui::column_mapping::file_units::{FileUnit, spelled};
+use crate::ui::column_mapping::guess::{guess, unit_of};
+use crate::ui::column_mapping::names;
+use crate::ui::column_mapping::names::{Form, dimension};
 use estimator::log::units;
 use haptics::recording::{Meta, Task};
 use serde_json::Value;
