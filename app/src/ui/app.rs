@@ -1,10 +1,10 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
-use super::autosave::{Autosave, State};
 use super::dock::panes::Panels;
 use super::session::Session;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
+use crate::ui::document::autosave::{Autosave, State};
 use crate::ui::tour_progress::Tour;
 
 /// The application.

@@ -5,7 +5,7 @@
 use super::session::Session;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::fitting;
 use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
 use haptics::recording::{Recording, Segment, Task};

@@ -1,11 +1,11 @@
 //! The calibration: how the recordings are fitted, and the fit.
 
-use super::fit_choice::FitChoice;
 use super::refits::Refits;
 use super::replayed::Replayed;
 use super::rules::Rules;
 use super::sensitivity::Sensitivity;
 use super::what_if::WhatIf;
+use crate::ui::document::fit_choice::FitChoice;
 use estimator::online::information::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;

@@ -1,11 +1,11 @@
 //! The value of a diagnosis on other recordings: figures and verdicts.
 
-use super::fit_choice::FitChoice;
-use super::prepare::Prepared;
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, options, plain};
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::document::prepared::Prepared;
 use estimator::diagnose::{self, Findings, Options, Progress, Validation};
 use haptics::recording::Recording;
 use std::path::PathBuf;

@@ -6,7 +6,7 @@ use crate::ui::background::jobs::no_change;
 use crate::ui::calibration::Calibration;
 use crate::ui::checked::{CHECK, Checked, On, check_now};
 use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 
 /// Checks the answer in the background.
 pub fn check(

@@ -4,7 +4,7 @@ use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;
 use crate::ui::refits::replay_forces;
 use crate::ui::trainer::choice::{Compare, WorldChoice};

@@ -1,15 +1,15 @@
 //! A diagnosis as far as it has come, and the questions that it answers.
 
 use super::atlas::Sheet;
-use super::fit_choice::FitChoice;
-use super::prepare::Prepared;
 use super::replayed::Replayed;
 use crate::experiment::rehearse::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
 use crate::ui::checked::Checked;
-use crate::ui::file_kind::LOAD;
+use crate::ui::document::file_kind::LOAD;
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::residuals::Residuals;
 use estimator::diagnose::{self, Findings, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};

@@ -3,12 +3,13 @@
 use crate::ui::background::jobs::Jobs;
 use crate::ui::checked::On;
 use crate::ui::checking;
+use crate::ui::document::files;
+use crate::ui::document::files::{Dialog, LOGS_AND_ALL};
+use crate::ui::document::opening;
+use crate::ui::document::project_files;
+use crate::ui::document::video_actions;
 use crate::ui::experimenting;
-use crate::ui::files::{self, Dialog, LOGS_AND_ALL};
-use crate::ui::opening;
-use crate::ui::project_files;
 use crate::ui::session::{Session, change};
-use crate::ui::showing_video;
 use crate::ui::trainees;
 
 /// A log to calibrate from.
@@ -63,7 +64,7 @@ pub const OPEN_VIDEO: Dialog = Dialog {
     filters: &[("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"]), ("All files", &["*"])],
     saves_as: None,
     then: |session, _, path| {
-        showing_video::open_video(
+        video_actions::open_video(
             &mut session.document,
             &mut session.wanted_pane,
             &mut session.messages,

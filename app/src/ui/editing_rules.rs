@@ -1,11 +1,11 @@
 //! Editing the rules of a task: trying and saving the draft.
 
-use super::files::{SAVE, saved};
 use super::session::Session;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::files::{SAVE, saved};
+use crate::ui::document::state::Document;
 use crate::ui::fitting;
 use crate::ui::message_list::Messages;
 use crate::ui::refits::SEGMENT;

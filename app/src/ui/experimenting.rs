@@ -1,6 +1,5 @@
 //! The experiment that a diagnosis asks for: rehearsed on simulated objects, done by a person in Train, or loaded from a file.
 
-use super::files::{SAVE, saved};
 use super::guided::Guided;
 use super::session::{Session, change};
 use crate::experiment::motion_plan::MotionPlan;
@@ -12,12 +11,13 @@ use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::document::Document;
+use crate::ui::document::files::{SAVE, saved};
+use crate::ui::document::project_files;
+use crate::ui::document::state::Document;
 use crate::ui::experiments::{
     Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
 };
 use crate::ui::message_list::{Messages, Tone};
-use crate::ui::project_files;
 use crate::ui::trainer::live::Trainer;
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;

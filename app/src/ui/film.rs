@@ -1,6 +1,6 @@
 //! The course of the world while the recorded fingers move through it: what the 3-D view plays back.
 
-use super::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use estimator::simulate::walk_tips;
 use haptics::Vec2;
 use haptics::world::{BodyState, Contact, CrankState, MembraneState, State, Surface, SwitchState, World};

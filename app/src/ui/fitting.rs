@@ -4,7 +4,7 @@ use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::refits::{FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge, replay_all};
 use estimator::pipeline::Analysis;
 use estimator::segment::{Segmentation, segment_by};

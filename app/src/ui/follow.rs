@@ -2,17 +2,17 @@
 
 use super::session::Session;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::opening;
+use crate::ui::document::project_files;
+use crate::ui::document::state::Document;
+use crate::ui::document::undo_actions;
 use crate::ui::experiments::Experiments;
 use crate::ui::fitting;
 use crate::ui::guiding;
 use crate::ui::lessons::practising;
 use crate::ui::message_list::Messages;
-use crate::ui::opening;
-use crate::ui::project_files;
 use crate::ui::trainees;
 use crate::ui::trying_values;
-use crate::ui::undoing;
 
 /// Takes in what the jobs bring; call once a frame.
 pub fn poll(session: &mut Session, ctx: &egui::Context) {
@@ -33,7 +33,7 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     trainees::follow_history(&mut session.training.learning, &mut session.messages);
     practising::follow_lesson(&mut session.training, &mut session.jobs, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-    undoing::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
+    undo_actions::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
     fitting::follow_choice(&session.document, &mut session.calibration, &mut session.jobs, ctx);
     trying_values::follow_what_if(&session.document, &session.calibration, &mut session.jobs, ctx);
 }

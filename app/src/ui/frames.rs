@@ -4,12 +4,12 @@
 use super::app::App;
 use super::panel::Picture;
 use super::panels::{log, parameters, results, scene, segments};
-use super::prepare::Prepared;
 use super::screenshot::{self, contents};
 use super::session::Session;
 use crate::ui::diagnosis_state;
 use crate::ui::diagnosis_state::{Answer, StartFrom};
-use crate::ui::fit_choice::FitChoice;
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::plots::choices::LogView;
 use crate::ui::refits;

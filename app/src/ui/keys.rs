@@ -1,6 +1,6 @@
 //! Keys that are held or have two strengths: moving the time cursor. Everything else is an action.
 
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::workspace::Workspace;
 use egui::{Key, Ui};
 

@@ -1,20 +1,20 @@
 //! The window's part of recording: the card beside the trainer, what becomes of a recording that ended, and recordings that a killed
 //! program left behind.
 
-use super::files::saved;
 use super::session::{Session, change};
 use crate::recorder::{Status, folder};
 use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::background::jobs::{JobKind, Jobs};
-use crate::ui::document::Document;
-use crate::ui::file_kind::LOAD;
+use crate::ui::document::file_kind::LOAD;
+use crate::ui::document::files::saved;
+use crate::ui::document::opening;
+use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{primary_button, recording_light, remark};
 use crate::ui::message_list::{Messages, Tone};
 use crate::ui::messages;
-use crate::ui::opening;
 use crate::ui::trainer::live::Trainer;
 use egui::Ui;
 use std::path::Path;

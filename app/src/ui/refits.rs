@@ -1,11 +1,11 @@
 //! Fits and replays of recordings.
 
 use super::film::Film;
-use super::fit_choice::FitChoice;
-use super::prepare::Prepared;
 use super::replayed::Replayed;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::levels::Levels;
 use estimator::online::information::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};

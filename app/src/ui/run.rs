@@ -2,9 +2,9 @@
 
 use crate::tasks::Chosen;
 use crate::ui::app;
+use crate::ui::document::opening;
 use crate::ui::first_picture;
 use crate::ui::kit::theme;
-use crate::ui::opening;
 use crate::ui::recorder;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;

@@ -1,8 +1,8 @@
 //! Sensitivity of the simulated force to every parameter, and the parameters that are correlated.
 
-use super::prepare::Prepared;
 use super::what_if;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::document::prepared::Prepared;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
 use std::sync::Arc;

@@ -1,11 +1,9 @@
 //! Sessions with everything computed, for pictures.
 
-use super::fit_choice::FitChoice;
 use super::gallery::practice::practice as attempts;
 use super::panel_id::PanelId;
 use super::picture_input::PictureInput;
 use super::plots::choices::XyAxis;
-use super::prepare::Prepared;
 use super::session::Session;
 use super::workspace::Workspace;
 use crate::history::keeper::History;
@@ -14,7 +12,10 @@ use crate::ui::column_mapping::state;
 use crate::ui::column_mapping::state::Mapping;
 use crate::ui::diagnosis_state;
 use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::document::Document;
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::state::Document;
+use crate::ui::document::video_actions;
 use crate::ui::editing_rules;
 use crate::ui::experimenting;
 use crate::ui::experiments;
@@ -24,7 +25,6 @@ use crate::ui::lessons::practising;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
 use crate::ui::refits;
-use crate::ui::showing_video;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::trying_values;
@@ -291,7 +291,7 @@ fn with_video(document: &mut Document, wanted_pane: &mut Option<PanelId>, input:
         (None, Some(log)) => document.videos.of_log(log, &document.recordings),
         (None, None) => {}
     }
-    showing_video::read_video_now(document);
+    video_actions::read_video_now(document);
 }
 
 /// The lifting force over the height, where both are known; else what the window begins with.

@@ -4,7 +4,7 @@ use super::replayed::Replayed;
 use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::refits::replay_forces;
 use crate::ui::what_if::{WHAT_IF, world};
 

@@ -4,7 +4,7 @@ use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::refits::FIT;
 use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
 use std::sync::Arc;

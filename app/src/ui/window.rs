@@ -2,24 +2,25 @@
 
 use super::dock::panes::Panels;
 use super::session::Session;
-use super::{menu, messages, palette, restore, tour};
 use crate::ui::actions::list::Action;
 use crate::ui::actions::search;
 use crate::ui::app::App;
 use crate::ui::command_palette::CommandPalette;
 use crate::ui::dock::arrangement::Dock;
+use crate::ui::document::opening;
+use crate::ui::document::recovery;
+use crate::ui::document::undo_actions;
 use crate::ui::follow;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::kit::widgets::{icon_button, segmented};
 use crate::ui::message_list::Tone;
-use crate::ui::opening;
 use crate::ui::tour_progress::Tour;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::live::Trainer;
-use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
+use crate::ui::{menu, messages, palette, tour};
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
 impl App {
@@ -54,7 +55,7 @@ impl App {
         self.session.document.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
         super::recorder::unfinished(ui, &mut self.session.document, &mut self.session.jobs);
-        restore::offer(ui, self);
+        recovery::offer(ui, self);
         messages::banners(ui, &mut self.session.messages);
         self.arranging(ui);
         if self.session.workspace != Workspace::Devices {
@@ -189,14 +190,14 @@ impl App {
     /// Undo and redo buttons, if there is a change to undo or redo.
     fn undo_buttons(&mut self, ui: &mut Ui) {
         let (undo, redo) = (
-            undoing::can_undo(&self.session.document, &self.session.calibration, &self.session.plots),
-            undoing::can_redo(&self.session.document, &self.session.calibration, &self.session.plots),
+            undo_actions::can_undo(&self.session.document, &self.session.calibration, &self.session.plots),
+            undo_actions::can_redo(&self.session.document, &self.session.calibration, &self.session.plots),
         );
         if !undo && !redo || self.session.workspace == Workspace::Train {
             return;
         }
         if icon_button(ui, Icon::Redo, redo, "Redo").on_hover_text("Redo (Ctrl+Shift+Z)").clicked() {
-            undoing::redo(
+            undo_actions::redo(
                 &mut self.session.document,
                 &mut self.session.calibration,
                 &mut self.session.plots,
@@ -204,7 +205,7 @@ impl App {
             );
         }
         if icon_button(ui, Icon::Undo, undo, "Undo").on_hover_text("Undo (Ctrl+Z)").clicked() {
-            undoing::undo(
+            undo_actions::undo(
                 &mut self.session.document,
                 &mut self.session.calibration,
                 &mut self.session.plots,

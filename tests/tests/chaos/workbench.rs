@@ -2,13 +2,14 @@
 //! on the way. At the end the good log still opens and is fitted.
 
 use crate::{Chaos, logs, must_be_a_sentence};
-use app::ui::autosave::{Autosave, State as Kept};
 use app::ui::dock::arrangement::Dock;
+use app::ui::document::autosave::{Autosave, State as Kept};
+use app::ui::document::project_files::project_of;
+use app::ui::document::{opening, project_files, undo_actions};
 use app::ui::message_list::Tone;
-use app::ui::project_files::project_of;
 use app::ui::refits::FIT;
 use app::ui::session::Session;
-use app::ui::{fitting, follow, opening, project_files, undoing};
+use app::ui::{fitting, follow};
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -65,7 +66,7 @@ impl Bench {
         let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
         match chaos.rng.random_range(0..6) {
             0 => project_files::add_log(session, ctx, &path),
-            1 => undoing::undo(
+            1 => undo_actions::undo(
                 &mut session.document,
                 &mut session.calibration,
                 &mut session.plots,

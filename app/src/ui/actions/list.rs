@@ -4,10 +4,10 @@ use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::by_hand::decides;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
+use crate::ui::document::undo_actions;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
-use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
@@ -421,11 +421,12 @@ impl Action {
             Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.calibration.can_train(), "This world has nothing for the hand."))
             }
-            Self::Undo => {
-                need(undoing::can_undo(&session.document, &session.calibration, &session.plots), "Nothing was changed.")
-            }
+            Self::Undo => need(
+                undo_actions::can_undo(&session.document, &session.calibration, &session.plots),
+                "Nothing was changed.",
+            ),
             Self::Redo => need(
-                undoing::can_redo(&session.document, &session.calibration, &session.plots),
+                undo_actions::can_redo(&session.document, &session.calibration, &session.plots),
                 "Nothing was taken back.",
             ),
             Self::ForgetStates => need(

@@ -6,19 +6,20 @@ use crate::ui::by_hand;
 use crate::ui::diagnosing;
 use crate::ui::dialogs;
 use crate::ui::dock::name_field::Naming;
-use crate::ui::document::Document;
-use crate::ui::fit_choice::Stated;
+use crate::ui::document::files;
+use crate::ui::document::fit_choice::Stated;
+use crate::ui::document::opening;
+use crate::ui::document::project_files;
+use crate::ui::document::state::Document;
+use crate::ui::document::undo_actions;
+use crate::ui::editing_rules;
 use crate::ui::fitting;
 use crate::ui::follow;
 use crate::ui::lessons::practising;
 use crate::ui::message_list::Tone;
-use crate::ui::opening;
-use crate::ui::project_files;
 use crate::ui::session::Session;
 use crate::ui::starting_over;
-use crate::ui::undoing;
 use crate::ui::workspace::Workspace;
-use crate::ui::{editing_rules, files};
 use egui::{Context, ViewportCommand};
 
 /// Step of the zoom.
@@ -109,10 +110,20 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),
         Action::FitWhole => session.calibration.choice.only_s = None,
         Action::Undo => {
-            undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+            undo_actions::undo(
+                &mut session.document,
+                &mut session.calibration,
+                &mut session.plots,
+                &mut session.messages,
+            );
         }
         Action::Redo => {
-            undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+            undo_actions::redo(
+                &mut session.document,
+                &mut session.calibration,
+                &mut session.plots,
+                &mut session.messages,
+            );
         }
         Action::Play | Action::ToStart | Action::ToEnd | Action::ShowAll | Action::Select(_) | Action::GoTo { .. } => {
             with_document(action, &mut session.document);

@@ -3,8 +3,8 @@
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::column_mapping::state::Mapping;
-use crate::ui::files::SAVE;
-use crate::ui::opening;
+use crate::ui::document::files::SAVE;
+use crate::ui::document::opening;
 use crate::ui::session::{Session, change};
 use estimator::log::write_sidecar;
 

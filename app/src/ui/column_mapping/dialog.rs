@@ -6,7 +6,7 @@ use crate::ui::column_mapping::actions::save;
 use crate::ui::column_mapping::preview::PREVIEW;
 use crate::ui::column_mapping::state::Mapping;
 use crate::ui::column_mapping::{options, plot, table};
-use crate::ui::files::SAVE;
+use crate::ui::document::files::SAVE;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

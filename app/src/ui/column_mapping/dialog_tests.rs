@@ -2,8 +2,8 @@
 
 use crate::ui::app::App;
 use crate::ui::column_mapping::draft::Role;
+use crate::ui::document::opening;
 use crate::ui::kit::theme;
-use crate::ui::opening;
 use crate::ui::session::Session;
 use crate::ui::trainer::live::Clock;
 use crate::ui::workspace::Workspace;

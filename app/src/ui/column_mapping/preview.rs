@@ -3,7 +3,7 @@
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{JobKind, Jobs, Ticket, change};
 use crate::ui::column_mapping::draft::Draft;
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;
 use estimator::signal::task::{is_two_fingered, task_signals, tip_series};

@@ -5,9 +5,9 @@
 use crate::text::format;
 use crate::ui::app::App;
 use crate::ui::diagnosis_state::EXTEND;
+use crate::ui::document::opening;
 use crate::ui::kit::theme;
 use crate::ui::message_list::Tone;
-use crate::ui::opening;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;

@@ -4,7 +4,7 @@ use crate::text::format;
 use crate::text::states::state_name;
 use crate::ui::by_hand::Change;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, state_color};
 use crate::ui::kit::widgets::swatch;

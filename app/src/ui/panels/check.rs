@@ -8,7 +8,7 @@ use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::checking;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dialogs;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};

@@ -1,7 +1,7 @@
 //! The devices page, left column: all devices for the fingers, one per line, to choose from.
 
 use super::remote::RemoteCard;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

@@ -6,7 +6,8 @@ use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
 use crate::ui::dialogs;
-use crate::ui::document::Document;
+use crate::ui::document::files;
+use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -17,8 +18,8 @@ use crate::ui::panel_id::PanelId;
 use crate::ui::plots::residual_plot::{cloud_plot, force_plot, has_directions, inks};
 use crate::ui::plots::residuals::{Cloud, Residuals};
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, stage};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

@@ -2,6 +2,7 @@
 
 use super::debrief;
 use crate::text::format;
+use crate::ui::document::opening;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::markdown;
@@ -10,7 +11,6 @@ use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
 use crate::ui::lessons::practising;
 use crate::ui::lessons::state::{Lessons, Open, Phase};
-use crate::ui::opening;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
 use crate::ui::training::Training;

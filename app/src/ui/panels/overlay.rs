@@ -1,13 +1,13 @@
 //! Recordings overlaid on the shown one: the menu that chooses them, and the legend with their shifts.
 
-use crate::ui::document::Document;
+use crate::ui::document::overlays;
+use crate::ui::document::overlays::ALIGN;
+use crate::ui::document::state::Document;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, recording as color, space};
 use crate::ui::kit::widgets::{quiet_icon_button, swatch};
-use crate::ui::overlays;
-use crate::ui::overlays::ALIGN;
 use crate::ui::plots::choices::PlotChoices;
 use crate::ui::session::Session;
 use egui::containers::menu::{MenuButton, MenuConfig};

@@ -2,7 +2,7 @@
 
 use crate::text::format::{self, Quantity};
 use crate::ui::calibration::Calibration;
-use crate::ui::fit_choice::Stated;
+use crate::ui::document::fit_choice::Stated;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

@@ -3,8 +3,8 @@
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
-use crate::ui::fit_choice::Stated;
+use crate::ui::document::fit_choice::Stated;
+use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;

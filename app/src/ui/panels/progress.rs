@@ -4,6 +4,7 @@ use crate::history::attempt::Attempt;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::dialogs;
+use crate::ui::document::files;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -15,8 +16,8 @@ use crate::ui::panel_id::PanelId;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
+use crate::ui::stage;
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, stage};
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
     TextEdit, Ui, pos2, vec2,

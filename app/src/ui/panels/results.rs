@@ -6,7 +6,7 @@ use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;

@@ -4,7 +4,7 @@
 use super::rules_table::{states, subtasks};
 use crate::text::format;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::editing_rules;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

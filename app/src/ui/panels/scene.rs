@@ -2,7 +2,8 @@
 
 use super::rules::RulesPanel;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
@@ -10,7 +11,6 @@ use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{empty_state, sheet};
 use crate::ui::panel::{Framing, Panel, Picture, Registration, SCENE};
 use crate::ui::panel_id::PanelId;
-use crate::ui::prepare::Prepared;
 use crate::ui::scene::camera_rig::Rig;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::legend::Legend;

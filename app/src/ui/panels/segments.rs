@@ -7,7 +7,7 @@ use crate::text::states::{state_of_task, state_short};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

@@ -5,6 +5,7 @@ use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibration::Calibration;
 use crate::ui::dialogs;
+use crate::ui::document::files;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, role, space};
@@ -12,13 +13,13 @@ use crate::ui::kit::widgets::{card, card_with_head, compact, gauge, light, plain
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
+use crate::ui::recorder;
 use crate::ui::session::Session;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::hand::HandDevice;
 use crate::ui::trainer::history::History;
 use crate::ui::trainer::live::{Operator, Trainer};
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, recorder};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 

@@ -4,7 +4,10 @@ use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::dialogs;
-use crate::ui::document::Document;
+use crate::ui::document::files;
+use crate::ui::document::state::Document;
+use crate::ui::document::video_actions;
+use crate::ui::document::videos::{ALIGN_VIDEO, State, Videos};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -13,10 +16,8 @@ use crate::ui::kit::widgets::{empty_state, primary_button, quiet_icon_button, sh
 use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::showing_video;
-use crate::ui::videos::{ALIGN_VIDEO, State, Videos};
+use crate::ui::stage;
 use crate::ui::workspace::Workspace;
-use crate::ui::{files, stage};
 use crate::video::reading::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
@@ -89,7 +90,7 @@ impl Panel for VideoPanel {
         let ctx = ui.ctx().clone();
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            match showing_video::video(&session.document, &mut session.jobs, &ctx) {
+            match video_actions::video(&session.document, &mut session.jobs, &ctx) {
                 State::None => none(ui, &session.document, &mut session.jobs),
                 State::Reading => {
                     empty_state(ui, words::READING, words::READING_MORE, |ui| {
@@ -119,13 +120,13 @@ fn failed(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, proble
             // Buttons in the middle of the text's line.
             ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
             if ui.button((Icon::Reload, words::AGAIN)).clicked() {
-                showing_video::read_video_again(document);
+                video_actions::read_video_again(document);
             }
             if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
                 files::ask(ui.ctx(), jobs, dialogs::OPEN_VIDEO);
             }
             if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
-                showing_video::forget_video(document, jobs);
+                video_actions::forget_video(document, jobs);
             }
         });
     });
@@ -147,12 +148,12 @@ fn picture(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video
     let p = palette(ui);
     let corners = CornerRadius { nw: theme::CARD_RADIUS, ne: theme::CARD_RADIUS, sw: 0, se: 0 };
     ui.painter().rect_filled(room, corners, p.sunken);
-    let time_s = showing_video::video_time_s(document).unwrap_or(0.0);
+    let time_s = video_actions::video_time_s(document).unwrap_or(0.0);
     let now = video.index_at(time_s);
     // Before its start and after its end, its first and last frame are shown, dimmed.
     let index = now.unwrap_or(if time_s < 0.0 { 0 } else { video.count() - 1 });
     let ctx = ui.ctx().clone();
-    let texture = showing_video::video_picture(document, jobs, &ctx, video, index);
+    let texture = video_actions::video_picture(document, jobs, &ctx, video, index);
     let size = vec2(video.size[0] as f32, video.size[1] as f32);
     let scale = (room.width() / size.x).min(room.height() / size.y).max(0.0);
     let at = Rect::from_center_size(room.center(), size * scale);
@@ -202,12 +203,12 @@ fn controls(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, vide
         let mut by_itself = loose.is_some();
         let hint = words::BY_ITSELF_MORE;
         if ui.checkbox(&mut by_itself, words::BY_ITSELF).on_hover_text(hint).changed() {
-            showing_video::loosen_video(document, by_itself);
+            video_actions::loosen_video(document, by_itself);
         }
         if loose.is_none() {
             place(ui, document, jobs);
         } else if ui.button(words::TOGETHER).on_hover_text(words::TOGETHER_MORE).clicked() {
-            showing_video::video_belongs_here(document);
+            video_actions::video_belongs_here(document);
         }
     });
     ui.horizontal(|ui| match document.videos.loose_s {
@@ -218,12 +219,12 @@ fn controls(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, vide
 
 /// Draws the position of the video in time.
 fn place(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>) {
-    let Some(mut begins_at_s) = showing_video::video_source(document).map(|s| s.begins_at_s) else { return };
+    let Some(mut begins_at_s) = video_actions::video_source(document).map(|s| s.begins_at_s) else { return };
     ui.label(theme::caption(ui, words::BEGINS));
     let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
     let hint = words::BEGINS_MORE;
     if ui.add(drag).on_hover_text(hint).changed() {
-        showing_video::shift_video(document, begins_at_s);
+        video_actions::shift_video(document, begins_at_s);
     }
     let free = !jobs.is_running(ALIGN_VIDEO);
     let hint = words::ALIGN_MORE;
@@ -231,7 +232,7 @@ fn place(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>) {
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));
     if align.clicked() {
         let ctx = ui.ctx().clone();
-        showing_video::align_video(document, jobs, &ctx);
+        video_actions::align_video(document, jobs, &ctx);
     }
 }
 
@@ -246,11 +247,11 @@ fn runner(ui: &mut Ui, videos: &mut Videos, video: &Video, mut at_s: f64) {
 }
 
 fn facts(ui: &mut Ui, document: &mut Document, jobs: &mut Jobs<Session>, video: &Video) {
-    let Some(file) = showing_video::video_source(document).map(|s| s.file.clone()) else { return };
+    let Some(file) = video_actions::video_source(document).map(|s| s.file.clone()) else { return };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let away = quiet_icon_button(ui, Icon::Close, true, words::REMOVE).on_hover_text(words::REMOVE);
         if away.clicked() {
-            showing_video::forget_video(document, jobs);
+            video_actions::forget_video(document, jobs);
         }
         let [wide, high] = video.size;
         let facts = format!("{wide} × {high}, {} s", format::number(video.duration_s(), 1));

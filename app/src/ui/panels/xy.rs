@@ -2,6 +2,7 @@
 
 use crate::text::format;
 use crate::text::states::state_name;
+use crate::ui::document::prepared::{Group, Prepared, Trace};
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{call, compact, segmented, swatch};
@@ -12,7 +13,6 @@ use crate::ui::plots::derived::Recipe;
 use crate::ui::plots::levels::Levels;
 use crate::ui::plots::time_plot::GUTTER;
 use crate::ui::plots::xy::{XyCache, XyInput, xy_plot};
-use crate::ui::prepare::{Group, Prepared, Trace};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;

@@ -4,7 +4,7 @@ use super::choices::{GroupChoice, Overlaid, PlotChoices, unit_after};
 use super::derived::{Derived, Recipe};
 use super::levels::Levels;
 use super::noise::sigma;
-use crate::ui::prepare::{Group, Prepared, Trace};
+use crate::ui::document::prepared::{Group, Prepared, Trace};
 use crate::ui::replayed::Replayed;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;

@@ -3,8 +3,8 @@
 
 use super::{markers, vectors};
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::state::Document;
 use crate::ui::session::Session;
 use haptics::Vec2;
 use haptics::world::{State, World};

@@ -1,7 +1,7 @@
 //! Agreement of the replay with the recording, in numbers (thesis, figures 5.18 to 5.22). It compares the forces, and
 //! the position of the virtual object while the measured fingers held it.
 
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::replayed::Replayed;
 use haptics::Vec2;
 use haptics::world::World;

@@ -178,7 +178,7 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     session.workspace = Workspace::Diagnose;
     let mut second = RIPPLED.clone();
     second.name = "again".to_owned();
-    let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
+    let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::document::prepared::Prepared::new(r)));
     session.show(recordings.to_vec());
     let answer = diagnosis_state::ask(
         &session.document.recordings,

@@ -2,7 +2,7 @@
 
 use super::{STACK, harness, session};
 use crate::ui::app::App;
-use crate::ui::autosave::Autosave;
+use crate::ui::document::autosave::Autosave;
 use crate::ui::panel_id::PanelId;
 use crate::ui::workspace::Workspace;
 use egui::{Event, Key, Modifiers, Role};

@@ -27,9 +27,9 @@ mod workbench;
 
 use super::app::App;
 use super::panel::Picture;
-use super::prepare::Prepared;
 use super::session::{self, Session};
 use crate::ui::background::jobs::JobKind;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
 use crate::ui::trainer::choice::WorldChoice;

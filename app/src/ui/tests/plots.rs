@@ -3,14 +3,14 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::diagnosis_state;
+use crate::ui::document::overlays;
+use crate::ui::document::overlays::ALIGN;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::follow;
 use crate::ui::kit::theme;
-use crate::ui::overlays;
-use crate::ui::overlays::ALIGN;
 use crate::ui::panel::Panel as _;
 use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
-use crate::ui::prepare::Prepared;
 use crate::ui::refits::{analyse, replay_all, replay_forces};
 use crate::ui::screenshot;
 use crate::ui::session::Session;

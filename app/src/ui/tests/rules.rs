@@ -2,7 +2,7 @@
 
 use super::{CRANK, STACK, harness, session, until};
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
 use crate::ui::editing_rules;
 use crate::ui::follow;
 use crate::ui::panel::Panel as _;

@@ -3,11 +3,11 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
+use crate::ui::document::video_actions;
 use crate::ui::editing_rules;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
 use crate::ui::session::Session;
-use crate::ui::showing_video;
 use crate::ui::workspace::Workspace;
 
 /// The widgets without a name in one state of the whole window, with where they are.
@@ -37,7 +37,7 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());
-    showing_video::open_video(
+    video_actions::open_video(
         &mut video.document,
         &mut video.wanted_pane,
         &mut video.messages,

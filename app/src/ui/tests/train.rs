@@ -3,7 +3,7 @@
 use super::{empty, harness, until_quiet};
 use crate::operator;
 use crate::ui::app::App;
-use crate::ui::opening;
+use crate::ui::document::opening;
 use crate::ui::trainer::choice::WorldChoice;
 use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
 use crate::ui::trainer::live::Operator;

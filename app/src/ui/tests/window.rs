@@ -3,7 +3,7 @@
 use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
 use crate::ui::app::App;
-use crate::ui::opening;
+use crate::ui::document::opening;
 use crate::ui::recorder;
 use crate::ui::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;

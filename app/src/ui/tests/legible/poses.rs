@@ -2,18 +2,18 @@
 
 use super::pages::Stage;
 use crate::ui::app::App;
-use crate::ui::autosave::State;
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dock::name_field::Naming;
-use crate::ui::document::Document;
+use crate::ui::document::autosave::State;
+use crate::ui::document::overlays;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::project::{Project, Source};
+use crate::ui::document::state::Document;
 use crate::ui::message_list::Tone;
-use crate::ui::overlays;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
-use crate::ui::prepare::Prepared;
-use crate::ui::project::{Project, Source};
 use crate::ui::session::Session;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
 use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};

@@ -2,13 +2,13 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
-use super::comfort::Comfort;
-use super::project::Project;
-use super::project_files::project_of;
-use super::recent::Recent;
-use super::session::Session;
 use crate::ui::assistant::state::Assistant;
+use crate::ui::comfort::Comfort;
 use crate::ui::dock::arrangement::Dock;
+use crate::ui::document::project::Project;
+use crate::ui::document::project_files::project_of;
+use crate::ui::document::recent::Recent;
+use crate::ui::session::Session;
 use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -163,7 +163,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::project::Source;
+    use crate::ui::document::project::Source;
     use crate::ui::workspace::Workspace;
 
     fn wait_for(path: &Path) -> State {

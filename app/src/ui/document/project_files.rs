@@ -1,19 +1,19 @@
 //! Opening and saving projects.
 
-use super::files::{Dialog, SAVE, ask, saved};
-use super::prepare::Prepared;
-use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosing;
-use crate::ui::document::Document;
-use crate::ui::file_kind::LOAD;
+use crate::ui::document::file_kind::LOAD;
+use crate::ui::document::files::{Dialog, SAVE, ask, saved};
+use crate::ui::document::opening;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::project::{Project, Source, VERSION};
+use crate::ui::document::state::Document;
 use crate::ui::fitting;
 use crate::ui::message_list::Messages;
-use crate::ui::opening;
 use crate::ui::plots::choices::PlotChoices;
-use crate::ui::project::{Project, Source, VERSION};
+use crate::ui::session::{Session, change};
 use crate::ui::workspace::Workspace;
 use estimator::log::Watch;
 use std::path::{Path, PathBuf};

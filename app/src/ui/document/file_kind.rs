@@ -1,7 +1,7 @@
 //! Kinds of files, told apart by their content.
 
-use super::prepare::Prepared;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::document::prepared::Prepared;
 use haptics::recording::Meta;
 use haptics::world::World;
 use std::io::Read as _;
@@ -43,7 +43,7 @@ pub fn kind_of(path: &Path) -> FileKind {
     if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
         return FileKind::Log;
     }
-    if super::project::is_project(path) {
+    if crate::ui::document::project::is_project(path) {
         return FileKind::Project;
     }
     let named = path.file_name().is_some_and(|n| n.to_string_lossy().to_lowercase().ends_with(".meta.json"));

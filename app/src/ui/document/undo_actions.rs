@@ -2,10 +2,10 @@
 
 use crate::ui::by_hand;
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
+use crate::ui::document::undo::{Undoable, difference};
 use crate::ui::message_list::{Messages, Tone};
 use crate::ui::plots::choices::PlotChoices;
-use crate::ui::undo::{Undoable, difference};
 
 /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
 pub fn note_changes(document: &mut Document, calibration: &Calibration, plots: &PlotChoices, now_s: f64, held: bool) {
@@ -64,7 +64,7 @@ fn put_back(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::prepare::Prepared;
+    use crate::ui::document::prepared::Prepared;
     use crate::ui::session::Session;
     use estimator::segment::Method;
     use haptics::recording::Recording;

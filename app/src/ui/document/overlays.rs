@@ -1,13 +1,13 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
-use super::plots::choices::{Overlaid, PlotChoices};
-use super::plots::shift::Likeliest;
-use super::prepare::{Prepared, Trace};
-use super::session::{Session, change};
 use crate::ui::background::jobs::{JobKind, Jobs};
 use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
+use crate::ui::document::prepared::{Prepared, Trace};
+use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;
+use crate::ui::plots::choices::{Overlaid, PlotChoices};
+use crate::ui::plots::shift::Likeliest;
+use crate::ui::session::{Session, change};
 use estimator::segment::SystemState;
 use estimator::signal::lag::lag;
 use std::sync::Arc;

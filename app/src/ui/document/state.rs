@@ -1,11 +1,11 @@
 //! Open recordings, their files, and the time that is looked at.
 
-use super::prepare::Prepared;
-use super::project::Source;
-use super::recent::Recent;
-use super::undo::Undo;
 use crate::tasks::Chosen;
-use crate::ui::videos::Videos;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::project::Source;
+use crate::ui::document::recent::Recent;
+use crate::ui::document::undo::Undo;
+use crate::ui::document::videos::Videos;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Settings of segmentation and fit: everything about the estimation that a user chooses, and can undo.
 
-use super::prepare::Prepared;
 use crate::tasks::Chosen;
 use crate::text::sentence::sentence;
+use crate::ui::document::prepared::Prepared;
 use estimator::estimate::Parameter;
 use estimator::segment::definition::Definition;
 use estimator::segment::{Method, Thresholds};

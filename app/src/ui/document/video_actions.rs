@@ -1,14 +1,14 @@
 //! The video of the hand that belongs to a recording: reading it, its picture at the cursor, and where it lies in time.
 
-use super::panel_id::PanelId;
-use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
+use crate::ui::document::videos::{ALIGN_VIDEO, PICTURE, Shown, State, VIDEO, Videos, begins_at, decoded};
 use crate::ui::message_list::Messages;
-use crate::ui::videos::{ALIGN_VIDEO, PICTURE, Shown, State, VIDEO, Videos, begins_at, decoded};
+use crate::ui::panel_id::PanelId;
+use crate::ui::session::{Session, change};
 use crate::video::reading;
 use crate::video::reading::{Video, VideoError, VideoSource, Watch};
 use egui::{ColorImage, TextureHandle, TextureOptions};

@@ -1,6 +1,6 @@
 //! The time cursor: seeking, playing, and the view that follows.
 
-use super::document::Document;
+use crate::ui::document::state::Document;
 
 impl Document {
     /// Puts the cursor to the beginning of a span and shows the span with its surroundings.
@@ -54,7 +54,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
 
-    use crate::ui::prepare::Prepared;
+    use crate::ui::document::prepared::Prepared;
     use crate::ui::session::Session;
     use haptics::recording::Recording;
     use std::sync::Arc;

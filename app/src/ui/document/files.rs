@@ -1,13 +1,13 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
-use super::session::{Session, change};
 use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, JobKind, Jobs, no_change};
 use crate::ui::calibration::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::document::Document;
+use crate::ui::document::state::Document;
+use crate::ui::session::{Session, change};
 use crate::write_whole::write_whole;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -125,7 +125,7 @@ pub fn save_report(
     });
 }
 
-fn sources_of(sources: &[super::project::Source]) -> Vec<(PathBuf, Option<PathBuf>)> {
+fn sources_of(sources: &[crate::ui::document::project::Source]) -> Vec<(PathBuf, Option<PathBuf>)> {
     sources.iter().map(|s| (s.log.clone(), s.meta.clone())).collect()
 }
 

@@ -1,8 +1,8 @@
 //! The videos of the open recordings.
 
-use super::prepare::Prepared;
 use crate::ui::background::jobs::JobKind;
-use crate::ui::file_kind::LOAD;
+use crate::ui::document::file_kind::LOAD;
+use crate::ui::document::prepared::Prepared;
 use crate::video::reading::{Video, VideoSource};
 use egui::{ColorImage, TextureHandle};
 use estimator::signal::lag::lag;
@@ -52,7 +52,7 @@ pub struct Videos {
 #[cfg(test)]
 impl Videos {
     /// Number of the picture on the screen.
-    pub(super) fn shown(&self) -> Option<usize> {
+    pub(crate) fn shown(&self) -> Option<usize> {
         self.shown.as_ref().filter(|s| s.texture.is_some()).map(|s| s.index)
     }
 }
@@ -80,7 +80,7 @@ impl Videos {
     }
 
     /// Other recordings were opened: theirs may have videos that their sidecars name, or that stand beside the log.
-    pub(super) fn of_log(&mut self, log: &Path, recordings: &[Arc<Prepared>]) {
+    pub(crate) fn of_log(&mut self, log: &Path, recordings: &[Arc<Prepared>]) {
         *self = Self::default();
         let folder = log.parent().unwrap_or(Path::new(""));
         for (index, prepared) in recordings.iter().enumerate() {

@@ -1,27 +1,27 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::prepare::Prepared;
-use super::project::Source;
-use super::session::{Session, change};
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
 use crate::ui::column_mapping::look::look;
 use crate::ui::column_mapping::state;
-use crate::ui::document::Document;
-use crate::ui::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
+use crate::ui::document::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::project::Source;
+use crate::ui::document::project_files;
+use crate::ui::document::state::Document;
+use crate::ui::document::video_actions;
 use crate::ui::fitting;
 use crate::ui::message_list::Messages;
 use crate::ui::panel_id::PanelId;
-use crate::ui::project_files;
-use crate::ui::showing_video;
+use crate::ui::session::{Session, change};
 use crate::ui::workspace::Workspace;
 use estimator::log::{LogError, Watch};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads a log and prepares it; work for a job.
-pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answer<Session> {
+pub(crate) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Answer<Session> {
     let progress = |share| ticket.tell(share);
     let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
     match estimator::log::load_watched(&path, meta, &watch) {
@@ -105,7 +105,7 @@ pub fn open_any(
         FileKind::World => open_world(jobs, ctx, path),
         FileKind::Sidecar => open_sidecar(document, messages, jobs, ctx, path),
         FileKind::Project => project_files::open_project(document, messages, jobs, ctx, path),
-        FileKind::Video => showing_video::open_video(document, wanted_pane, messages, jobs, path),
+        FileKind::Video => video_actions::open_video(document, wanted_pane, messages, jobs, path),
         FileKind::Log => {
             let again = document.path.as_deref() == Some(path);
             let sidecar = document.meta.clone().filter(|_| again);

@@ -1,7 +1,7 @@
 //! Undo and redo of everything about the fit that the user changes, and of recordings that lie over each other.
 
-use super::fit_choice::FitChoice;
-use super::plots::choices::{Overlaid, PlotChoices};
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::plots::choices::{Overlaid, PlotChoices};
 use egui::util::undoer::{Settings, Undoer};
 
 /// Changes that follow each other faster are one.

@@ -1,8 +1,8 @@
 //! A project: which recordings, how they are fitted, and what was looked at, in one small JSON file.
 
-use super::fit_choice::FitChoice;
-use super::plots::choices::KeptChoices;
 use crate::text::sentence::sentence;
+use crate::ui::document::fit_choice::FitChoice;
+use crate::ui::plots::choices::KeptChoices;
 use crate::ui::workspace::Workspace;
 use crate::video::reading::VideoSource;
 use crate::write_whole::write_whole;
