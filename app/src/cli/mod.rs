@@ -136,9 +136,13 @@ struct ControlArgs {
 const USUAL_CONTROL: &str = "2";
 
 fn parse_control(text: &str) -> Result<f64, String> {
-    let most = text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::trainer::control::MOST_CONTROL_N_S_M);
+    let most =
+        text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::train::trainer::control::MOST_CONTROL_N_S_M);
     most.ok_or_else(|| {
-        format!("`{text}` is no damping; write up to {} N s/m, like 2", crate::ui::trainer::control::MOST_CONTROL_N_S_M)
+        format!(
+            "`{text}` is no damping; write up to {} N s/m, like 2",
+            crate::ui::train::trainer::control::MOST_CONTROL_N_S_M
+        )
     })
 }
 

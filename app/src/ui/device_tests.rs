@@ -5,8 +5,8 @@ use super::session::Session;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
 use crate::ui::tests::picture;
-use crate::ui::trainer::hand::{HandDevice, Steering};
-use crate::ui::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::train::trainer::hand::{HandDevice, Steering};
+use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -180,7 +180,7 @@ fn a_dropped_block_flashes_where_it_lands() {
         world.blocks.iter_mut().max_by(|a, b| a.start.center_m.y.total_cmp(&b.start.center_m.y)).expect("two blocks");
     upper.start.center_m.y += 0.008;
     let lands_at = upper.start.center_m.x;
-    (trainer.file, trainer.choice) = (Some(world), crate::ui::trainer::choice::WorldChoice::File);
+    (trainer.file, trainer.choice) = (Some(world), crate::ui::train::trainer::world_choice::WorldChoice::File);
     trainer.ensure_running().expect("a loop");
     let mut seen = None;
     for _ in 0..60 {

@@ -7,8 +7,8 @@ use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_
 use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;
 use crate::ui::refits::replay_forces;
-use crate::ui::trainer::choice::{Compare, WorldChoice};
-use crate::ui::trainer::live::Trainer;
+use crate::ui::train::trainer::live::Trainer;
+use crate::ui::train::trainer::world_choice::{Compare, WorldChoice};
 use crate::ui::workspace::Workspace;
 use estimator::diagnose::{Progress, Worlds};
 use std::sync::Arc;

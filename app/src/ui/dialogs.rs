@@ -10,7 +10,7 @@ use crate::ui::document::project_files;
 use crate::ui::document::video_actions;
 use crate::ui::experimenting;
 use crate::ui::session::{Session, change};
-use crate::ui::trainees;
+use crate::ui::train::trainees;
 
 /// A log to calibrate from.
 pub const OPEN_LOG: Dialog = Dialog {

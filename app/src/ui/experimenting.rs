@@ -18,7 +18,7 @@ use crate::ui::experiments::{
     Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
 };
 use crate::ui::message_list::{Messages, Tone};
-use crate::ui::trainer::live::Trainer;
+use crate::ui::train::trainer::live::Trainer;
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;
 use haptics::world::MechanismPath;

@@ -9,9 +9,9 @@ use crate::ui::document::undo_actions;
 use crate::ui::experiments::Experiments;
 use crate::ui::fitting;
 use crate::ui::guiding;
-use crate::ui::lessons::practising;
 use crate::ui::message_list::Messages;
-use crate::ui::trainees;
+use crate::ui::train::lessons::practising;
+use crate::ui::train::trainees;
 use crate::ui::trying_values;
 
 /// Takes in what the jobs bring; call once a frame.
@@ -28,7 +28,7 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
             ),
         }
     }
-    super::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
+    crate::ui::train::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
     guiding::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
     trainees::follow_history(&mut session.training.learning, &mut session.messages);
     practising::follow_lesson(&mut session.training, &mut session.jobs, ctx);

@@ -13,7 +13,7 @@ use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::plots::choices::LogView;
 use crate::ui::refits;
-use crate::ui::trainer::live::{Clock, Operator};
+use crate::ui::train::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};

@@ -3,8 +3,8 @@
 use crate::experiment::perform::what_is_known;
 use crate::experiment::simulated::SIMULATED;
 use crate::experiment::timetable::{Step, Timetable};
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::{Operator, Trainer};
+use crate::ui::train::trainer::live::{Operator, Trainer};
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use estimator::diagnose::{Experiment, Findings};
 use haptics::device::HandGoal;
 use haptics::recording::Meta;

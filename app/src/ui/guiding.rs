@@ -1,13 +1,13 @@
 //! Doing an experiment in Train: beginning, watching, ending it.
 
-use super::recorder::RECORD;
 use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::experimenting;
 use crate::ui::experiments::Experiments;
 use crate::ui::guided::Phase;
 use crate::ui::message_list::Messages;
-use crate::ui::trainer::live::Trainer;
+use crate::ui::train::recorder::RECORD;
+use crate::ui::train::trainer::live::Trainer;
 use std::path::PathBuf;
 
 /// Begins the experiment that is ready, or begins it again.

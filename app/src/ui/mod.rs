@@ -8,7 +8,6 @@
 
 pub mod actions;
 pub mod app;
-pub mod assistant;
 pub mod atlas;
 pub mod background;
 pub mod by_hand;
@@ -16,7 +15,6 @@ pub mod calibration;
 pub mod checked;
 pub mod checking;
 pub mod column_mapping;
-pub mod comfort;
 pub mod command_palette;
 #[cfg(test)]
 mod device_tests;
@@ -38,8 +36,6 @@ pub mod guided;
 pub mod guiding;
 pub mod keys;
 pub mod kit;
-pub mod learning;
-pub mod lessons;
 pub mod menu;
 pub mod message_list;
 pub mod messages;
@@ -49,7 +45,6 @@ pub mod panel_id;
 pub mod panels;
 pub mod picture_input;
 pub mod plots;
-pub mod recorder;
 pub mod refits;
 pub mod replayed;
 pub mod rules;
@@ -59,14 +54,11 @@ pub mod screenshot;
 pub mod sensitivity;
 pub mod session;
 pub mod stage;
-pub mod starting_over;
 #[cfg(test)]
 mod tests;
 pub mod tour;
 pub mod tour_progress;
-pub mod trainees;
-pub mod trainer;
-pub mod training;
+pub mod train;
 pub mod trying_values;
 pub mod wanting_sensitivity;
 pub mod what_if;

@@ -12,7 +12,7 @@ use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::scene::callback;
 use crate::ui::scene::view;
-use crate::ui::trainer::live::Clock;
+use crate::ui::train::trainer::live::Clock;
 use anyhow::{Context as _, anyhow};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;

@@ -14,12 +14,12 @@ use crate::ui::plots::choices::PlotChoices;
 use super::calibration::Calibration;
 use super::message_list::Messages;
 use super::panel_id::PanelId;
-use super::training::Training;
 use super::workspace::Workspace;
 use crate::tasks::Chosen;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo::Undo;
 use crate::ui::document::videos::Videos;
+use crate::ui::train::state::Training;
 use std::sync::Arc;
 
 /// Everything that is shared between panels.

@@ -2,9 +2,9 @@
 
 use crate::screen::{Hand, SCREEN, Screen, command, drawn, kept, start, try_command, until};
 use app::ui::kit::theme;
-use app::ui::lessons::pointer::{Pointed, pointer_through};
 use app::ui::scene::view::Place;
 use app::ui::screenshot::trainer_place;
+use app::ui::train::lessons::pointer::{Pointed, pointer_through};
 use estimator::training::lesson::Lesson;
 use estimator::training::lesson::goal::Kind;
 use haptics::Vec2;

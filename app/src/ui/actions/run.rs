@@ -15,10 +15,10 @@ use crate::ui::document::undo_actions;
 use crate::ui::editing_rules;
 use crate::ui::fitting;
 use crate::ui::follow;
-use crate::ui::lessons::practising;
 use crate::ui::message_list::Tone;
 use crate::ui::session::Session;
-use crate::ui::starting_over;
+use crate::ui::train::lessons::practising;
+use crate::ui::train::restart;
 use crate::ui::workspace::Workspace;
 use egui::{Context, ViewportCommand};
 
@@ -194,7 +194,7 @@ fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
         }
         Action::Assistant => session.training.assistant.on = !session.training.assistant.on,
         Action::StartOver => {
-            starting_over::start_over(&mut session.experiments, &mut session.training, &mut session.messages);
+            restart::start_over(&mut session.experiments, &mut session.training, &mut session.messages);
         }
         Action::Answer(index, _) => practising::end_lesson(&mut session.training, &mut session.jobs, ctx, Some(*index)),
         Action::Lesson(title) => practising::open_lesson_titled(
@@ -209,14 +209,14 @@ fn with_training(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Practise => practising::practise_lesson(&mut session.training, &mut session.messages),
         Action::TakeTest => practising::test_lesson(&mut session.training, &mut session.messages),
         Action::PractiseOnThis => practising::practise_on_this(&session.calibration, &mut session.jobs, ctx),
-        Action::Record if session.training.trainer.is_recording() => crate::ui::recorder::stop_and_open(
+        Action::Record if session.training.trainer.is_recording() => crate::ui::train::recorder::stop_and_open(
             ctx,
             &mut session.document,
             &mut session.training.trainer,
             &mut session.messages,
             &mut session.jobs,
         ),
-        Action::Record => crate::ui::recorder::start(&mut session.training.trainer, &mut session.messages),
+        Action::Record => crate::ui::train::recorder::start(&mut session.training.trainer, &mut session.messages),
         _ => {}
     }
 }

@@ -5,7 +5,7 @@ use crate::ui::column_mapping::draft::Role;
 use crate::ui::document::opening;
 use crate::ui::kit::theme;
 use crate::ui::session::Session;
-use crate::ui::trainer::live::Clock;
+use crate::ui::train::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

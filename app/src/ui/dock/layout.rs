@@ -1,9 +1,9 @@
 //! The standard layouts, and column widths for the window.
 
 use crate::ui::calibration::Calibration;
-use crate::ui::comfort::Comfort;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
+use crate::ui::train::comfort::Comfort;
 use crate::ui::workspace::Workspace;
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};

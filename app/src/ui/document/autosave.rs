@@ -2,13 +2,13 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
-use crate::ui::assistant::state::Assistant;
-use crate::ui::comfort::Comfort;
 use crate::ui::dock::arrangement::Dock;
 use crate::ui::document::project::Project;
 use crate::ui::document::project_files::project_of;
 use crate::ui::document::recent::Recent;
 use crate::ui::session::Session;
+use crate::ui::train::assistant::state::Assistant;
+use crate::ui::train::comfort::Comfort;
 use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};
 use std::fs::File;

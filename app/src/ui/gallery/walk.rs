@@ -11,7 +11,7 @@ use crate::ui::message_list::Tone;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;
-use crate::ui::trainer::live::Clock;
+use crate::ui::train::trainer::live::Clock;
 use crate::ui::workspace::Workspace;
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};

@@ -1,6 +1,5 @@
 //! The devices page, right column: capabilities of the running device, its live values, and a gentle push to try it.
 
-use super::trainer_timing;
 use crate::text::format::{number, short_time};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -10,9 +9,10 @@ use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::trainer::hand::{HandDevice, spec_sentences};
-use crate::ui::trainer::live::{Operator, Trainer};
-use crate::ui::trainer::trial::Direction;
+use crate::ui::train::panels::trainer_timing;
+use crate::ui::train::trainer::force_test::Direction;
+use crate::ui::train::trainer::hand::{HandDevice, spec_sentences};
+use crate::ui::train::trainer::live::{Operator, Trainer};
 use crate::ui::workspace::Workspace;
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
@@ -117,7 +117,7 @@ fn abilities(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages, spec: 
     about(ui, trainer, spec);
     limits(ui, trainer, spec);
     force_test(ui, trainer, spec);
-    super::passivity::passivity(ui, trainer, messages);
+    crate::ui::train::panels::passivity::passivity(ui, trainer, messages);
 }
 
 /// Draws the live values of the device and its timing.

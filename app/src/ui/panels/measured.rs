@@ -2,14 +2,14 @@
 
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::assistant::readings::{NEEDLE, only_thing};
 use crate::ui::calibration::Calibration;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{bar, card, compact, plain_card, remark, segmented};
-use crate::ui::trainer::live::Trainer;
-use crate::ui::trainer::watch::{Watch, task_of as watched_task};
+use crate::ui::train::assistant::readings::{NEEDLE, only_thing};
+use crate::ui::train::trainer::live::Trainer;
+use crate::ui::train::trainer::watch::{Watch, task_of as watched_task};
 use egui::{Align, Layout, RichText, Ui};
 use estimator::estimate::Parameter;
 use estimator::online::information::Enough;

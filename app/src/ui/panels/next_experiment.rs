@@ -21,7 +21,7 @@ use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
 use crate::ui::message_list::Messages;
 use crate::ui::session::Session;
-use crate::ui::trainer::live::Trainer;
+use crate::ui::train::trainer::live::Trainer;
 use egui::{Align, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Findings, NextExperiment};
 use haptics::law::Coordinate;

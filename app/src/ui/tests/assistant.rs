@@ -2,11 +2,11 @@
 
 use super::{empty, train_window};
 use crate::ui::app::App;
-use crate::ui::lessons::pointer;
-use crate::ui::lessons::practising;
 use crate::ui::session::Session;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::{Clock, Operator};
+use crate::ui::train::lessons::pointer;
+use crate::ui::train::lessons::practising;
+use crate::ui::train::trainer::live::{Clock, Operator};
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

@@ -7,7 +7,7 @@ use crate::ui::experiments::REHEARSE;
 use crate::ui::gallery::samples::{leaking, leaking_world};
 use crate::ui::guided::Phase;
 use crate::ui::guiding;
-use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
