@@ -3,7 +3,7 @@
 use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::checked::{CHECK, Checked, On, check_now};
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::state::Document;

@@ -2,11 +2,11 @@
 
 use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits::replay_forces;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;
-use crate::ui::refits::replay_forces;
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::world_choice::{Compare, WorldChoice};
 use crate::ui::workspace::Workspace;

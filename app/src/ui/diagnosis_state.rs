@@ -1,11 +1,11 @@
 //! A diagnosis as far as it has come, and the questions that it answers.
 
 use super::atlas::Sheet;
-use super::replayed::Replayed;
 use crate::experiment::rehearse::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::calibrate::replayed::Replayed;
 use crate::ui::checked::Checked;
 use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::fit_choice::FitChoice;

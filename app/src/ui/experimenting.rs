@@ -9,7 +9,7 @@ use crate::recorder::folder;
 use crate::text::file_name::name_of;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::files::{SAVE, saved};
 use crate::ui::document::project_files;

@@ -1,18 +1,18 @@
 //! Following what happens between frames: the answers of jobs, and the features that watch something.
 
 use super::session::Session;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::calibrate::what_if_actions;
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
 use crate::ui::experiments::Experiments;
-use crate::ui::fitting;
 use crate::ui::guiding;
 use crate::ui::message_list::Messages;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::trainees;
-use crate::ui::trying_values;
 
 /// Takes in what the jobs bring; call once a frame.
 pub fn poll(session: &mut Session, ctx: &egui::Context) {
@@ -35,7 +35,7 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
     undo_actions::note_changes(&mut session.document, &session.calibration, &session.plots, now_s, held);
     fitting::follow_choice(&session.document, &mut session.calibration, &mut session.jobs, ctx);
-    trying_values::follow_what_if(&session.document, &session.calibration, &mut session.jobs, ctx);
+    what_if_actions::follow_what_if(&session.document, &session.calibration, &mut session.jobs, ctx);
 }
 
 /// A job has failed.

@@ -3,16 +3,16 @@
 
 use super::app::App;
 use super::panel::Picture;
-use super::panels::{log, parameters, results, scene, segments};
 use super::screenshot::{self, contents};
 use super::session::Session;
+use crate::ui::calibrate::panels::{log, parameters, results, scene, segments};
+use crate::ui::calibrate::refits;
 use crate::ui::diagnosis_state;
 use crate::ui::diagnosis_state::{Answer, StartFrom};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::plots::choices::LogView;
-use crate::ui::refits;
 use crate::ui::train::trainer::live::{Clock, Operator};
 use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
@@ -104,7 +104,7 @@ pub struct Costs {
 pub struct Loaded {
     recordings: Vec<Arc<Prepared>>,
     analysis: Option<Arc<estimator::pipeline::Analysis>>,
-    replays: Vec<Option<super::replayed::Replayed>>,
+    replays: Vec<Option<crate::ui::calibrate::replayed::Replayed>>,
     answer: Option<Arc<Answer>>,
     worlds: Option<Arc<Worlds>>,
 }

@@ -11,11 +11,11 @@ use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::choices::PlotChoices;
 
-use super::calibration::Calibration;
 use super::message_list::Messages;
 use super::panel_id::PanelId;
 use super::workspace::Workspace;
 use crate::tasks::Chosen;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo::Undo;
 use crate::ui::document::videos::Videos;

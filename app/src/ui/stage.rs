@@ -7,7 +7,11 @@ use super::plots::choices::XyAxis;
 use super::session::Session;
 use super::workspace::Workspace;
 use crate::history::keeper::History;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits;
+use crate::ui::calibrate::rule_editing;
+use crate::ui::calibrate::sensitivity_actions;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::calibrate::what_if_actions;
 use crate::ui::column_mapping::state;
 use crate::ui::column_mapping::state::Mapping;
 use crate::ui::diagnosis_state;
@@ -16,19 +20,15 @@ use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
-use crate::ui::editing_rules;
 use crate::ui::experimenting;
 use crate::ui::experiments;
 use crate::ui::guiding;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
-use crate::ui::refits;
 use crate::ui::train::lessons::pointer;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::trying_values;
-use crate::ui::wanting_sensitivity;
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::Progress;
 use estimator::signal::transform::Transform;
@@ -133,7 +133,7 @@ pub fn guided(input: &PictureInput) -> anyhow::Result<Session> {
 /// The sensitivity of the force to the parameters.
 pub fn sensitivity(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        wanting_sensitivity::look_at_sensitivity(&session.document, &mut session.calibration);
+        sensitivity_actions::look_at_sensitivity(&session.document, &mut session.calibration);
         Ok(())
     })
 }
@@ -157,7 +157,7 @@ pub fn video(input: &PictureInput) -> anyhow::Result<Session> {
 /// The open rules of the task.
 pub fn rules(input: &PictureInput) -> anyhow::Result<Session> {
     fitted_then(input, |session, _| {
-        session.calibration.rules = editing_rules::open(&session.document, &session.calibration, &mut session.messages);
+        session.calibration.rules = rule_editing::open(&session.document, &session.calibration, &mut session.messages);
         Ok(())
     })
 }
@@ -309,7 +309,7 @@ fn against_each_other(document: &Document, plots: &mut PlotChoices) {
 fn what_is_left(document: &mut Document, calibration: &Calibration, plots: &mut PlotChoices) {
     let Some(prepared) = document.prepared().cloned() else { return };
     for group in &prepared.groups {
-        let comparable = can_compare(trying_values::shown_curves(document, calibration), group);
+        let comparable = can_compare(what_if_actions::shown_curves(document, calibration), group);
         let choice = plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
@@ -325,9 +325,9 @@ fn try_another_value(document: &Document, calibration: &mut Calibration) {
     let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
     let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
     let name = parameter.full_name();
-    trying_values::try_value(calibration, &name, parameter.value.map(|v| 1.2 * v));
+    what_if_actions::try_value(calibration, &name, parameter.value.map(|v| 1.2 * v));
     calibration.selected_parameter = Some(name);
-    trying_values::try_now(document, calibration);
+    what_if_actions::try_now(document, calibration);
 }
 
 /// Diagnoses and extends the model at once, without the window's jobs.

@@ -2,14 +2,15 @@
 //! on the way. At the end the good log still opens and is fitted.
 
 use crate::{Chaos, logs, must_be_a_sentence};
+use app::ui::calibrate::fitting;
+use app::ui::calibrate::refits::FIT;
 use app::ui::dock::arrangement::Dock;
 use app::ui::document::autosave::{Autosave, State as Kept};
 use app::ui::document::project_files::project_of;
 use app::ui::document::{opening, project_files, undo_actions};
+use app::ui::follow;
 use app::ui::message_list::Tone;
-use app::ui::refits::FIT;
 use app::ui::session::Session;
-use app::ui::{fitting, follow};
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -2,8 +2,8 @@
 
 use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::by_hand::decides;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::manual_states::decides;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
 use crate::ui::panel_id::PanelId;

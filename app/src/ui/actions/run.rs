@@ -2,7 +2,9 @@
 
 use crate::ui::actions::list::Action;
 use crate::ui::app::App;
-use crate::ui::by_hand;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::manual_states;
+use crate::ui::calibrate::rule_editing;
 use crate::ui::diagnosing;
 use crate::ui::dialogs;
 use crate::ui::dock::name_field::Naming;
@@ -12,8 +14,6 @@ use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
-use crate::ui::editing_rules;
-use crate::ui::fitting;
 use crate::ui::follow;
 use crate::ui::message_list::Tone;
 use crate::ui::session::Session;
@@ -101,10 +101,10 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Fit => fitting::refit(&session.document, &mut session.calibration, &mut session.jobs, ctx),
         Action::Rules => {
             session.calibration.rules =
-                editing_rules::open(&session.document, &session.calibration, &mut session.messages);
+                rule_editing::open(&session.document, &session.calibration, &mut session.messages);
         }
         Action::ForgetStates => {
-            by_hand::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx);
+            manual_states::forget_states(&session.document, &mut session.calibration, &mut session.jobs, ctx);
         }
         Action::ForgetStated => session.calibration.choice.stated = Stated::default(),
         Action::FitShown => session.calibration.choice.only_s = Some(session.document.view_s),

@@ -1,6 +1,6 @@
 //! The standard layouts, and column widths for the window.
 
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::panel_id::PanelId;
 use crate::ui::panels::list;
 use crate::ui::train::comfort::Comfort;

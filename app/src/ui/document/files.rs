@@ -4,7 +4,7 @@ use crate::export::{Format, export};
 use crate::report::of_files;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, JobKind, Jobs, no_change};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::document::state::Document;
 use crate::ui::session::{Session, change};

@@ -3,6 +3,7 @@
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
+use crate::ui::calibrate::fitting;
 use crate::ui::column_mapping::look::look;
 use crate::ui::column_mapping::state;
 use crate::ui::document::file_kind::{FileKind, LOAD, LOG_ENDINGS, kind_of, says_nothing};
@@ -11,7 +12,6 @@ use crate::ui::document::project::Source;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
-use crate::ui::fitting;
 use crate::ui::message_list::Messages;
 use crate::ui::panel_id::PanelId;
 use crate::ui::session::{Session, change};

@@ -1,7 +1,7 @@
 //! Recordings laid over each other: which, and how far each is shifted in time.
 
 use crate::ui::background::jobs::{JobKind, Jobs};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::{Prepared, Trace};
 use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;

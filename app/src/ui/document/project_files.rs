@@ -2,7 +2,8 @@
 
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::files::{Dialog, SAVE, ask, saved};
@@ -10,7 +11,6 @@ use crate::ui::document::opening;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::project::{Project, Source, VERSION};
 use crate::ui::document::state::Document;
-use crate::ui::fitting;
 use crate::ui::message_list::Messages;
 use crate::ui::plots::choices::PlotChoices;
 use crate::ui::session::{Session, change};

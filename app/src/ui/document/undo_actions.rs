@@ -1,7 +1,7 @@
 //! Taking changes back, and bringing them back.
 
-use crate::ui::by_hand;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::manual_states;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo::{Undoable, difference};
 use crate::ui::message_list::{Messages, Tone};
@@ -57,7 +57,7 @@ fn put_back(
     let segments_differ = calibration.choice.segments != choice.segments;
     calibration.choice = choice;
     if segments_differ {
-        by_hand::show_segments(document, calibration);
+        manual_states::show_segments(document, calibration);
     }
 }
 

@@ -1,11 +1,12 @@
 //! Every picture of the gallery, and drawing them all.
 
+use crate::ui::calibrate::panels::{scene, video};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::gallery::samples::Samples;
 use crate::ui::gallery::small_png::small_png;
 use crate::ui::gallery::walk;
 use crate::ui::panel::{Framing, PAGE, Picture, SCENE};
-use crate::ui::panels::{diagnose, diagnosis, scene, video};
+use crate::ui::panels::{diagnose, diagnosis};
 use crate::ui::picture_input::PictureInput;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::screenshot::{self, pictures};

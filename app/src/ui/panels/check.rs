@@ -3,7 +3,7 @@
 use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
 use crate::ui::checking;
 use crate::ui::diagnosis_state::Diagnosing;

@@ -2,7 +2,7 @@
 
 use crate::ui::atlas::Sheet;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
 use crate::ui::dialogs;

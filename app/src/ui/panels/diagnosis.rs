@@ -5,7 +5,7 @@ use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
 use crate::ui::dialogs;

@@ -7,7 +7,7 @@ use crate::text::diagnosis_words::{listed, one, small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::diagnosis_state::is_mechanism;
 use crate::ui::dialogs;

@@ -4,7 +4,7 @@ use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use crate::text::format::{number, significant};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;

@@ -2,7 +2,7 @@
 //! constraints.
 
 use super::{markers, vectors};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::session::Session;

@@ -1,8 +1,8 @@
 //! Agreement of the replay with the recording, in numbers (thesis, figures 5.18 to 5.22). It compares the forces, and
 //! the position of the virtual object while the measured fingers held it.
 
+use crate::ui::calibrate::replayed::Replayed;
 use crate::ui::document::prepared::Prepared;
-use crate::ui::replayed::Replayed;
 use haptics::Vec2;
 use haptics::world::World;
 

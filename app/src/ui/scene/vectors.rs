@@ -2,7 +2,7 @@
 //! explains (figure 5.12).
 
 use super::overlay::window;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::session::Session;

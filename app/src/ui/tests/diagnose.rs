@@ -164,7 +164,7 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
         follow::poll(session, &ctx);
-        crate::ui::panel::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
+        crate::ui::panel::Panel::ui(&mut crate::ui::calibrate::panels::results::ResultsPanel::default(), ui, session);
     });
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);

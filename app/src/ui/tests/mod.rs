@@ -93,10 +93,11 @@ pub fn session(recording: Recording) -> Session {
     session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice) {
+    match crate::ui::calibrate::refits::analyse(&session.document.recordings, &session.calibration.choice) {
         Ok(analysis) => {
-            session.calibration.replays = crate::ui::refits::replay_all(&analysis.world, &session.document.recordings);
-            session.calibration.enough = crate::ui::refits::judge(&analysis, &session.document.recordings);
+            session.calibration.replays =
+                crate::ui::calibrate::refits::replay_all(&analysis.world, &session.document.recordings);
+            session.calibration.enough = crate::ui::calibrate::refits::judge(&analysis, &session.document.recordings);
             session.calibration.analysis = Some(Arc::new(analysis));
             session.calibration.refits.answered(&session.calibration.choice.clone());
         }

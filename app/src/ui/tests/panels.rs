@@ -2,14 +2,14 @@
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
+use crate::ui::calibrate::panels::parameters::ParametersPanel;
+use crate::ui::calibrate::panels::recording::RecordingPanel;
+use crate::ui::calibrate::panels::results::ResultsPanel;
+use crate::ui::calibrate::refits::FIT;
 use crate::ui::follow;
 use crate::ui::kit::theme;
 use crate::ui::panel::Panel;
 use crate::ui::panels::list::PANELS;
-use crate::ui::panels::parameters::ParametersPanel;
-use crate::ui::panels::recording::RecordingPanel;
-use crate::ui::panels::results::ResultsPanel;
-use crate::ui::refits::FIT;
 use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;

@@ -2,6 +2,8 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
+use crate::ui::calibrate::panels::log::LogPanel;
+use crate::ui::calibrate::refits::{analyse, replay_all, replay_forces};
 use crate::ui::diagnosis_state;
 use crate::ui::document::overlays;
 use crate::ui::document::overlays::ALIGN;
@@ -9,9 +11,7 @@ use crate::ui::document::prepared::Prepared;
 use crate::ui::follow;
 use crate::ui::kit::theme;
 use crate::ui::panel::Panel as _;
-use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
-use crate::ui::refits::{analyse, replay_all, replay_forces};
 use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::tests::picture;

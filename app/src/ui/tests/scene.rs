@@ -2,10 +2,10 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
+use crate::ui::calibrate::panels::scene::ScenePanel;
+use crate::ui::calibrate::refits::replay_all;
 use crate::ui::kit::theme;
 use crate::ui::panel::Panel;
-use crate::ui::panels::scene::ScenePanel;
-use crate::ui::refits::replay_all;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::scene::overlay::{options_for, scene_world};
 use crate::ui::scene::similarity::Likeness;

@@ -3,8 +3,8 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
+use crate::ui::calibrate::rule_editing;
 use crate::ui::document::video_actions;
-use crate::ui::editing_rules;
 use crate::ui::panels::list;
 use crate::ui::plots::choices::LogView;
 use crate::ui::session::Session;
@@ -33,7 +33,7 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     let mut crank = session(CRANK.clone());
     crank.calibration.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.calibration.rules = editing_rules::open(&rules.document, &rules.calibration, &mut rules.messages);
+    rules.calibration.rules = rule_editing::open(&rules.document, &rules.calibration, &mut rules.messages);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());

@@ -2,7 +2,8 @@
 
 use super::pages::Stage;
 use crate::ui::app::App;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::sensitivity_actions;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::document::autosave::State;
@@ -17,7 +18,6 @@ use crate::ui::plots::choices::LogView;
 use crate::ui::session::Session;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
 use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};
-use crate::ui::wanting_sensitivity;
 use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable as _;
 use haptics::recording::{Channel, Recording};
@@ -65,7 +65,7 @@ fn workspaces_with_nothing_in_them_can_be_read() {
 fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut found = String::new();
     let mut full = diagnosed(RIPPLED.clone());
-    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
+    sensitivity_actions::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
         for pane in list::of(workspace) {
             let mut app =
@@ -85,7 +85,7 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
 fn every_panel_alone_can_be_read() {
     let mut found = String::new();
     let mut full = session(STACK.clone());
-    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
+    sensitivity_actions::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in WORKSPACES {
         for pane in list::of(workspace) {
             let mut app =

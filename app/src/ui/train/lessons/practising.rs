@@ -2,7 +2,7 @@
 
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::message_list::Messages;
 use crate::ui::session::{Session, change};
 use crate::ui::train::lessons::kept;

@@ -2,7 +2,7 @@
 
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::kit::icons::Icon;
@@ -124,7 +124,7 @@ impl Panel for TrainerSide {
             forces(ui, &session.training.trainer);
             crate::ui::train::panels::assistant::assistant(ui, &mut session.training);
             if !session.training.lessons.shown {
-                crate::ui::panels::measured::beside(ui, &mut session.training.trainer);
+                crate::ui::calibrate::panels::measured::beside(ui, &mut session.training.trainer);
             }
             crate::ui::train::panels::delay::delay(ui, &mut session.training.trainer, &mut session.messages);
             crate::ui::train::panels::comfort::card(ui, &mut session.training.comfort);

@@ -1,7 +1,7 @@
 //! The 3D view of the recording: the hand follows the cursor; path, forces and constraints are overlaid.
 
-use super::rules::RulesPanel;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::panels::rules::RulesPanel;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;

@@ -2,7 +2,8 @@
 
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits::{FIT, SIMULATE};
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::fit_choice::Stated;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
@@ -13,7 +14,6 @@ use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::tooltips;
 use crate::ui::kit::widgets::{card, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture};
-use crate::ui::refits::{FIT, SIMULATE};
 use crate::ui::session::Session;
 use crate::ui::stage;
 use egui::{Align, Layout, RichText, Ui};

@@ -1,15 +1,15 @@
 //! The editor of one parameter: a trial value is simulated at once, and prior knowledge is set here.
 
 use crate::text::format::{self, Quantity};
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::calibrate::what_if::residual_rms;
+use crate::ui::calibrate::what_if_actions;
 use crate::ui::document::fit_choice::Stated;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::tooltips;
 use crate::ui::kit::widgets::{call, card, compact, segmented};
-use crate::ui::trying_values;
-use crate::ui::what_if::residual_rms;
 use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
@@ -94,7 +94,7 @@ fn try_another(ui: &mut Ui, calibration: &mut Calibration, parameter: &Parameter
         call(&slid, words::ANOTHER_VALUE);
         call(&typed, words::ANOTHER_VALUE_AS_A_NUMBER);
         if slid.changed() || typed.changed() {
-            trying_values::try_value(calibration, &name, Some(shown / quantity.factor));
+            what_if_actions::try_value(calibration, &name, Some(shown / quantity.factor));
         }
     });
     outcome(ui, calibration, tried.is_some());

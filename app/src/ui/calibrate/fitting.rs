@@ -1,11 +1,11 @@
 //! From the loaded recordings to a fit and its replay, in the background, and again whenever the user changes how.
 
-use super::session::{Session, change};
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits::{FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge, replay_all};
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::refits::{FIT, JUDGE, SEGMENT, SIMULATE, analyse_sharing, judge, replay_all};
+use crate::ui::session::{Session, change};
 use estimator::pipeline::Analysis;
 use estimator::segment::{Segmentation, segment_by};
 use std::sync::Arc;

@@ -1,12 +1,13 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
-use super::boundaries;
-use super::rules::parameter;
 use crate::text::format;
 use crate::text::states::{state_of_task, state_short};
 use crate::ui::background::jobs::Jobs;
-use crate::ui::by_hand;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::manual_states;
+use crate::ui::calibrate::panels::boundaries;
+use crate::ui::calibrate::panels::rules::parameter;
+use crate::ui::calibrate::refits::FIT;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
@@ -15,7 +16,6 @@ use crate::ui::kit::theme::{palette, space, state_color};
 use crate::ui::kit::widgets::{card, compact, empty_state, swatch};
 use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::stage;
 use crate::ui::workspace::Workspace;
@@ -166,8 +166,8 @@ fn draw_states(
     band: Rect,
 ) {
     let (mut seek, mut change) = (None, None);
-    let can_be_set = by_hand::states_can_be_set(calibration);
-    let fits_without_states = by_hand::fits_without_states(document, calibration);
+    let can_be_set = manual_states::states_can_be_set(calibration);
+    let fits_without_states = manual_states::fits_without_states(document, calibration);
     let some_menu_is_open = egui::Popup::is_any_open(ui.ctx());
     for (index, interval) in segmentation.states.iter().enumerate() {
         let (left, right) = (x_of(document, band.x_range(), interval.t0), x_of(document, band.x_range(), interval.t1));
@@ -207,7 +207,7 @@ fn draw_states(
         change = change.or(boundaries::handles(ui, document.view_s, segmentation, band));
     }
     if let Some(change) = &change {
-        by_hand::set_states(document, calibration, change);
+        manual_states::set_states(document, calibration, change);
     }
     if let Some(time) = seek {
         document.seek(time);

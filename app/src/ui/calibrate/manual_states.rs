@@ -2,11 +2,11 @@
 //!
 //! The band shows what was set at once; the fit follows when it is made again. What is set stands in the sidecar of a saved recording.
 
-use super::session::Session;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::fitting;
+use crate::ui::session::Session;
 use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
 use haptics::recording::{Recording, Segment, Task};
 use std::sync::Arc;
@@ -179,8 +179,8 @@ mod tests {
                 && session.calibration.segmentation(session.document.current).is_some_and(|s| s.by_hand)
         );
         assert_eq!(place(&session.document, &session.calibration, carry + 1).0, now, "no hole");
-        let after =
-            crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice).expect("fits");
+        let after = crate::ui::calibrate::refits::analyse(&session.document.recordings, &session.calibration.choice)
+            .expect("fits");
         let (before, after) = (before.expect("weighed"), after.fit.parameter("block-1", "weight_N").cloned());
         let after = after.expect("weighed");
         assert!(after.samples < before.samples * 3 / 4, "{} of {} samples", after.samples, before.samples);

@@ -1,17 +1,17 @@
 //! The editor of a task's rules: its states, their conditions, the parameters that they identify, and the subtasks that
 //! they form. A change is applied at once to the recording below.
 
-use super::rules_table::{states, subtasks};
 use crate::text::format;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::panels::rules_table::{states, subtasks};
+use crate::ui::calibrate::rule_editing;
+use crate::ui::calibrate::rules::Rules;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::editing_rules;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::kit::widgets::{card_with_head, primary_button, remark};
 use crate::ui::panel::Panel;
-use crate::ui::rules::Rules;
 use crate::ui::session::Session;
 use egui::{DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::definition::Definition;
@@ -57,7 +57,7 @@ enum Asked {
 
 impl Panel for RulesPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        editing_rules::follow(ui.ctx(), &session.document, &mut session.calibration, &mut session.jobs);
+        rule_editing::follow(ui.ctx(), &session.document, &mut session.calibration, &mut session.jobs);
         let Some(mut open) = session.calibration.rules.take() else { return };
         let (seen, before) = (open.draft.clone(), open.before.clone());
         let mut asked = Asked::Nothing;
@@ -87,7 +87,7 @@ impl Panel for RulesPanel {
         match asked {
             Asked::Close => session.calibration.rules = None,
             Asked::Reset => reset(&mut session.calibration),
-            Asked::Nothing if save => editing_rules::save(
+            Asked::Nothing if save => rule_editing::save(
                 ui.ctx(),
                 &session.document,
                 &mut session.calibration,
@@ -187,6 +187,6 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
 }
 
 /// Label of a parameter in the list of a state.
-pub(super) fn parameter(name: &str) -> String {
+pub(crate) fn parameter(name: &str) -> String {
     if name == "force_bias" { words::FORCE_BIAS.to_owned() } else { format::parameter(name, None).label }
 }

@@ -2,7 +2,7 @@
 
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};

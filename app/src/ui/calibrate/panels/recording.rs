@@ -2,15 +2,16 @@
 
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::by_hand;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::manual_states;
+use crate::ui::calibrate::refits::FIT;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::files::Dialog;
 use crate::ui::document::fit_choice::Stated;
 use crate::ui::document::opening;
 use crate::ui::document::state::Document;
-use crate::ui::fitting;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -18,7 +19,6 @@ use crate::ui::kit::widgets::{call, fact, icon_button, plain_card, primary_butto
 use crate::ui::message_list::Messages;
 use crate::ui::panel::{Panel, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::refits::FIT;
 use crate::ui::session::Session;
 use crate::ui::workspace::Workspace;
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
@@ -194,7 +194,7 @@ fn fit(
     messages: &mut Messages,
     jobs: &mut Jobs<Session>,
 ) {
-    super::task_choice::task_choice(ui, document, calibration, messages);
+    crate::ui::calibrate::panels::task_choice::task_choice(ui, document, calibration, messages);
     method(ui, calibration);
     thresholds(ui, document, calibration);
     part(ui, document, calibration);
@@ -258,7 +258,7 @@ fn by_hand(ui: &mut Ui, document: &Document, calibration: &mut Calibration, jobs
             ui.label(theme::caption(ui, words::BY_HAND));
             if ui.link(words::FIND_AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                by_hand::forget_states(document, calibration, jobs, &ctx);
+                manual_states::forget_states(document, calibration, jobs, &ctx);
             }
         });
     }

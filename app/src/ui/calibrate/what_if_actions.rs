@@ -1,12 +1,12 @@
 //! Replaying with tried values, in the background or at once.
 
-use super::replayed::Replayed;
-use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits::replay_forces;
+use crate::ui::calibrate::replayed::Replayed;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::calibrate::what_if::{WHAT_IF, world};
 use crate::ui::document::state::Document;
-use crate::ui::refits::replay_forces;
-use crate::ui::what_if::{WHAT_IF, world};
+use crate::ui::session::{Session, change};
 
 /// Tries a value, or with `None` no longer.
 pub fn try_value(calibration: &mut Calibration, name: &str, value: Option<f64>) {
@@ -52,8 +52,8 @@ pub fn shown_curves<'a>(document: &Document, calibration: &'a Calibration) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::calibrate::what_if::residual_rms;
     use crate::ui::tests::{CRANK, STACK, session};
-    use crate::ui::what_if::residual_rms;
 
     fn tried(document: &Document, calibration: &Calibration, name: &str, factor: f64) -> f64 {
         let analysis = calibration.analysis.as_ref().expect("fitted");

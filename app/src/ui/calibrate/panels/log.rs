@@ -1,13 +1,14 @@
 //! The log: plots with one time axis, the states under them, the time slider.
 
-use super::incoming::incoming;
-use super::overlay::{overlay_legend, overlay_menu};
-use super::segments::band;
-use super::transport::transport;
-use super::xy::xy_view;
 use crate::text::format::number;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::panels::loading_preview::incoming;
+use crate::ui::calibrate::panels::overlay::{overlay_legend, overlay_menu};
+use crate::ui::calibrate::panels::segments::band;
+use crate::ui::calibrate::panels::transport::transport;
+use crate::ui::calibrate::panels::xy::xy_view;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::calibrate::what_if_actions;
 use crate::ui::diagnosis_state::Diagnosing;
 use crate::ui::dialogs;
 use crate::ui::document::file_kind::LOAD;
@@ -29,7 +30,6 @@ use crate::ui::plots::time_plot::{GUTTER, PlotCache, RowInput, RowKind, axis_hei
 use crate::ui::plots::xy::XyCache;
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::trying_values;
 use crate::ui::workspace::Workspace;
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
 use egui_tiles::ContainerKind;
@@ -219,7 +219,7 @@ fn sources<'a>(
     Sources {
         recordings: &document.recordings,
         prepared,
-        simulated: trying_values::shown_curves(document, calibration),
+        simulated: what_if_actions::shown_curves(document, calibration),
         extended: diagnosing.replay(document.current),
         analysis: analysis.and_then(|a| Some((a, a.segmentations.get(document.current)?.as_ref()?))),
     }

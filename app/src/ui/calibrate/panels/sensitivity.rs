@@ -1,7 +1,10 @@
 //! Sensitivity of the result to the parameters, and their correlations: bars, and a matrix.
 
 use crate::text::format;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::sensitivity::SENSITIVITY;
+use crate::ui::calibrate::sensitivity::{CHANGE, Correlations, Effect};
+use crate::ui::calibrate::sensitivity_actions;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -9,11 +12,8 @@ use crate::ui::kit::theme::{Palette, palette, space};
 use crate::ui::kit::widgets::{bar, compact, empty_state, plain_card, remark};
 use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::panel_id::PanelId;
-use crate::ui::sensitivity::SENSITIVITY;
-use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::session::Session;
 use crate::ui::stage;
-use crate::ui::wanting_sensitivity;
 use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_tiles::ContainerKind;
@@ -67,7 +67,7 @@ pub struct SensitivityPanel;
 impl Panel for SensitivityPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let ctx = ui.ctx().clone();
-        wanting_sensitivity::want_sensitivity(&session.document, &session.calibration, &mut session.jobs, &ctx);
+        sensitivity_actions::want_sensitivity(&session.document, &session.calibration, &mut session.jobs, &ctx);
         let Some(found) = session.calibration.sensitivity.clone().filter(|_| session.calibration.analysis.is_some())
         else {
             let busy = session.jobs.is_running(SENSITIVITY);

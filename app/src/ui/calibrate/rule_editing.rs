@@ -1,15 +1,15 @@
 //! Editing the rules of a task: trying and saving the draft.
 
-use super::session::Session;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::refits::SEGMENT;
+use crate::ui::calibrate::rules::Rules;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::files::{SAVE, saved};
 use crate::ui::document::state::Document;
-use crate::ui::fitting;
 use crate::ui::message_list::Messages;
-use crate::ui::refits::SEGMENT;
-use crate::ui::rules::Rules;
+use crate::ui::session::Session;
 use estimator::segment::library;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Trial values of parameters: the world with them, its replay and its residual force, live.
 
-use super::replayed::Replayed;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::calibrate::replayed::Replayed;
 use estimator::calibrate;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;
@@ -39,7 +39,7 @@ impl WhatIf {
     }
 
     /// An answer has come.
-    pub(super) fn take(&mut self, values: BTreeMap<String, f64>, replays: Vec<Option<Replayed>>) {
+    pub(crate) fn take(&mut self, values: BTreeMap<String, f64>, replays: Vec<Option<Replayed>>) {
         if self.is_on() {
             (self.answered, self.replays) = (Some(values), replays);
         }

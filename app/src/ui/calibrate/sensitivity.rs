@@ -1,7 +1,7 @@
 //! Sensitivity of the simulated force to every parameter, and the parameters that are correlated.
 
-use super::what_if;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::calibrate::what_if;
 use crate::ui::document::prepared::Prepared;
 use estimator::pipeline::Analysis;
 use haptics::recording::Recording;

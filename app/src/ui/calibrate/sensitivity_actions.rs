@@ -1,12 +1,12 @@
 //! Computing the sensitivity, in the background or at once.
 
-use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::refits::FIT;
+use crate::ui::calibrate::sensitivity::{SENSITIVITY, sensitivity};
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::refits::FIT;
-use crate::ui::sensitivity::{SENSITIVITY, sensitivity};
+use crate::ui::session::{Session, change};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -40,7 +40,7 @@ pub fn want_sensitivity(document: &Document, calibration: &Calibration, jobs: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::sensitivity::Sensitivity;
+    use crate::ui::calibrate::sensitivity::Sensitivity;
     use crate::ui::tests::{CRANK, STACK, session};
     use haptics::recording::Recording;
 

@@ -1,10 +1,10 @@
 //! The calibration: how the recordings are fitted, and the fit.
 
-use super::refits::Refits;
-use super::replayed::Replayed;
-use super::rules::Rules;
-use super::sensitivity::Sensitivity;
-use super::what_if::WhatIf;
+use crate::ui::calibrate::refits::Refits;
+use crate::ui::calibrate::replayed::Replayed;
+use crate::ui::calibrate::rules::Rules;
+use crate::ui::calibrate::sensitivity::Sensitivity;
+use crate::ui::calibrate::what_if::WhatIf;
 use crate::ui::document::fit_choice::FitChoice;
 use estimator::online::information::Enough;
 use estimator::pipeline::Analysis;

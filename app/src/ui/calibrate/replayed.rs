@@ -1,6 +1,6 @@
 //! A recording played through a world.
 
-use super::film::Film;
+use crate::ui::calibrate::replay_frames::Film;
 use crate::ui::plots::levels::Levels;
 use estimator::simulate::Simulation;
 use std::sync::Arc;

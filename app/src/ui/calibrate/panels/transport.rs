@@ -1,7 +1,7 @@
 //! Play, pause, speed, and an overview of the whole recording for navigation.
 
 use crate::text::format;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

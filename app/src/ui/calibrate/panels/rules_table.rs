@@ -1,12 +1,12 @@
 //! The two tables of the rules: states with their signs, and subtasks with their states.
 
-use super::rules::parameter;
 use crate::text::states::state_name;
+use crate::ui::calibrate::panels::rules::parameter;
+use crate::ui::calibrate::rules::Rules;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space, state_color};
 use crate::ui::kit::widgets::{call, quiet_icon_button, swatch};
-use crate::ui::rules::Rules;
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 use estimator::segment::definition::{Step, Subtasks, signals};

@@ -1,9 +1,9 @@
 //! Fits and replays of recordings.
 
-use super::film::Film;
-use super::replayed::Replayed;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
+use crate::ui::calibrate::replay_frames::Film;
+use crate::ui::calibrate::replayed::Replayed;
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::levels::Levels;

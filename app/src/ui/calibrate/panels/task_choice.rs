@@ -3,9 +3,9 @@
 use crate::tasks::Chosen;
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::rule_editing;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::editing_rules;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::call;
@@ -106,7 +106,7 @@ fn set(
 ) {
     (calibration.choice.task, calibration.choice.own) = (task, own);
     if calibration.rules.take().is_some() {
-        calibration.rules = editing_rules::open(document, calibration, messages);
+        calibration.rules = rule_editing::open(document, calibration, messages);
     }
 }
 
@@ -115,6 +115,6 @@ fn edit(ui: &mut Ui, document: &Document, calibration: &mut Calibration, message
     let open = calibration.rules.is_some();
     let hint = words::RULES_MORE;
     if ui.button((Icon::Rules, if open { words::CLOSE_RULES } else { words::RULES })).on_hover_text(hint).clicked() {
-        calibration.rules = if open { None } else { editing_rules::open(document, calibration, messages) };
+        calibration.rules = if open { None } else { rule_editing::open(document, calibration, messages) };
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::text::format;
 use crate::text::states::state_name;
-use crate::ui::by_hand::Change;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::manual_states::Change;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, state_color};

@@ -1,10 +1,11 @@
 //! All results: parameters, constraints, warnings, and the actions on them.
 
-use super::parameters::{self, ParametersPanel};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::calibration::Calibration;
+use crate::ui::calibrate::panels::parameters;
+use crate::ui::calibrate::panels::parameters::ParametersPanel;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnosing;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
@@ -84,8 +85,8 @@ impl Panel for ResultsPanel {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             self.parameters.ui(ui, session);
-            super::parameter_editor::selected(ui, &mut session.calibration);
-            super::measured::of_recording(ui, &session.calibration);
+            crate::ui::calibrate::panels::parameter_editor::selected(ui, &mut session.calibration);
+            crate::ui::calibrate::panels::measured::of_recording(ui, &session.calibration);
             constraints(ui, &session.calibration);
             warnings(ui, &mut session.document, &session.calibration);
             train_with_it(ui, &mut session.workspace, &session.calibration, &mut session.training, &mut session.jobs);
