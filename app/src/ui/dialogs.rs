@@ -1,14 +1,14 @@
 //! The file dialogs of the window: the files on offer, and the use of the chosen path.
 
 use crate::ui::background::jobs::Jobs;
-use crate::ui::checked::On;
-use crate::ui::checking;
+use crate::ui::diagnose::checked::On;
+use crate::ui::diagnose::experiment;
+use crate::ui::diagnose::validation;
 use crate::ui::document::files;
 use crate::ui::document::files::{Dialog, LOGS_AND_ALL};
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::video_actions;
-use crate::ui::experimenting;
 use crate::ui::session::{Session, change};
 use crate::ui::train::trainees;
 
@@ -56,7 +56,7 @@ pub const ADD_EXPERIMENT: Dialog = Dialog {
     title: "Add a recording of the experiment",
     filters: LOGS_AND_ALL,
     saves_as: None,
-    then: |session, ctx, path| experimenting::add_experiment(session, ctx, &path),
+    then: |session, ctx, path| experiment::add_experiment(session, ctx, &path),
 };
 /// A video of the shown recording.
 pub const OPEN_VIDEO: Dialog = Dialog {
@@ -126,7 +126,7 @@ pub const SAVE_HISTORY: Dialog = Dialog {
 pub fn ask_for_recordings_to_check(ctx: &egui::Context, jobs: &mut Jobs<Session>) {
     files::ask_for_logs(ctx, jobs, "Recordings of the same object", |paths| {
         change(|session, ctx| {
-            checking::check(
+            validation::check(
                 &session.document,
                 &session.calibration,
                 &mut session.diagnosing,

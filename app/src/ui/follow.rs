@@ -4,12 +4,12 @@ use super::session::Session;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::calibrate::what_if_actions;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::guidance;
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
-use crate::ui::experiments::Experiments;
-use crate::ui::guiding;
 use crate::ui::message_list::Messages;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::trainees;
@@ -29,7 +29,7 @@ pub fn poll(session: &mut Session, ctx: &egui::Context) {
         }
     }
     crate::ui::train::recorder::follow(ctx, &mut session.training.trainer, &mut session.jobs);
-    guiding::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
+    guidance::follow_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.jobs, ctx);
     trainees::follow_history(&mut session.training.learning, &mut session.messages);
     practising::follow_lesson(&mut session.training, &mut session.jobs, ctx);
     let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));

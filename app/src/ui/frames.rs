@@ -7,8 +7,8 @@ use super::screenshot::{self, contents};
 use super::session::Session;
 use crate::ui::calibrate::panels::{log, parameters, results, scene, segments};
 use crate::ui::calibrate::refits;
-use crate::ui::diagnosis_state;
-use crate::ui::diagnosis_state::{Answer, StartFrom};
+use crate::ui::diagnose::state::{Answer, StartFrom};
+use crate::ui::diagnose::state::{ask, extend};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
@@ -143,8 +143,8 @@ impl Loaded {
     pub fn diagnosed(once: Recording, samples: usize) -> Result<Self, String> {
         let mut loaded = Self::over_and_over(once, samples)?;
         let (choice, from) = (FitChoice::default(), StartFrom::default());
-        let answer = diagnosis_state::ask(&loaded.recordings, &choice, from, Progress::default())?;
-        let worlds = diagnosis_state::extend(&loaded.recordings, &choice, from, &answer)?;
+        let answer = ask(&loaded.recordings, &choice, from, Progress::default())?;
+        let worlds = extend(&loaded.recordings, &choice, from, &answer)?;
         loaded.answer = Some(Arc::new(answer));
         loaded.worlds = Some(Arc::new(worlds));
         Ok(loaded)

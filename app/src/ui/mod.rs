@@ -8,28 +8,20 @@
 
 pub mod actions;
 pub mod app;
-pub mod atlas;
 pub mod background;
 pub mod calibrate;
-pub mod checked;
-pub mod checking;
 pub mod column_mapping;
 pub mod command_palette;
 #[cfg(test)]
 mod device_tests;
-pub mod diagnosing;
-pub mod diagnosis_state;
+pub mod diagnose;
 pub mod dialogs;
 pub mod dock;
 pub mod document;
-pub mod experimenting;
-pub mod experiments;
 pub mod first_picture;
 pub mod follow;
 pub mod frames;
 pub mod gallery;
-pub mod guided;
-pub mod guiding;
 pub mod keys;
 pub mod kit;
 pub mod menu;

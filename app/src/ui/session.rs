@@ -1,8 +1,8 @@
 //! Data of the window: recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::document::fit_choice::FitChoice;
-use crate::ui::experiments::Experiments;
 use crate::ui::scene::layers::SceneLayers;
 
 use crate::ui::background::jobs::{Answer, JobKind, Jobs};

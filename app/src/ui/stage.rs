@@ -12,17 +12,17 @@ use crate::ui::calibrate::rule_editing;
 use crate::ui::calibrate::sensitivity_actions;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::calibrate::what_if_actions;
-use crate::ui::column_mapping::state;
 use crate::ui::column_mapping::state::Mapping;
-use crate::ui::diagnosis_state;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::column_mapping::state::look_now;
+use crate::ui::diagnose::experiment;
+use crate::ui::diagnose::experiment_state;
+use crate::ui::diagnose::guidance;
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::diagnose::state::{ask, extend};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
-use crate::ui::experimenting;
-use crate::ui::experiments;
-use crate::ui::guiding;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
 use crate::ui::train::lessons::pointer;
@@ -167,7 +167,7 @@ pub fn mapping(input: &PictureInput) -> anyhow::Result<Session> {
     let mut session = new();
     session.workspace = Workspace::Calibrate;
     let path = input.log.clone().context("name a log with --log: the dialog maps its columns")?;
-    let looked = state::look_now(path, input.meta.clone(), None).map_err(|problem| anyhow!(problem))?;
+    let looked = look_now(path, input.meta.clone(), None).map_err(|problem| anyhow!(problem))?;
     let mut mapping = Mapping::from(looked);
     mapping.preview.read_now(&mapping.path, mapping.draft.sidecar());
     session.mapping = Some(Box::new(mapping));
@@ -334,9 +334,9 @@ fn try_another_value(document: &Document, calibration: &mut Calibration) {
 fn diagnose(workspace: &mut Workspace, document: &Document, calibration: &Calibration, diagnosing: &mut Diagnosing) {
     *workspace = Workspace::Diagnose;
     let from = diagnosing.from;
-    match diagnosis_state::ask(&document.recordings, &calibration.choice, from, Progress::default()) {
+    match ask(&document.recordings, &calibration.choice, from, Progress::default()) {
         Ok(answer) => {
-            match diagnosis_state::extend(&document.recordings, &calibration.choice, from, &answer) {
+            match extend(&document.recordings, &calibration.choice, from, &answer) {
                 Ok(worlds) => {
                     diagnosing.replays = refits::replay_forces(&worlds.after, &document.recordings);
                     diagnosing.worlds = Some(Arc::new(worlds));
@@ -353,11 +353,11 @@ fn diagnose(workspace: &mut Workspace, document: &Document, calibration: &Calibr
 fn rehearse(session: &mut Session) -> anyhow::Result<()> {
     diagnose(&mut session.workspace, &session.document, &session.calibration, &mut session.diagnosing);
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
-    let made = experiments::rehearse_now(
+    let made = experiment_state::rehearse_now(
         &session.document.recordings,
         &session.calibration.choice,
         &answer,
-        experiments::ROUNDS,
+        experiment_state::ROUNDS,
         &|_| true,
     );
     session.experiments.shows_plan = true;
@@ -371,8 +371,9 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
     let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
     let first = asked.separates.first().cloned().unwrap_or_default();
-    let guided = experiments::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
-    experimenting::take_guided(
+    let guided =
+        experiment_state::guided_as_if(&session.document.recordings, &session.calibration.choice, &answer, &first);
+    experiment::take_guided(
         &mut session.workspace,
         &mut session.experiments,
         &mut session.training.trainer,
@@ -381,8 +382,8 @@ fn half_done_by_hand(session: &mut Session) -> anyhow::Result<()> {
     );
     let folder = tempfile::tempdir().context("there is no room for temporary files")?;
     session.training.trainer.recordings_folder = Some(folder.path().to_path_buf());
-    guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 8.2);
+    guidance::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, 8.2);
     session.experiments.scratch = Some(folder);
     Ok(())
 }

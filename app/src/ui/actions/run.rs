@@ -5,7 +5,7 @@ use crate::ui::app::App;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::manual_states;
 use crate::ui::calibrate::rule_editing;
-use crate::ui::diagnosing;
+use crate::ui::diagnose::actions;
 use crate::ui::dialogs;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::document::files;
@@ -77,22 +77,12 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::Open(workspace) => session.workspace = *workspace,
         Action::Diagnose => {
             session.workspace = Workspace::Diagnose;
-            diagnosing::diagnose(
-                &session.document,
-                &session.calibration,
-                &mut session.diagnosing,
-                &mut session.jobs,
-                ctx,
-            );
+            actions::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, ctx);
         }
-        Action::Extend => diagnosing::extend_model(
-            &session.document,
-            &session.calibration,
-            &session.diagnosing,
-            &mut session.jobs,
-            ctx,
-        ),
-        Action::Feel => diagnosing::feel(
+        Action::Extend => {
+            actions::extend_model(&session.document, &session.calibration, &session.diagnosing, &mut session.jobs, ctx)
+        }
+        Action::Feel => actions::feel(
             &mut session.workspace,
             &session.diagnosing,
             &mut session.training.trainer,

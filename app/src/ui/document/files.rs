@@ -5,7 +5,7 @@ use crate::report::of_files;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, JobKind, Jobs, no_change};
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::document::state::Document;
 use crate::ui::session::{Session, change};
 use crate::write_whole::write_whole;

@@ -4,7 +4,7 @@ use crate::text::sentence::sentence;
 use crate::ui::background::jobs::{Answer, Jobs, Ticket, no_change};
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosing;
+use crate::ui::diagnose::actions;
 use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::files::{Dialog, SAVE, ask, saved};
 use crate::ui::document::opening;
@@ -62,7 +62,7 @@ fn read_all(project: Project, ticket: &Ticket) -> Answer<Session> {
     }
     change(|session, ctx| {
         opened_project(session, ctx, project, recordings);
-        diagnosing::ask_again(session, ctx);
+        actions::ask_again(session, ctx);
     })
 }
 

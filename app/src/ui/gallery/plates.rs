@@ -1,12 +1,12 @@
 //! Every picture of the gallery, and drawing them all.
 
 use crate::ui::calibrate::panels::{scene, video};
+use crate::ui::diagnose::panels::{causes, residuals};
 use crate::ui::gallery::sample::Sample;
 use crate::ui::gallery::samples::Samples;
 use crate::ui::gallery::small_png::small_png;
 use crate::ui::gallery::walk;
 use crate::ui::panel::{Framing, PAGE, Picture, SCENE};
-use crate::ui::panels::{diagnose, diagnosis};
 use crate::ui::picture_input::PictureInput;
 use crate::ui::scene::layers::SceneLayers;
 use crate::ui::screenshot::{self, pictures};
@@ -61,19 +61,19 @@ pub fn plates() -> Vec<Plate> {
         name: "atlas-blocks".to_owned(),
         sample: Sample::Leaking,
         line: "The same of blocks: a part for every channel that was compared",
-        ..of_picture(&diagnose::ATLAS)
+        ..of_picture(&residuals::ATLAS)
     };
     let of_needle = Plate {
         name: "atlas-needle".to_owned(),
         sample: Sample::Needle,
         line: "The same of a needle: its sheet and its shaft, over depth, speed and time",
-        ..of_picture(&diagnose::ATLAS)
+        ..of_picture(&residuals::ATLAS)
     };
     let of_hinge = Plate {
         name: "experiment-hinge".to_owned(),
         sample: Sample::Hinge,
         line: "What to record next of a mechanism without a handle: rehearsed, and planned for the real one",
-        ..of_picture(&diagnosis::EXPERIMENT)
+        ..of_picture(&causes::EXPERIMENT)
     };
     panels
         .chain([of_blocks, of_needle, of_hinge])

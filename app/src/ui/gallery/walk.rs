@@ -4,7 +4,7 @@
 
 use crate::text::format;
 use crate::ui::app::App;
-use crate::ui::diagnosis_state::EXTEND;
+use crate::ui::diagnose::state::EXTEND;
 use crate::ui::document::opening;
 use crate::ui::kit::theme;
 use crate::ui::message_list::Tone;

@@ -1,9 +1,10 @@
 //! The list of all panels: a new one is added here.
 
 use crate::ui::calibrate::panels::{log, recording, results, scene, segments, sensitivity, video};
+use crate::ui::diagnose::panels::{causes, residuals};
 use crate::ui::panel::Registration;
 use crate::ui::panel_id::PanelId;
-use crate::ui::panels::{device_detail, devices, diagnose, diagnosis};
+use crate::ui::panels::{device_detail, devices};
 use crate::ui::train::panels::{progress, trainer_side, trainer_view};
 use crate::ui::workspace::Workspace;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -20,8 +21,8 @@ pub static PANELS: [&Registration; 14] = [
     &trainer_view::REGISTRATION,
     &trainer_side::REGISTRATION,
     &progress::REGISTRATION,
-    &diagnose::REGISTRATION,
-    &diagnosis::REGISTRATION,
+    &residuals::REGISTRATION,
+    &causes::REGISTRATION,
     &devices::REGISTRATION,
     &device_detail::REGISTRATION,
 ];

@@ -3,7 +3,7 @@
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
 use crate::ui::app::App;
-use crate::ui::checked::{CHECK, Checked, Holds, On, check_now, holds};
+use crate::ui::diagnose::checked::{CHECK, Checked, Holds, On, check_now, holds};
 use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;

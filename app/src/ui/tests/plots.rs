@@ -4,7 +4,7 @@ use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::calibrate::panels::log::LogPanel;
 use crate::ui::calibrate::refits::{analyse, replay_all, replay_forces};
-use crate::ui::diagnosis_state;
+use crate::ui::diagnose::state::extend;
 use crate::ui::document::overlays;
 use crate::ui::document::overlays::ALIGN;
 use crate::ui::document::prepared::Prepared;
@@ -44,8 +44,7 @@ fn extended() -> Session {
     session.workspace = Workspace::Calibrate;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let from = session.diagnosing.from;
-    let worlds = diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer)
-        .expect("extended");
+    let worlds = extend(&session.document.recordings, &session.calibration.choice, from, &answer).expect("extended");
     session.diagnosing.replays = replay_forces(&worlds.after, &session.document.recordings);
     session.diagnosing.worlds = Some(Arc::new(worlds));
     session

@@ -5,7 +5,7 @@ use crate::ui::actions::list::Action;
 use crate::ui::app::App;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::what_if_actions;
-use crate::ui::diagnosis_state::DIAGNOSE;
+use crate::ui::diagnose::state::DIAGNOSE;
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::panel_id::PanelId;

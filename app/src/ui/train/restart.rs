@@ -1,8 +1,8 @@
 //! Starting over in Train, by one key.
 
-use crate::ui::experiments::Experiments;
-use crate::ui::guided;
-use crate::ui::guiding;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::guidance;
+use crate::ui::diagnose::guided_experiment;
 use crate::ui::message_list::{Messages, Tone};
 use crate::ui::train::lessons::practising;
 use crate::ui::train::lessons::state;
@@ -11,8 +11,8 @@ use crate::ui::train::state::Training;
 /// Puts everything in Train back where it started, by one key. What is being done begins anew: an experiment, a try at a lesson; an
 /// attempt that counts is removed, which is said.
 pub fn start_over(experiments: &mut Experiments, training: &mut Training, messages: &mut Messages) {
-    if experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided::Phase::Going(_))) {
-        guiding::begin_experiment(experiments, &mut training.trainer, messages);
+    if experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided_experiment::Phase::Going(_))) {
+        guidance::begin_experiment(experiments, &mut training.trainer, messages);
         messages.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
         return;
     }

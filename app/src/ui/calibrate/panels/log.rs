@@ -9,7 +9,7 @@ use crate::ui::calibrate::panels::transport::transport;
 use crate::ui::calibrate::panels::xy::xy_view;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::calibrate::what_if_actions;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::dialogs;
 use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::files;

@@ -6,7 +6,7 @@ use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::panels::parameters;
 use crate::ui::calibrate::panels::parameters::ParametersPanel;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosing;
+use crate::ui::diagnose::actions;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons;
@@ -247,7 +247,7 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
-                diagnosing::diagnose(
+                actions::diagnose(
                     &session.document,
                     &session.calibration,
                     &mut session.diagnosing,

@@ -4,7 +4,7 @@ use super::pages::Stage;
 use crate::ui::app::App;
 use crate::ui::calibrate::sensitivity_actions;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::dock::name_field::Naming;
 use crate::ui::document::autosave::State;
 use crate::ui::document::overlays;

@@ -3,9 +3,9 @@
 
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::experiments::Experiments;
-use crate::ui::guided::{Guided, Phase};
-use crate::ui::guiding;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::guidance;
+use crate::ui::diagnose::guided_experiment::{Guided, Phase};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -72,11 +72,11 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
     });
     let ctx = ui.ctx().clone();
     if begin {
-        guiding::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
+        guidance::begin_experiment(&mut session.experiments, &mut session.training.trainer, &mut session.messages);
     } else if add {
-        guiding::add_followed(session, &ctx);
+        guidance::add_followed(session, &ctx);
     } else if leave {
-        guiding::leave_experiment(&mut session.experiments, &mut session.training.trainer);
+        guidance::leave_experiment(&mut session.experiments, &mut session.training.trainer);
     }
 }
 

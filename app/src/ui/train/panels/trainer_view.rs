@@ -1,6 +1,6 @@
 //! The virtual world, touched with the mouse.
 
-use crate::ui::experiments::Experiments;
+use crate::ui::diagnose::experiment_state::Experiments;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;

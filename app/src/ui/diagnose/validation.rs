@@ -1,12 +1,12 @@
 //! Checks of a diagnosis on held-out recordings.
 
-use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::checked::{CHECK, Checked, On, check_now};
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::checked::{CHECK, Checked, On, check_now};
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::document::state::Document;
+use crate::ui::session::{Session, change};
 
 /// Checks the answer in the background.
 pub fn check(

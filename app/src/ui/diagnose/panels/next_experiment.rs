@@ -1,20 +1,20 @@
 //! *Record next*: the experiment that would resolve the open question, and three ways to perform it. It can be
 //! simulated, performed by hand in Train, or loaded from a file.
 
-use super::motion_plan;
 use crate::experiment::rehearse::{Outcome, Rehearsal};
 use crate::text::diagnosis_words::{listed, one, small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::diagnosis_state::is_mechanism;
+use crate::ui::diagnose::experiment;
+use crate::ui::diagnose::experiment_state::{REHEARSE, ROUNDS, Stage};
+use crate::ui::diagnose::panels::motion_plan;
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::diagnose::state::is_mechanism;
 use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
-use crate::ui::experimenting;
-use crate::ui::experiments::{REHEARSE, ROUNDS, Stage};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -93,7 +93,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
              objects are simulated: it shows what would come out, and is no measurement."
         );
         if primary_button(ui, !busy, (Icon::Rehearse, words::REHEARSE)).on_hover_text(hint).clicked() {
-            experimenting::rehearse(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
+            experiment::rehearse(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
         }
         if is_driven {
             let hint = words::PLAN_MORE;
@@ -121,11 +121,11 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
         ui.set_max_width(280.0);
         ui.label(theme::caption(ui, words::ON_WHICH));
         if ui.button(words::AS_IT_STANDS).clicked() {
-            experimenting::guide(session, &ctx, Stage::AsItStands);
+            experiment::guide(session, &ctx, Stage::AsItStands);
         }
         for id in &next.separates {
             if ui.button(format!("This one as if it had {}", one(id))).clicked() {
-                experimenting::guide(session, &ctx, Stage::AsIf(id.clone()));
+                experiment::guide(session, &ctx, Stage::AsIf(id.clone()));
             }
         }
     });
@@ -158,7 +158,7 @@ fn rehearsal(
     ui.add(egui::Label::new(theme::caption(ui, summary(&rehearsal, next))).wrap());
     if let Some(k) = add {
         let ctx = ui.ctx().clone();
-        experimenting::add_rehearsed(diagnosing, trainer, messages, jobs, &ctx, k);
+        experiment::add_rehearsed(diagnosing, trainer, messages, jobs, &ctx, k);
     }
 }
 
@@ -224,7 +224,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         }
         let path = session.experiments.path_field.trim().to_owned();
         if entered && !path.is_empty() {
-            experimenting::add_experiment(session, &ctx, &PathBuf::from(path));
+            experiment::add_experiment(session, &ctx, &PathBuf::from(path));
         }
     });
 }
@@ -240,7 +240,7 @@ pub fn settled(ui: &mut Ui, document: &Document, diagnosis: &Findings) {
             }
         });
     }
-    let simulated = experimenting::simulated(document);
+    let simulated = experiment::simulated(document);
     if !simulated.is_empty() {
         plain_card(ui, words::NOT_MEASURED, |ui| {
             let text = format!(

@@ -1,12 +1,12 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
-use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::refits::replay_forces;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
+use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::document::state::Document;
 use crate::ui::message_list::Messages;
+use crate::ui::session::{Session, change};
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::world_choice::{Compare, WorldChoice};
 use crate::ui::workspace::Workspace;

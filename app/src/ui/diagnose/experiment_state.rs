@@ -1,12 +1,12 @@
 //! The experiment that a diagnosis asks for: rehearsed on simulated objects, or prepared for a person.
 
-use super::guided::Guided;
 use crate::experiment::like::Like;
 use crate::experiment::rehearse::{Rehearsal, rehearse};
 use crate::experiment::timetable::Timetable;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, options, plain, reachable};
+use crate::ui::diagnose::guided_experiment::Guided;
+use crate::ui::diagnose::state::{Answer, DIAGNOSE, options, plain, reachable};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use estimator::diagnose::{self, Progress, Suspect};

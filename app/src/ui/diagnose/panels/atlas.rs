@@ -4,8 +4,8 @@
 use crate::text::diagnosis_words::{listed, title};
 use crate::text::format::{self, capitalised};
 use crate::text::sentence::sentence;
-use crate::ui::atlas::{Cell, Line, Scale, Sheet};
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::atlas_sheet::{Cell, Line, Scale, Sheet};
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};

@@ -1,7 +1,5 @@
 //! The experiment that a diagnosis asks for: rehearsed on simulated objects, done by a person in Train, or loaded from a file.
 
-use super::guided::Guided;
-use super::session::{Session, change};
 use crate::experiment::motion_plan::MotionPlan;
 use crate::experiment::rehearse::Rehearsal;
 use crate::experiment::simulated::simulated_object;
@@ -10,14 +8,16 @@ use crate::text::file_name::name_of;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::background::jobs::no_change;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::experiment_state::{
+    Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
+};
+use crate::ui::diagnose::guided_experiment::Guided;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::document::files::{SAVE, saved};
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
-use crate::ui::experiments::{
-    Experiments, GUIDE, REHEARSE, ROUNDS, Stage, free_path, guided_as_if, rehearse_now, write,
-};
 use crate::ui::message_list::{Messages, Tone};
+use crate::ui::session::{Session, change};
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::workspace::Workspace;
 use haptics::law::Coordinate;

@@ -1,12 +1,12 @@
 //! A diagnosis as far as it has come, and the questions that it answers.
 
-use super::atlas::Sheet;
 use crate::experiment::rehearse::Rehearsal;
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
 use crate::ui::calibrate::replayed::Replayed;
-use crate::ui::checked::Checked;
+use crate::ui::diagnose::atlas_sheet::Sheet;
+use crate::ui::diagnose::checked::Checked;
 use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;

@@ -3,7 +3,7 @@
 use crate::text::file_name::name_of;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::JobKind;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, options, plain};
+use crate::ui::diagnose::state::{Answer, DIAGNOSE, options, plain};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use estimator::diagnose::{self, Findings, Options, Progress, Validation};

@@ -1,10 +1,10 @@
 //! Deficits of the base model as curves: measured and modelled force, and the residual against each candidate variable.
 
-use crate::ui::atlas::Sheet;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosing;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
+use crate::ui::diagnose::actions;
+use crate::ui::diagnose::atlas_sheet::Sheet;
+use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
 use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
@@ -154,7 +154,7 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
             start_from(ui, &session.document, &session.calibration, &mut session.diagnosing);
             if ui.link(words::AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
-                diagnosing::diagnose(
+                actions::diagnose(
                     &session.document,
                     &session.calibration,
                     &mut session.diagnosing,
@@ -185,19 +185,19 @@ fn begin(
     start_from(ui, document, calibration, diagnosing);
     if primary_button(ui, true, (Icon::Diagnose, words::BEGIN)).clicked() {
         let ctx = ui.ctx().clone();
-        diagnosing::diagnose(document, calibration, diagnosing, jobs, &ctx);
+        actions::diagnose(document, calibration, diagnosing, jobs, &ctx);
     }
 }
 
 /// Draws the chooser of a mechanism's base model; true if the choice changed.
-pub(super) fn start_from(
+pub(crate) fn start_from(
     ui: &mut Ui,
     document: &Document,
     calibration: &Calibration,
     diagnosing: &mut Diagnosing,
 ) -> bool {
     let task = calibration.choice.task;
-    let mechanism = document.prepared().is_some_and(|p| crate::ui::diagnosis_state::is_mechanism(&p.recording, task));
+    let mechanism = document.prepared().is_some_and(|p| crate::ui::diagnose::state::is_mechanism(&p.recording, task));
     if !mechanism {
         return false;
     }
@@ -240,7 +240,7 @@ fn suspects(
     let text = words::ATLAS_MORE;
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     ui.add_space(space::XS);
-    super::atlas::show(ui, diagnosing, sheet, &answer.diagnosis);
+    crate::ui::diagnose::panels::atlas::show(ui, diagnosing, sheet, &answer.diagnosis);
 }
 
 /// Draws the switch between curves and atlas.

@@ -1,13 +1,13 @@
 //! Answer of a diagnosis, beside its curves: the verdict, the causes, the extended model, the next experiment.
 
-use super::{causes, check, diagnose, next_experiment, why_not};
 use crate::text::diagnosis_words::{compared_unit, headline, residual_unit, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnosing;
-use crate::ui::diagnosis_state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
+use crate::ui::diagnose::actions;
+use crate::ui::diagnose::panels::{cause_card, next_experiment, residuals, validation, why_not};
+use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
 use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
@@ -83,10 +83,10 @@ impl Panel for DiagnosisPanel {
             next_experiment::card(ui, session, &answer.diagnosis);
             extension(ui, session, &answer);
             for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
-                causes::cause(ui, k + 1, cause, &answer.diagnosis);
+                cause_card::cause(ui, k + 1, cause, &answer.diagnosis);
             }
             by_state(ui, &answer.diagnosis);
-            check::card(
+            validation::card(
                 ui,
                 &session.document,
                 &session.calibration,
@@ -125,7 +125,7 @@ fn verdict(
         |ui| {
             ui.add(egui::Label::new(theme::strong(headline(d))).wrap());
             ui.add_space(space::XS);
-            changed = diagnose::start_from(ui, document, calibration, diagnosing);
+            changed = residuals::start_from(ui, document, calibration, diagnosing);
             let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
             let unit = &compared_unit(d);
             level(ui, words::MODEL, d.baseline.heldout_rms_n, most, unit, inks.model);
@@ -138,7 +138,7 @@ fn verdict(
     );
     if again || changed {
         let ctx = ui.ctx().clone();
-        diagnosing::diagnose(document, calibration, diagnosing, jobs, &ctx);
+        actions::diagnose(document, calibration, diagnosing, jobs, &ctx);
     }
 }
 
@@ -211,7 +211,7 @@ fn level(ui: &mut Ui, label: &str, value: f64, most: f64, unit: &str, color: Col
 }
 
 fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
-    let plant = answer.diagnosis.causes.iter().any(causes::changes_the_world);
+    let plant = answer.diagnosis.causes.iter().any(cause_card::changes_the_world);
     if !plant {
         return;
     }
@@ -227,7 +227,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             ui.horizontal(|ui| {
                 if primary_button(ui, !busy, (Icon::Extend, words::EXTEND_THE_MODEL)).clicked() {
                     let ctx = ui.ctx().clone();
-                    diagnosing::extend_model(
+                    actions::extend_model(
                         &session.document,
                         &session.calibration,
                         &session.diagnosing,
@@ -266,13 +266,13 @@ fn before_after(ui: &mut Ui, d: &Findings) {
 }
 
 fn feel(ui: &mut Ui, session: &mut Session) {
-    let comparison = diagnosing::comparison(&session.diagnosing);
+    let comparison = actions::comparison(&session.diagnosing);
     ui.horizontal(|ui| {
         if primary_button(ui, comparison.is_ok(), (Icon::Feel, words::FEEL_IT_IN_TRAIN))
             .on_hover_text(words::FEEL_IT_IN_TRAIN_MORE)
             .clicked()
         {
-            diagnosing::feel(
+            actions::feel(
                 &mut session.workspace,
                 &session.diagnosing,
                 &mut session.training.trainer,
@@ -302,7 +302,8 @@ fn hidden(ui: &mut Ui, diagnosis: &Findings) {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
                 for hidden in &diagnosis.not_excited {
-                    causes::chip(ui, &title(&hidden.id), palette(ui).secondary).on_hover_text(sentence(&hidden.why));
+                    cause_card::chip(ui, &title(&hidden.id), palette(ui).secondary)
+                        .on_hover_text(sentence(&hidden.why));
                 }
             });
             ui.label(theme::caption(ui, words::THEY_ARE_NOT));

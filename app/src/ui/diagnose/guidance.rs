@@ -1,11 +1,11 @@
 //! Doing an experiment in Train: beginning, watching, ending it.
 
-use super::session::{Session, change};
 use crate::ui::background::jobs::Jobs;
-use crate::ui::experimenting;
-use crate::ui::experiments::Experiments;
-use crate::ui::guided::Phase;
+use crate::ui::diagnose::experiment;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::guided_experiment::Phase;
 use crate::ui::message_list::Messages;
+use crate::ui::session::{Session, change};
 use crate::ui::train::recorder::RECORD;
 use crate::ui::train::trainer::live::Trainer;
 use std::path::PathBuf;
@@ -89,6 +89,6 @@ pub fn follow_rings(experiments: &Experiments, trainer: &mut Trainer, seconds: f
 pub fn add_followed(session: &mut Session, ctx: &egui::Context) {
     let Some(guided) = session.experiments.guided.take() else { return };
     if let Phase::Recorded(path) = guided.phase {
-        experimenting::add_experiment(session, ctx, &path);
+        experiment::add_experiment(session, ctx, &path);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::experiment::motion_plan::MotionPlan;
 use crate::text::format;
-use crate::ui::experimenting;
+use crate::ui::diagnose::experiment;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::palette;
@@ -41,13 +41,13 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = if experimenting::path_of_tool(&session.document, &session.calibration).is_some() {
+    let hint = if experiment::path_of_tool(&session.document, &session.calibration).is_some() {
         words::SAVE_TOOL_MORE
     } else {
         words::SAVE_COORDINATE_MORE
     };
     if ui.button((Icon::Save, words::SAVE_THE_PLAN)).on_hover_text(hint).clicked() {
-        experimenting::save_motion_plan(session, &ctx, &plan, coordinate);
+        experiment::save_motion_plan(session, &ctx, &plan, coordinate);
     }
 }
 

@@ -4,9 +4,9 @@ use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::checked::{CHECK, Checked, Holds, On, holds};
-use crate::ui::checking;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::checked::{CHECK, Checked, Holds, On, holds};
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::diagnose::validation;
 use crate::ui::dialogs;
 use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
@@ -84,7 +84,7 @@ fn ask(
         }
         let path = diagnosing.check_field.trim().to_owned();
         if entered && !path.is_empty() {
-            checking::check(document, calibration, diagnosing, jobs, &ctx, On::Files(vec![PathBuf::from(path)]));
+            validation::check(document, calibration, diagnosing, jobs, &ctx, On::Files(vec![PathBuf::from(path)]));
         }
     });
 }
@@ -113,7 +113,7 @@ fn left_out(
     .on_hover_text(words::LEAVE_ONE_OUT_MORE);
     if let Some(k) = chosen {
         let ctx = ui.ctx().clone();
-        checking::check(document, calibration, diagnosing, jobs, &ctx, On::LeftOut(k));
+        validation::check(document, calibration, diagnosing, jobs, &ctx, On::LeftOut(k));
     }
 }
 

@@ -36,7 +36,7 @@ pub fn changes_the_world(cause: &Cause) -> bool {
 }
 
 /// Draws the card; `rank` counts from one.
-pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Findings) {
+pub(crate) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Findings) {
     let p = palette(ui);
     let chance = format!("{} %", format::number(100.0 * cause.posterior, 0));
     let trailing = |ui: &mut Ui| {
@@ -157,7 +157,7 @@ fn alternative(ui: &mut Ui, other: &Alternative) {
 const CORNER: f32 = 9.0;
 
 /// Draws a small outlined label.
-pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
+pub(crate) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
     const AROUND: Vec2 = vec2(7.0, 4.0);
     let (fill, rim) = (palette(ui).sunken, palette(ui).border);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), color);

@@ -3,7 +3,7 @@
 use crate::text::diagnosis_words::{small, title};
 use crate::text::format;
 use crate::text::sentence::sentence;
-use crate::ui::diagnosis_state::Diagnosing;
+use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{bar, compact, plain_card};
