@@ -12,8 +12,7 @@ pub mod background;
 pub mod calibrate;
 pub mod column_mapping;
 pub mod command_palette;
-#[cfg(test)]
-mod device_tests;
+pub mod devices;
 pub mod diagnose;
 pub mod dialogs;
 pub mod dock;

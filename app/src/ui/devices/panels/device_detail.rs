@@ -123,7 +123,7 @@ fn abilities(ui: &mut Ui, trainer: &mut Trainer, messages: &mut Messages, spec: 
 /// Draws the live values of the device and its timing.
 fn values(ui: &mut Ui, trainer: &Trainer) {
     live(ui, trainer);
-    super::answers::answers(ui, trainer);
+    crate::ui::devices::panels::device_log::answers(ui, trainer);
     trainer_timing::timing(ui, trainer);
 }
 

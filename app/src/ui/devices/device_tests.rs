@@ -1,9 +1,9 @@
 //! The devices page and the devices behind the trainer, without a window.
 
-use super::app::App;
-use super::session::Session;
+use crate::ui::app::App;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
+use crate::ui::session::Session;
 use crate::ui::tests::picture;
 use crate::ui::train::trainer::hand::{HandDevice, Steering};
 use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
@@ -260,7 +260,7 @@ fn the_page_fits_small_windows() {
 fn answers_of_boards_are_told_by_reason() {
     use crate::boards::Answers;
     let both = [Answers { asked: 3000, faults: [3, 0, 0] }, Answers { asked: 3000, faults: [0, 900, 20] }];
-    let show = move |ui: &mut egui::Ui, (): &mut ()| super::panels::answers::boards(ui, both);
+    let show = move |ui: &mut egui::Ui, (): &mut ()| crate::ui::devices::panels::device_log::boards(ui, both);
     let mut harness = Harness::builder().with_context_setup(theme::install).build_ui_state(show, ());
     harness.run_steps(2);
     for part in ["Left: 3 of 3000", "900 with the wrong id", "20 where no hand can be", "Check its cable"] {
@@ -272,7 +272,7 @@ fn answers_of_boards_are_told_by_reason() {
 fn a_board_whose_cable_was_pulled_is_set_up_when_a_person_says_that_its_arm_rests() {
     let tallies = [haptics::device::haply::Tally::default(), haptics::device::haply::Tally::default()];
     let shown = tallies.clone();
-    let show = move |ui: &mut egui::Ui, (): &mut ()| super::panels::answers::unplugged(ui, &shown);
+    let show = move |ui: &mut egui::Ui, (): &mut ()| crate::ui::devices::panels::device_log::unplugged(ui, &shown);
     let mut harness = Harness::builder().with_context_setup(theme::install).build_ui_state(show, ());
     harness.run_steps(2);
     let (card, button) = ("A cable was pulled", "The arm rests: set it up");

@@ -1,6 +1,6 @@
 //! The devices page, left column: settings of a remote device.
 
-use super::devices::{Choice, row};
+use crate::ui::devices::panels::devices::{Choice, row};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
@@ -50,7 +50,7 @@ pub struct RemoteCard {
 
 impl RemoteCard {
     /// Draws the card. Returns the choice when the device was requested.
-    pub(super) fn ui(&mut self, ui: &mut Ui, trainer: &mut Trainer) -> Option<Choice> {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, trainer: &mut Trainer) -> Option<Choice> {
         let mut chosen = None;
         plain_card(ui, words::OVER_THE_NETWORK, |ui| {
             fields(ui, &mut trainer.settings.remote);

@@ -1,6 +1,6 @@
 //! The devices page, left column: all devices for the fingers, one per line, to choose from.
 
-use super::remote::RemoteCard;
+use crate::ui::devices::panels::remote::RemoteCard;
 use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -52,7 +52,7 @@ pub struct DeviceList {
 
 /// Request of a click.
 #[derive(Clone, PartialEq)]
-pub(super) enum Choice {
+pub(crate) enum Choice {
     Hand(HandDevice),
     Scripted,
 }
@@ -124,7 +124,7 @@ impl DeviceList {
 }
 
 /// Draws one device as a clickable line. Returns its choice when it was clicked.
-pub(super) fn row(ui: &mut Ui, trainer: &Trainer, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
+pub(crate) fn row(ui: &mut Ui, trainer: &Trainer, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
     let (title, sentence) = match &choice {
         Choice::Hand(hand) => (hand.title(), hand.sentence()),
