@@ -25,7 +25,7 @@ mod stated;
 pub mod table;
 
 use crate::tasks::Chosen;
-use crate::ui::run;
+use crate::ui::shell::run;
 use clap::{Args, Parser, Subcommand};
 use estimator::log::{LogError, Watch};
 use haptics::device::haply::farewell;

@@ -1,6 +1,6 @@
 //! A window that closes once its first picture stands: what `touchstone bench` measures the start by.
 
-use super::app::App;
+use crate::ui::shell::app::App;
 use std::io::Write as _;
 
 /// Said on standard output when the picture stands.

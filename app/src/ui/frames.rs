@@ -1,8 +1,6 @@
 //! Processor time of a picture: layout of a panel, and tessellation of its shapes. The work of the graphics card is not
 //! included.
 
-use super::app::App;
-use super::panel::Picture;
 use super::screenshot::{self, contents};
 use super::session::Session;
 use crate::ui::calibrate::panels::{log, parameters, results, scene, segments};
@@ -13,8 +11,10 @@ use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::plots::choices::LogView;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel::Picture;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::{Clock, Operator};
-use crate::ui::workspace::Workspace;
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};
 use estimator::diagnose::{Progress, Worlds};

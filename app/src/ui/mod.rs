@@ -6,41 +6,23 @@
 //! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes, [`icons`] for icons.
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
-pub mod actions;
-pub mod app;
 pub mod background;
 pub mod calibrate;
 pub mod column_mapping;
-pub mod command_palette;
 pub mod devices;
 pub mod diagnose;
-pub mod dialogs;
-pub mod dock;
 pub mod document;
 pub mod first_picture;
-pub mod follow;
 pub mod frames;
 pub mod gallery;
-pub mod keys;
 pub mod kit;
-pub mod menu;
-pub mod message_list;
-pub mod messages;
-pub mod palette;
-pub mod panel;
-pub mod panel_id;
-pub mod panels;
 pub mod picture_input;
 pub mod plots;
-pub mod run;
 pub mod scene;
 pub mod screenshot;
 pub mod session;
+pub mod shell;
 pub mod stage;
 #[cfg(test)]
 mod tests;
-pub mod tour;
-pub mod tour_progress;
 pub mod train;
-pub mod window;
-pub mod workspace;

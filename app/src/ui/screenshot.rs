@@ -1,17 +1,17 @@
 //! Panels and pages drawn without a window: for the command line, reports and tests.
 
-use super::app::App;
 use super::gallery::sample::Sample;
-use super::panel::{Framing, PAGE, Picture};
-use super::panels::list;
 use super::picture_input::PictureInput;
 use super::session::Session;
 use super::stage;
-use super::workspace::Workspace;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::scene::callback;
 use crate::ui::scene::view;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel::{Framing, PAGE, Picture};
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Clock;
 use anyhow::{Context as _, anyhow};
 use clap::ValueEnum;
@@ -152,7 +152,7 @@ static PAGES: [&Picture; 13] = [
 ];
 
 static ALL: LazyLock<Vec<PictureName>> = LazyLock::new(|| {
-    let of_panels = list::PANELS.iter().flat_map(|panel| panel.pictures.iter().copied());
+    let of_panels = panel_list::PANELS.iter().flat_map(|panel| panel.pictures.iter().copied());
     let mut all: Vec<PictureName> = of_panels.chain(PAGES).map(PictureName).collect();
     all.sort_by_key(|PictureName(picture)| picture.place);
     all

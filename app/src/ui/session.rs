@@ -11,14 +11,14 @@ use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::choices::PlotChoices;
 
-use super::message_list::Messages;
-use super::panel_id::PanelId;
-use super::workspace::Workspace;
 use crate::tasks::Chosen;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo::Undo;
 use crate::ui::document::videos::Videos;
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::state::Training;
 use std::sync::Arc;
 

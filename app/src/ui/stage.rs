@@ -1,11 +1,9 @@
 //! Sessions with everything computed, for pictures.
 
 use super::gallery::practice::practice as attempts;
-use super::panel_id::PanelId;
 use super::picture_input::PictureInput;
 use super::plots::choices::XyAxis;
 use super::session::Session;
-use super::workspace::Workspace;
 use crate::history::keeper::History;
 use crate::ui::calibrate::refits;
 use crate::ui::calibrate::rule_editing;
@@ -25,6 +23,8 @@ use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::pointer;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::trainer::live::{Clock, Operator, Trainer};

@@ -8,8 +8,8 @@ use crate::ui::calibrate::rules::Rules;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::files::{SAVE, saved};
 use crate::ui::document::state::Document;
-use crate::ui::message_list::Messages;
 use crate::ui::session::Session;
+use crate::ui::shell::message_list::Messages;
 use estimator::segment::library;
 use std::sync::Arc;
 

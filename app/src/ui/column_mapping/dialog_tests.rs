@@ -1,12 +1,12 @@
 //! The dialog driven by clicks: a foreign table becomes a fitted recording, Cancel changes nothing.
 
-use crate::ui::app::App;
 use crate::ui::column_mapping::draft::Role;
 use crate::ui::document::opening;
 use crate::ui::kit::theme;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Clock;
-use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::fmt::Write as _;

@@ -1,13 +1,13 @@
 //! The devices page and the devices behind the trainer, without a window.
 
-use crate::ui::app::App;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
 use crate::ui::train::trainer::hand::{HandDevice, Steering};
 use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
-use crate::ui::workspace::Workspace;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::Vec2;

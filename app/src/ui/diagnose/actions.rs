@@ -5,11 +5,11 @@ use crate::ui::calibrate::refits::replay_forces;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, EXTEND, SIMULATE_EXTENDED, ask, extend, reachable};
 use crate::ui::document::state::Document;
-use crate::ui::message_list::Messages;
 use crate::ui::session::{Session, change};
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::world_choice::{Compare, WorldChoice};
-use crate::ui::workspace::Workspace;
 use estimator::diagnose::{Progress, Worlds};
 use std::sync::Arc;
 

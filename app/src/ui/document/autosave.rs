@@ -2,11 +2,11 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
-use crate::ui::dock::arrangement::Dock;
 use crate::ui::document::project::Project;
 use crate::ui::document::project_files::project_of;
 use crate::ui::document::recent::Recent;
 use crate::ui::session::Session;
+use crate::ui::shell::dock::arrangement::Dock;
 use crate::ui::train::assistant::state::Assistant;
 use crate::ui::train::comfort::Comfort;
 use crate::write_whole::write_whole;
@@ -164,7 +164,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
 mod tests {
     use super::*;
     use crate::ui::document::project::Source;
-    use crate::ui::workspace::Workspace;
+    use crate::ui::shell::workspace::Workspace;
 
     fn wait_for(path: &Path) -> State {
         let begun = Instant::now();

@@ -3,7 +3,7 @@
 use crate::text::sentence::sentence;
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::plots::choices::KeptChoices;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::workspace::Workspace;
 use crate::video::reading::VideoSource;
 use crate::write_whole::write_whole;
 use serde::{Deserialize, Serialize};

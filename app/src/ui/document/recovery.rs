@@ -1,11 +1,11 @@
 //! At the start: what a killed program had open is offered; layout and recent files come back by themselves.
 
 use crate::text::file_name::name_of;
-use crate::ui::app::App;
 use crate::ui::document::autosave::Autosave;
 use crate::ui::document::project_files;
-use crate::ui::message_list::Tone;
-use crate::ui::messages;
+use crate::ui::shell::app::App;
+use crate::ui::shell::message_list::Tone;
+use crate::ui::shell::messages;
 use egui::Ui;
 use std::path::Path;
 

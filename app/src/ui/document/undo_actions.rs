@@ -4,8 +4,8 @@ use crate::ui::calibrate::manual_states;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo::{Undoable, difference};
-use crate::ui::message_list::{Messages, Tone};
 use crate::ui::plots::choices::PlotChoices;
+use crate::ui::shell::message_list::{Messages, Tone};
 
 /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
 pub fn note_changes(document: &mut Document, calibration: &Calibration, plots: &PlotChoices, now_s: f64, held: bool) {

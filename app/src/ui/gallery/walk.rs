@@ -3,16 +3,16 @@
 //! checked and can be drawn.
 
 use crate::text::format;
-use crate::ui::app::App;
 use crate::ui::diagnose::state::EXTEND;
 use crate::ui::document::opening;
 use crate::ui::kit::theme;
-use crate::ui::message_list::Tone;
 use crate::ui::scene::callback;
 use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::message_list::Tone;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Clock;
-use crate::ui::workspace::Workspace;
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
 use egui::{Event, Key, Modifiers, Pos2, Role, pos2};

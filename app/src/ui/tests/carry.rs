@@ -2,13 +2,13 @@
 
 use super::experiment::{asked_about, pair, quiet, settled};
 use super::until;
-use crate::ui::app::App;
 use crate::ui::diagnose::experiment_state::REHEARSE;
 use crate::ui::diagnose::guidance;
 use crate::ui::diagnose::guided_experiment::Phase;
 use crate::ui::gallery::samples::{leaking, leaking_world};
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -1,19 +1,19 @@
 //! The Diagnose workspace: what it asks for, what it answers, the extended model and how it is felt.
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
-use crate::ui::app::App;
 use crate::ui::diagnose::actions;
 use crate::ui::diagnose::state::StartFrom;
 use crate::ui::diagnose::state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
 use crate::ui::diagnose::state::{ask, extend};
-use crate::ui::follow;
 use crate::ui::kit::theme;
 use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
 use crate::ui::train::trainer::live::Operator;
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::workspace::Workspace;
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -157,8 +157,12 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     session.workspace = Workspace::Calibrate;
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
-        crate::ui::panel::Panel::ui(&mut crate::ui::calibrate::panels::results::ResultsPanel::default(), ui, session);
+        dispatch::poll(session, &ctx);
+        crate::ui::shell::panel::Panel::ui(
+            &mut crate::ui::calibrate::panels::results::ResultsPanel::default(),
+            ui,
+            session,
+        );
     });
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);

@@ -2,7 +2,6 @@
 
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
-use crate::ui::app::App;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::diagnose::experiment;
 use crate::ui::diagnose::experiment_state::REHEARSE;
@@ -11,9 +10,10 @@ use crate::ui::diagnose::guided_experiment::Phase;
 use crate::ui::document::opening;
 use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Clock;
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -1,15 +1,15 @@
 //! Lessons as a trainee goes through them: shown, practised, tested, told what to do better.
 
 use super::{in_train, train_window, until};
-use crate::ui::app::App;
-use crate::ui::message_list::Messages;
+use crate::ui::shell::app::App;
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::pointer;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::lessons::state::{Debrief, Phase};
 use crate::ui::train::state::Training;
 use crate::ui::train::trainees;
 use crate::ui::train::trainer::live::Operator;
-use crate::ui::workspace::Workspace;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

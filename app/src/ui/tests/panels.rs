@@ -6,12 +6,12 @@ use crate::ui::calibrate::panels::parameters::ParametersPanel;
 use crate::ui::calibrate::panels::recording::RecordingPanel;
 use crate::ui::calibrate::panels::results::ResultsPanel;
 use crate::ui::calibrate::refits::FIT;
-use crate::ui::follow;
 use crate::ui::kit::theme;
-use crate::ui::panel::Panel;
-use crate::ui::panels::list::PANELS;
 use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel;
+use crate::ui::shell::panel_list::PANELS;
 use crate::ui::tests::picture;
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
@@ -52,7 +52,7 @@ fn refit_starts_a_job_and_brings_a_fit() {
     session.calibration.analysis = None;
     let mut harness = harness(session, [300.0, 800.0], |ui, session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         RecordingPanel::default().ui(ui, session);
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();

@@ -8,14 +8,14 @@ use crate::ui::diagnose::state::extend;
 use crate::ui::document::overlays;
 use crate::ui::document::overlays::ALIGN;
 use crate::ui::document::prepared::Prepared;
-use crate::ui::follow;
 use crate::ui::kit::theme;
-use crate::ui::panel::Panel as _;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
 use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel as _;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
-use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -28,7 +28,7 @@ pub fn log<'a>(session: Session) -> Harness<'a, Session> {
     let mut panel = LogPanel::default();
     harness(session, [1000.0, 640.0], move |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         panel.ui(ui, session);
     })
 }

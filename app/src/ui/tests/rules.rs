@@ -6,9 +6,9 @@ use crate::ui::calibrate::refits::SEGMENT;
 use crate::ui::calibrate::rule_editing;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::follow;
-use crate::ui::panel::Panel as _;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel as _;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
@@ -17,7 +17,7 @@ fn open(mut session: Session) -> Harness<'static, Session> {
     session.calibration.rules = rule_editing::open(&session.document, &session.calibration, &mut session.messages);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         RulesPanel.ui(ui, session);
     })
 }

@@ -2,8 +2,8 @@
 
 use super::{empty, harness, until_quiet};
 use crate::operator;
-use crate::ui::app::App;
 use crate::ui::document::opening;
+use crate::ui::shell::app::App;
 use crate::ui::train::trainer::control::USUAL_CONTROL_N_S_M;
 use crate::ui::train::trainer::live::Operator;
 use crate::ui::train::trainer::task::task_hint;

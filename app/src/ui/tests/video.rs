@@ -1,14 +1,14 @@
 //! The video of the hand beside a recording, used as a person does.
 
 use super::{STACK, clockless_path, empty, harness, session, until};
-use crate::ui::app::App;
 use crate::ui::document::opening;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::video_actions;
 use crate::ui::document::videos::State;
-use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
 use egui::Role;
 use egui_kittest::Harness;

@@ -1,15 +1,15 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
-use crate::ui::actions::list::Action;
-use crate::ui::app::App;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::what_if_actions;
 use crate::ui::diagnose::state::DIAGNOSE;
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
-use crate::ui::panel_id::PanelId;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -247,7 +247,7 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     let mut app = App::new(empty());
     app.keep(&state, true);
     assert!(app.tour.is_on(), "the first start shows around");
-    app.tour = crate::ui::tour_progress::Tour::default();
+    app.tour = crate::ui::shell::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
     let session = &mut first.state_mut().session;

@@ -3,7 +3,7 @@
 use crate::ui::diagnose::experiment_state::Experiments;
 use crate::ui::diagnose::guidance;
 use crate::ui::diagnose::guided_experiment;
-use crate::ui::message_list::{Messages, Tone};
+use crate::ui::shell::message_list::{Messages, Tone};
 use crate::ui::train::lessons::practising;
 use crate::ui::train::lessons::state;
 use crate::ui::train::state::Training;

@@ -3,7 +3,7 @@
 use crate::history::attempt::Attempt;
 use crate::history::keeper::{Answer, History};
 use crate::history::store::Query;
-use crate::ui::message_list::{Messages, Tone};
+use crate::ui::shell::message_list::{Messages, Tone};
 use crate::ui::train::learning::{AHEAD, Learned, Learning, POINTS};
 use estimator::training::progress::{self, LearningCurve, Try};
 use std::path::PathBuf;

@@ -14,11 +14,11 @@ use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space, state_color};
 use crate::ui::kit::widgets::{card, compact, empty_state, swatch};
-use crate::ui::panel::{Framing, PANEL, Panel, Picture, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::shell::panel::{Framing, PANEL, Panel, Picture, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::stage;
-use crate::ui::workspace::Workspace;
 use egui::{
     Align, Align2, FontId, Layout, Pos2, Rangef, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, vec2,
 };

@@ -10,11 +10,11 @@ use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};
 use crate::ui::kit::widgets::{bar, compact, empty_state, plain_card, remark};
-use crate::ui::panel::{COLUMN, Framing, Panel, Picture, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::shell::panel::{COLUMN, Framing, Panel, Picture, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::stage;
-use crate::ui::workspace::Workspace;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_tiles::ContainerKind;
 

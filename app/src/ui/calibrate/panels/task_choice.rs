@@ -9,7 +9,7 @@ use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::call;
-use crate::ui::message_list::Messages;
+use crate::ui::shell::message_list::Messages;
 use egui::{ComboBox, Ui};
 use estimator::segment::definition::{Definition, SIDECAR_KEY};
 use estimator::segment::library;

@@ -3,7 +3,6 @@
 use crate::text::file_name::name_of;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
@@ -13,11 +12,12 @@ use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
-use crate::ui::panel::{Framing, PAGE, Panel, Picture, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::shell::dialogs;
+use crate::ui::shell::panel::{Framing, PAGE, Panel, Picture, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::stage;
-use crate::ui::workspace::Workspace;
 use crate::video::reading::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,

@@ -5,7 +5,6 @@ use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnose::actions;
 use crate::ui::diagnose::atlas_sheet::Sheet;
 use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
-use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
 use crate::ui::gallery::sample::Sample;
@@ -13,13 +12,14 @@ use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{compact, empty_state, primary_button, segmented, sheet};
-use crate::ui::panel::{Framing, Panel, Picture, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::plots::residual_plot::{cloud_plot, force_plot, has_directions, inks};
 use crate::ui::plots::residuals::{Cloud, Residuals};
 use crate::ui::session::Session;
+use crate::ui::shell::dialogs;
+use crate::ui::shell::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::stage;
-use crate::ui::workspace::Workspace;
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

@@ -3,15 +3,15 @@
 use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::message_list::Messages;
 use crate::ui::session::{Session, change};
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::kept;
 use crate::ui::train::lessons::state::{Debrief, EXPERT, GRADE, Lessons, Open, Phase, grade_file};
 use crate::ui::train::lessons::trace;
 use crate::ui::train::lessons::trace::Trace;
 use crate::ui::train::state::Training;
 use crate::ui::train::trainer::live::{Operator, Sensors};
-use crate::ui::workspace::Workspace;
 use estimator::training::lesson::{Lesson, attempt, expert, practise};
 use haptics::recording::Meta;
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{card_with_head, compact, key_hint, segmented};
-use crate::ui::message_list::Messages;
+use crate::ui::shell::message_list::Messages;
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui::{Align, Key, Layout, Ui};

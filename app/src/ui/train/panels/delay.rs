@@ -3,7 +3,7 @@
 use crate::text::format::{number, with_error};
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{card_with_head, fact, segmented};
-use crate::ui::message_list::Messages;
+use crate::ui::shell::message_list::Messages;
 use crate::ui::train::trainer::live::Trainer;
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};

@@ -4,7 +4,7 @@ use crate::text::format::number;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{card, fact, remark};
-use crate::ui::message_list::Messages;
+use crate::ui::shell::message_list::Messages;
 use crate::ui::train::trainer::control::USUAL_CONTROL_N_S_M;
 use crate::ui::train::trainer::live::Trainer;
 use egui::{Align, Layout, Ui};

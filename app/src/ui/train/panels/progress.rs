@@ -3,21 +3,21 @@
 use crate::history::attempt::Attempt;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};
 use crate::ui::kit::widgets::{call, compact, empty_state, plain_card};
-use crate::ui::panel::{Framing, Panel, Picture, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::plots::axes::{decimals, marks};
 use crate::ui::plots::residual_plot::inks;
 use crate::ui::session::Session;
+use crate::ui::shell::dialogs;
+use crate::ui::shell::panel::{Framing, Panel, Picture, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::stage;
 use crate::ui::train::learning::{Learned, Learning, Practised};
-use crate::ui::workspace::Workspace;
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
     TextEdit, Ui, pos2, vec2,

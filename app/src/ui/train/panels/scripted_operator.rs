@@ -3,7 +3,7 @@
 use crate::operator;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{call, compact};
-use crate::ui::message_list::Messages;
+use crate::ui::shell::message_list::Messages;
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::script::Script;
 use egui::{Align, ComboBox, Layout, Ui};

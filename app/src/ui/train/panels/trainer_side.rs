@@ -3,23 +3,23 @@
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::dialogs;
 use crate::ui::document::files;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, role, space};
 use crate::ui::kit::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
-use crate::ui::message_list::Messages;
-use crate::ui::panel::{Panel, Registration};
-use crate::ui::panel_id::PanelId;
 use crate::ui::session::Session;
+use crate::ui::shell::dialogs;
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::panel::{Panel, Registration};
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::panels::legend;
 use crate::ui::train::recorder;
 use crate::ui::train::trainer::hand::HandDevice;
 use crate::ui::train::trainer::history::History;
 use crate::ui::train::trainer::live::{Operator, Trainer};
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::workspace::Workspace;
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 

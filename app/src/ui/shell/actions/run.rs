@@ -1,25 +1,25 @@
 //! Execution of the actions.
 
-use crate::ui::actions::list::Action;
-use crate::ui::app::App;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::manual_states;
 use crate::ui::calibrate::rule_editing;
 use crate::ui::diagnose::actions;
-use crate::ui::dialogs;
-use crate::ui::dock::name_field::Naming;
 use crate::ui::document::files;
 use crate::ui::document::fit_choice::Stated;
 use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
-use crate::ui::follow;
-use crate::ui::message_list::Tone;
 use crate::ui::session::Session;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::app::App;
+use crate::ui::shell::dialogs;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::dock::name_field::Naming;
+use crate::ui::shell::message_list::Tone;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::restart;
-use crate::ui::workspace::Workspace;
 use egui::{Context, ViewportCommand};
 
 /// Step of the zoom.
@@ -153,7 +153,7 @@ fn with_files(action: &Action, ctx: &Context, session: &mut Session) {
         Action::SaveWorld => files::ask(ctx, &mut session.jobs, dialogs::SAVE_WORLD),
         Action::ExportWorld => files::ask(ctx, &mut session.jobs, dialogs::EXPORT_WORLD),
         Action::Report => files::ask(ctx, &mut session.jobs, dialogs::SAVE_REPORT),
-        Action::Reload => follow::reload(session, ctx),
+        Action::Reload => dispatch::reload(session, ctx),
         Action::MapColumns => opening::map_columns(&session.document, &mut session.jobs, ctx, None),
         // Actions of the window.
         _ => {}

@@ -1,7 +1,7 @@
 //! Named layouts, several per workspace.
 
-use crate::ui::dock::arrangement::{Arrangement, Dock};
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::dock::arrangement::{Arrangement, Dock};
+use crate::ui::shell::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -95,7 +95,7 @@ impl Dock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::panel_id::PanelId;
+    use crate::ui::shell::panel_id::PanelId;
 
     const AT: Workspace = Workspace::Calibrate;
 

@@ -1,8 +1,8 @@
 //! Appearance of the actions in menus and in the palette.
 
-use crate::ui::actions::list::Action;
 use crate::ui::kit::icons::Icon;
-use crate::ui::panels::list;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::panel_list;
 
 impl Action {
     /// Icon of the action; an entry of a list has the icon of the list.
@@ -40,7 +40,7 @@ impl Action {
             Self::ToStart => Icon::ToStart,
             Self::ToEnd => Icon::ToEnd,
             Self::Open(workspace) => workspace.icon(),
-            Self::Panel(pane) => list::registration(*pane).map_or(Icon::Panel, |panel| panel.icon),
+            Self::Panel(pane) => panel_list::registration(*pane).map_or(Icon::Panel, |panel| panel.icon),
             Self::Arrange | Self::Layout(_) => Icon::Arrange,
             Self::Theme => Icon::Theme,
             Self::Larger => Icon::Larger,

@@ -1,14 +1,14 @@
 //! The list of actions: names, keys, groups, and reasons against them.
 
 use crate::text::format;
-use crate::ui::app::App;
 use crate::ui::calibrate::manual_states::decides;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
 use strum::{EnumIter, IntoEnumIterator as _};
@@ -187,7 +187,7 @@ impl Action {
     pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
         let session = &app.session;
         let layouts = app.dock.names(session.workspace).map(|name| Self::Layout(name.to_owned()));
-        let panels = list::of(session.workspace).into_iter().filter(|p| *p != PanelId::SEGMENTS).map(Self::Panel);
+        let panels = panel_list::of(session.workspace).into_iter().filter(|p| *p != PanelId::SEGMENTS).map(Self::Panel);
         let recent = session.document.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
         let recordings =
             (0..session.document.recordings.len()).filter(|i| *i != session.document.current).map(Self::Select);
@@ -228,7 +228,7 @@ impl Action {
             Self::Select(index) => format!("Show recording {}", index + 1),
             Self::GoTo { what, .. } => format!("Go to: {what}"),
             Self::Open(workspace) => format!("Open {}", workspace.title()),
-            Self::Panel(pane) => format!("Panel: {}", list::registration(*pane).map_or("", |panel| panel.title)),
+            Self::Panel(pane) => format!("Panel: {}", panel_list::registration(*pane).map_or("", |panel| panel.title)),
             Self::Lesson(title) => format!("Lesson: {title}"),
             Self::Answer(_, words) => format!("Answer: {words}"),
             Self::Layout(name) => format!("Arrangement: {name}"),

@@ -1,11 +1,11 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
-use super::dock::panes::Panels;
-use super::session::Session;
-use crate::ui::command_palette::CommandPalette;
-use crate::ui::dock::arrangement::Dock;
 use crate::ui::document::autosave::{Autosave, State};
-use crate::ui::tour_progress::Tour;
+use crate::ui::session::Session;
+use crate::ui::shell::command_palette::CommandPalette;
+use crate::ui::shell::dock::arrangement::Dock;
+use crate::ui::shell::dock::panes::Panels;
+use crate::ui::shell::tour_progress::Tour;
 
 /// The application.
 pub struct App {

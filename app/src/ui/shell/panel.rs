@@ -1,11 +1,11 @@
 //! Panels: the trait that each implements, and the registration that tells the rest of the window about it.
 
-use super::gallery::sample::Sample;
-use super::panel_id::PanelId;
-use super::picture_input::PictureInput;
-use super::session::Session;
-use super::workspace::Workspace;
+use crate::ui::gallery::sample::Sample;
 use crate::ui::kit::icons::Icon;
+use crate::ui::picture_input::PictureInput;
+use crate::ui::session::Session;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use egui_tiles::ContainerKind;
 
 /// A part of the window that shows and changes the session.

@@ -3,10 +3,10 @@
 use crate::ui::calibrate::panels::{log, recording, results, scene, segments, sensitivity, video};
 use crate::ui::devices::panels::{device_detail, devices};
 use crate::ui::diagnose::panels::{causes, residuals};
-use crate::ui::panel::Registration;
-use crate::ui::panel_id::PanelId;
+use crate::ui::shell::panel::Registration;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::panels::{progress, trainer_side, trainer_view};
-use crate::ui::workspace::Workspace;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// All panels.

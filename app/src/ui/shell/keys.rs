@@ -1,7 +1,7 @@
 //! Keys that are held or have two strengths: moving the time cursor. Everything else is an action.
 
 use crate::ui::document::state::Document;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Key, Ui};
 
 /// Share of the visible time that an arrow key moves the cursor by.

@@ -1,9 +1,9 @@
 //! The progress of the tour.
 
-use super::panel_id::PanelId;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Color32, Order, Rect, Stroke, StrokeKind, vec2};
 
 /// Width of a card.

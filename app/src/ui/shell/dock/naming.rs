@@ -1,10 +1,10 @@
 //! The dialog for the name of a layout.
 
-use crate::ui::app::App;
-use crate::ui::dock::name_field::WIDTH;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::primary_button;
+use crate::ui::shell::app::App;
+use crate::ui::shell::dock::name_field::WIDTH;
 use egui::{Align, Frame, Id, Key, Layout, Modal, RichText, TextEdit, Ui, vec2};
 
 /// Draws the dialog while a name is asked for.

@@ -1,15 +1,15 @@
 //! Position of a restored panel: that of the standard layout, or beside related panels.
 
-use crate::ui::dock::arrangement::Arrangement;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
+use crate::ui::shell::dock::arrangement::Arrangement;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
 use egui_tiles::{Container, ContainerKind, Tile, TileId};
 
 impl Arrangement {
     /// Adds a panel: beside its neighbour, otherwise at its edge, otherwise alone.
     pub(super) fn add(&mut self, pane: PanelId) {
         let tile = self.tree.tiles.insert_pane(pane);
-        let panel = list::registration(pane);
+        let panel = panel_list::registration(pane);
         let neighbours = panel.map_or(&[][..], |panel| panel.neighbours);
         let beside = neighbours.iter().find_map(|(other, kind, first)| Some((self.find(*other)?, *kind, *first)));
         match (beside, self.tree.root()) {

@@ -1,11 +1,11 @@
 //! The menu: the same actions as in the palette, by group.
 
-use super::app::App;
-use crate::ui::actions::list::{Action, Group};
-use crate::ui::actions::search;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme::palette;
+use crate::ui::shell::actions::list::{Action, Group};
+use crate::ui::shell::actions::search;
+use crate::ui::shell::app::App;
 use egui::{Atom, Button, RichText, ScrollArea, Ui};
 
 /// Room for the bar above a menu, and for the edge of the window below, points.

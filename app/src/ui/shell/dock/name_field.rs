@@ -1,6 +1,6 @@
 //! A name of an arrangement that is being written.
 
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::workspace::Workspace;
 
 /// Width of the dialog, points.
 pub(crate) const WIDTH: f32 = 360.0;

@@ -1,12 +1,12 @@
 //! Appearance of tiles, and operations allowed on them.
 
-use super::layout::GAP;
-use super::panes::Panels;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::Palette;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
 use crate::ui::session::Session;
+use crate::ui::shell::dock::layout::GAP;
+use crate::ui::shell::dock::panes::Panels;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
 use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 
@@ -38,7 +38,7 @@ impl Behavior<PanelId> for Tiling<'_> {
     }
 
     fn tab_title_for_pane(&mut self, pane: &PanelId) -> WidgetText {
-        let title = list::registration(*pane).map_or("", |panel| panel.title);
+        let title = panel_list::registration(*pane).map_or("", |panel| panel.title);
         RichText::new(title).font(egui::FontId::new(12.0, theme::semibold())).into()
     }
 

@@ -1,6 +1,5 @@
 //! Following what happens between frames: the answers of jobs, and the features that watch something.
 
-use super::session::Session;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::calibrate::what_if_actions;
@@ -10,7 +9,8 @@ use crate::ui::document::opening;
 use crate::ui::document::project_files;
 use crate::ui::document::state::Document;
 use crate::ui::document::undo_actions;
-use crate::ui::message_list::Messages;
+use crate::ui::session::Session;
+use crate::ui::shell::message_list::Messages;
 use crate::ui::train::lessons::practising;
 use crate::ui::train::trainees;
 

@@ -1,14 +1,14 @@
 //! Arrangements of panels, one a workspace.
 
-use crate::ui::dock::behavior::Tiling;
-use crate::ui::dock::layout;
-use crate::ui::dock::name_field::Naming;
-use crate::ui::dock::named::Named;
-use crate::ui::dock::panes::Panels;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
 use crate::ui::session::Session;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::dock::behavior::Tiling;
+use crate::ui::shell::dock::layout;
+use crate::ui::shell::dock::name_field::Naming;
+use crate::ui::shell::dock::named::Named;
+use crate::ui::shell::dock::panes::Panels;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Frame, Margin, Ui};
 use egui_tiles::{TileId, Tree};
 use serde::{Deserialize, Serialize};
@@ -102,7 +102,7 @@ impl Dock {
 impl Arrangement {
     /// Panels of the layout.
     fn panes(&self) -> BTreeSet<PanelId> {
-        list::ids().filter(|pane| self.find(*pane).is_some()).collect()
+        panel_list::ids().filter(|pane| self.find(*pane).is_some()).collect()
     }
 
     pub(crate) fn find(&self, pane: PanelId) -> Option<TileId> {
@@ -120,9 +120,9 @@ impl Arrangement {
 
     /// Hides panels without content, so that others can use their space.
     fn show_only_what_has_contents(&mut self, session: &Session) {
-        for pane in list::ids() {
+        for pane in panel_list::ids() {
             if let Some(tile) = self.find(pane) {
-                let has_contents = list::registration(pane).is_none_or(|panel| (panel.has_contents)(session));
+                let has_contents = panel_list::registration(pane).is_none_or(|panel| (panel.has_contents)(session));
                 // A panel alone hides its tabs as well: they would keep the space.
                 self.tree.set_visible(tile, has_contents);
                 self.tree.set_visible(self.alone_in(tile), has_contents);
@@ -153,12 +153,12 @@ mod tests {
     fn every_panel_can_be_taken_out_and_comes_back() {
         let mut dock = Dock::default();
         let at = Workspace::Calibrate;
-        for pane in list::ids() {
+        for pane in panel_list::ids() {
             if dock.has(at, pane) {
                 dock.toggle(at, pane);
             }
         }
-        assert!(list::ids().all(|p| !dock.has(at, p)));
+        assert!(panel_list::ids().all(|p| !dock.has(at, p)));
         dock.bring(at, PanelId::RESULTS);
         dock.bring(at, PanelId::LOG);
         assert!(dock.has(at, PanelId::RESULTS) && dock.has(at, PanelId::LOG));

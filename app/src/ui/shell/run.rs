@@ -1,15 +1,15 @@
 //! Opening the window.
 
 use crate::tasks::Chosen;
-use crate::ui::app;
 use crate::ui::document::opening;
 use crate::ui::first_picture;
 use crate::ui::kit::theme;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
+use crate::ui::shell::app;
+use crate::ui::shell::workspace;
 use crate::ui::train::recorder;
 use crate::ui::train::trainees;
-use crate::ui::workspace;
 use anyhow::Context as _;
 use std::path::PathBuf;
 

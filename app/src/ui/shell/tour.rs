@@ -1,11 +1,11 @@
 //! Shown around: what is where, in a few cards, the first time and whenever it is asked for.
 
-use super::app::App;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::primary_button;
-use crate::ui::tour_progress::{STEPS, WIDTH, beside, shade};
+use crate::ui::shell::app::App;
+use crate::ui::shell::tour_progress::{STEPS, WIDTH, beside, shade};
 use egui::{Align2, Area, Frame, Key, Order, RichText, Stroke, Ui};
 
 /// Draws the card of the step, and a frame about what it is about.

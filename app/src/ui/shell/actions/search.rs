@@ -1,7 +1,7 @@
 //! Keys of actions, and the search by a few letters.
 
-use crate::ui::actions::list::Action;
-use crate::ui::app::App;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::app::App;
 use egui::{KeyboardShortcut, Ui};
 
 /// Runs the actions of the pressed keys; called once per frame, while no dialog is open.

@@ -1,10 +1,10 @@
 //! The standard layouts, and column widths for the window.
 
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::comfort::Comfort;
-use crate::ui::workspace::Workspace;
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
@@ -36,7 +36,7 @@ pub fn standard(workspace: Workspace) -> Tree<PanelId> {
 /// Panels of the standard layout.
 pub fn standard_panes(workspace: Workspace) -> BTreeSet<PanelId> {
     let tree = standard(workspace);
-    list::ids().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
+    panel_list::ids().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
 }
 
 fn side_by_side(tiles: &mut Tiles<PanelId>, panes: [PanelId; 2]) -> TileId {

@@ -1,12 +1,12 @@
 //! The command palette: every action by a few letters of its name.
 
-use super::app::App;
-use crate::ui::actions::list::Action;
-use crate::ui::actions::search;
-use crate::ui::command_palette::{GROUP, HEIGHT, LINE, WIDTH, moved_by_keys};
 use crate::ui::kit::icons;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::actions::search;
+use crate::ui::shell::app::App;
+use crate::ui::shell::command_palette::{GROUP, HEIGHT, LINE, WIDTH, moved_by_keys};
 use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 
 /// Draws it over the window while it is open, and does what is chosen.

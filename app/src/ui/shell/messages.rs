@@ -4,7 +4,7 @@ use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::palette;
-use crate::ui::message_list::{Messages, Tone};
+use crate::ui::shell::message_list::{Messages, Tone};
 use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 

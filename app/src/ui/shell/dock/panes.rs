@@ -1,9 +1,9 @@
 //! One of every panel, with what it remembers.
 
-use crate::ui::panel::Panel;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list::PANELS;
 use crate::ui::session::Session;
+use crate::ui::shell::panel::Panel;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list::PANELS;
 use egui::Ui;
 
 /// One of every panel.

@@ -1,26 +1,26 @@
 //! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
-use super::dock::panes::Panels;
-use super::session::Session;
-use crate::ui::actions::list::Action;
-use crate::ui::actions::search;
-use crate::ui::app::App;
-use crate::ui::command_palette::CommandPalette;
-use crate::ui::dock::arrangement::Dock;
 use crate::ui::document::opening;
 use crate::ui::document::recovery;
 use crate::ui::document::undo_actions;
-use crate::ui::follow;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::kit::widgets::{icon_button, segmented};
-use crate::ui::message_list::Tone;
-use crate::ui::tour_progress::Tour;
+use crate::ui::session::Session;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::actions::search;
+use crate::ui::shell::app::App;
+use crate::ui::shell::command_palette::CommandPalette;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::dock::arrangement::Dock;
+use crate::ui::shell::dock::panes::Panels;
+use crate::ui::shell::message_list::Tone;
+use crate::ui::shell::tour_progress::Tour;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::shell::{menu, messages, palette, tour};
 use crate::ui::train::trainer::live::Trainer;
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use crate::ui::workspace::Workspace;
-use crate::ui::{menu, messages, palette, tour};
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
 impl App {
@@ -40,7 +40,7 @@ impl App {
     /// Draws everything.
     pub fn show(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        follow::poll(&mut self.session, &ctx);
+        dispatch::poll(&mut self.session, &ctx);
         self.take_worlds();
         if let Some(pane) = self.session.wanted_pane.take() {
             self.dock.bring(self.session.workspace, pane);
@@ -49,7 +49,7 @@ impl App {
         if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() && self.dock.naming.is_none()
         {
             search::keys(ui, self);
-            super::keys::handle(ui, self.session.workspace, &mut self.session.document);
+            crate::ui::shell::keys::handle(ui, self.session.workspace, &mut self.session.document);
         }
         dropped_files(&ctx, &mut self.session);
         self.session.document.advance(f64::from(ctx.input(|i| i.stable_dt)));
@@ -74,7 +74,7 @@ impl App {
             });
         }
         palette::show(ui, self);
-        super::dock::naming::show(ui, self);
+        crate::ui::shell::dock::naming::show(ui, self);
         tour::show(ui, self);
         self.keep_state(&ctx);
         if self.session.document.playing {

@@ -1,3 +1,0 @@
-//! One panel a file, behind one trait; [`list`] names them all.
-
-pub mod list;
