@@ -12,17 +12,12 @@ pub mod column_mapping;
 pub mod devices;
 pub mod diagnose;
 pub mod document;
-pub mod first_picture;
-pub mod frames;
-pub mod gallery;
+pub mod headless;
 pub mod kit;
-pub mod picture_input;
 pub mod plots;
 pub mod scene;
-pub mod screenshot;
 pub mod session;
 pub mod shell;
-pub mod stage;
 #[cfg(test)]
 mod tests;
 pub mod train;

@@ -1,7 +1,7 @@
 //! The devices page and the devices behind the trainer, without a window.
 
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
 use crate::ui::shell::app::App;
 use crate::ui::shell::workspace::Workspace;

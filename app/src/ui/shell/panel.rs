@@ -1,8 +1,8 @@
 //! Panels: the trait that each implements, and the registration that tells the rest of the window about it.
 
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::picture_input::PictureInput;
 use crate::ui::kit::icons::Icon;
-use crate::ui::picture_input::PictureInput;
 use crate::ui::session::Session;
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;

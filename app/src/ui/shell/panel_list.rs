@@ -61,7 +61,7 @@ impl<'de> Deserialize<'de> for PanelId {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::screenshot::pictures;
+    use crate::ui::headless::screenshot::pictures;
     use std::collections::BTreeSet;
 
     #[test]

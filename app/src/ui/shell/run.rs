@@ -2,7 +2,7 @@
 
 use crate::tasks::Chosen;
 use crate::ui::document::opening;
-use crate::ui::first_picture;
+use crate::ui::headless::first_picture;
 use crate::ui::kit::theme;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;

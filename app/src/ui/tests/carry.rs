@@ -5,7 +5,7 @@ use super::until;
 use crate::ui::diagnose::experiment_state::REHEARSE;
 use crate::ui::diagnose::guidance;
 use crate::ui::diagnose::guided_experiment::Phase;
-use crate::ui::gallery::samples::{leaking, leaking_world};
+use crate::ui::headless::gallery::samples::{leaking, leaking_world};
 use crate::ui::shell::app::App;
 use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::world_choice::WorldChoice;

@@ -1,7 +1,7 @@
 //! Comfort in Train: a pause when the window loses the focus, everything anew by one key, a left hand, what is remembered.
 
 use super::{empty, in_train, keep, no_driver, train_window};
-use crate::ui::screenshot;
+use crate::ui::headless::screenshot;
 use crate::ui::shell::app::App;
 use crate::ui::tests::picture;
 use crate::ui::train::lessons::practising;

@@ -8,7 +8,7 @@ use crate::ui::diagnose::experiment_state::REHEARSE;
 use crate::ui::diagnose::guidance;
 use crate::ui::diagnose::guided_experiment::Phase;
 use crate::ui::document::opening;
-use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
+use crate::ui::headless::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::session::Session;
 use crate::ui::shell::app::App;
 use crate::ui::shell::workspace::Workspace;

@@ -9,7 +9,8 @@ use crate::ui::calibrate::panels::rules::parameter;
 use crate::ui::calibrate::refits::FIT;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space, state_color};
@@ -18,7 +19,6 @@ use crate::ui::session::Session;
 use crate::ui::shell::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use egui::{
     Align, Align2, FontId, Layout, Pos2, Rangef, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, vec2,
 };

@@ -5,7 +5,8 @@ use crate::ui::calibrate::sensitivity::SENSITIVITY;
 use crate::ui::calibrate::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::calibrate::sensitivity_actions;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};
@@ -14,7 +15,6 @@ use crate::ui::session::Session;
 use crate::ui::shell::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_tiles::ContainerKind;
 

@@ -7,7 +7,8 @@ use crate::ui::document::files;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
 use crate::ui::document::videos::{ALIGN_VIDEO, State, Videos};
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -17,7 +18,6 @@ use crate::ui::shell::dialogs;
 use crate::ui::shell::panel::{Framing, PAGE, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use crate::video::reading::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,

@@ -10,7 +10,8 @@ use crate::ui::diagnose::panels::{cause_card, next_experiment, residuals, valida
 use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -22,7 +23,6 @@ use crate::ui::shell::dialogs;
 use crate::ui::shell::panel::{COLUMN, Framing, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::{Findings, Residual};
 

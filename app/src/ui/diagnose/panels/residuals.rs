@@ -7,7 +7,8 @@ use crate::ui::diagnose::atlas_sheet::Sheet;
 use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, StartFrom};
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -19,7 +20,6 @@ use crate::ui::shell::dialogs;
 use crate::ui::shell::panel::{Framing, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.

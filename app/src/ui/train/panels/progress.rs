@@ -4,7 +4,8 @@ use crate::history::attempt::Attempt;
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::document::files;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette, space};
@@ -16,7 +17,6 @@ use crate::ui::shell::dialogs;
 use crate::ui::shell::panel::{Framing, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use crate::ui::train::learning::{Learned, Learning, Practised};
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,

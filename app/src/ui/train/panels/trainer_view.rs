@@ -1,7 +1,8 @@
 //! The virtual world, touched with the mouse.
 
 use crate::ui::diagnose::experiment_state::Experiments;
-use crate::ui::gallery::sample::Sample;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::stage;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
@@ -13,7 +14,6 @@ use crate::ui::shell::message_list::Messages;
 use crate::ui::shell::panel::{Framing, PANEL, Panel, Picture, Registration};
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::stage;
 use crate::ui::train::assistant::draw;
 use crate::ui::train::panels::{guide, lessons, overlay_marks, touch_and_keys};
 use crate::ui::train::state::Training;

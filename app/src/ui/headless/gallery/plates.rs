@@ -2,13 +2,14 @@
 
 use crate::ui::calibrate::panels::{scene, video};
 use crate::ui::diagnose::panels::{causes, residuals};
-use crate::ui::gallery::sample::Sample;
-use crate::ui::gallery::samples::Samples;
-use crate::ui::gallery::small_png::small_png;
-use crate::ui::gallery::walk;
-use crate::ui::picture_input::PictureInput;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::gallery::samples::Samples;
+use crate::ui::headless::gallery::small_png::small_png;
+use crate::ui::headless::gallery::walk;
+use crate::ui::headless::picture_input::PictureInput;
+use crate::ui::headless::screenshot;
+use crate::ui::headless::screenshot::pictures;
 use crate::ui::scene::layers::SceneLayers;
-use crate::ui::screenshot::{self, pictures};
 use crate::ui::session::Session;
 use crate::ui::shell::panel::{Framing, PAGE, Picture, SCENE};
 use crate::ui::train::panels::trainer_view;

@@ -1,16 +1,17 @@
 //! Processor time of a picture: layout of a panel, and tessellation of its shapes. The work of the graphics card is not
 //! included.
 
-use super::screenshot::{self, contents};
-use super::session::Session;
 use crate::ui::calibrate::panels::{log, parameters, results, scene, segments};
 use crate::ui::calibrate::refits;
 use crate::ui::diagnose::state::{Answer, StartFrom};
 use crate::ui::diagnose::state::{ask, extend};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
+use crate::ui::headless::screenshot;
+use crate::ui::headless::screenshot::contents;
 use crate::ui::kit::theme;
 use crate::ui::plots::choices::LogView;
+use crate::ui::session::Session;
 use crate::ui::shell::app::App;
 use crate::ui::shell::panel::Picture;
 use crate::ui::shell::workspace::Workspace;

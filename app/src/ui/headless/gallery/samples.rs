@@ -1,13 +1,13 @@
 //! Recordings for the pictures: those bundled with the program, and performances of the scripted operator.
 
-use super::filmed::filmed;
 use crate::built_in::built_in;
 use crate::experiment::perform;
 use crate::experiment::simulated;
 use crate::experiment::timetable;
-use crate::ui::gallery::sample::Sample;
-use crate::ui::picture_input::PictureInput;
-use crate::ui::stage;
+use crate::ui::headless::gallery::filmed::filmed;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::picture_input::PictureInput;
+use crate::ui::headless::stage;
 use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::train::trainer::world_choice::WorldChoice;
 use crate::video::reading::VideoSource;

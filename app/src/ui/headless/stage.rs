@@ -1,9 +1,5 @@
 //! Sessions with everything computed, for pictures.
 
-use super::gallery::practice::practice as attempts;
-use super::picture_input::PictureInput;
-use super::plots::choices::XyAxis;
-use super::session::Session;
 use crate::history::keeper::History;
 use crate::ui::calibrate::refits;
 use crate::ui::calibrate::rule_editing;
@@ -21,8 +17,12 @@ use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;
 use crate::ui::document::video_actions;
+use crate::ui::headless::gallery::practice::practice as attempts;
+use crate::ui::headless::picture_input::PictureInput;
+use crate::ui::plots::choices::XyAxis;
 use crate::ui::plots::choices::{LogView, PlotChoices};
 use crate::ui::plots::curves::can_compare;
+use crate::ui::session::Session;
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::pointer;

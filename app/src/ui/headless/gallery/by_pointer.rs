@@ -1,7 +1,7 @@
 //! Screen positions for mapping a foreign table and refitting with the mouse. The procedure runs in an invisible window
 //! of the same size, and the clicks are recorded.
 
-use super::walk::{Walker, foreign_crank};
+use crate::ui::headless::gallery::walk::{Walker, foreign_crank};
 use anyhow::Context as _;
 use egui::{Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable as _;

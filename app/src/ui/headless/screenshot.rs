@@ -1,13 +1,13 @@
 //! Panels and pages drawn without a window: for the command line, reports and tests.
 
-use super::gallery::sample::Sample;
-use super::picture_input::PictureInput;
-use super::session::Session;
-use super::stage;
+use crate::ui::headless::gallery::sample::Sample;
+use crate::ui::headless::picture_input::PictureInput;
+use crate::ui::headless::stage;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;
 use crate::ui::scene::callback;
 use crate::ui::scene::view;
+use crate::ui::session::Session;
 use crate::ui::shell::app::App;
 use crate::ui::shell::panel::{Framing, PAGE, Picture};
 use crate::ui::shell::panel_list;
@@ -231,7 +231,7 @@ pub fn draw(
 }
 
 /// The window that a picture is drawn of.
-pub(super) fn app_for(session: Session, picture: &'static Picture) -> App {
+pub(crate) fn app_for(session: Session, picture: &'static Picture) -> App {
     let mut app = App::new(session);
     match picture.name {
         "arrange" => app.dock.arranging = true,
@@ -258,7 +258,7 @@ pub fn trainer_place(size: [f32; 2]) -> Option<view::Place> {
 }
 
 /// Draws over all of a window of the test kit, whose margin is not ours.
-pub(super) fn in_whole_window(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+pub(crate) fn in_whole_window(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     let whole = ui.ctx().content_rect();
     ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
         ui.set_clip_rect(whole);
@@ -268,10 +268,10 @@ pub(super) fn in_whole_window(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
 }
 
 /// Draws a panel of the window.
-pub(super) type Contents = Box<dyn FnMut(&mut Ui, &mut App)>;
+pub(crate) type Contents = Box<dyn FnMut(&mut Ui, &mut App)>;
 
 /// Draws what a picture shows.
-pub(super) fn contents(picture: &'static Picture) -> Contents {
+pub(crate) fn contents(picture: &'static Picture) -> Contents {
     match picture.framing {
         Framing::Panel(new) | Framing::LargePanel(new) => {
             let mut panel = new();

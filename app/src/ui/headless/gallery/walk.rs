@@ -5,9 +5,9 @@
 use crate::text::format;
 use crate::ui::diagnose::state::EXTEND;
 use crate::ui::document::opening;
+use crate::ui::headless::screenshot::in_whole_window;
 use crate::ui::kit::theme;
 use crate::ui::scene::callback;
-use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::Session;
 use crate::ui::shell::app::App;
 use crate::ui::shell::message_list::Tone;
