@@ -1,10 +1,11 @@
 //! The window.
 //!
-//! * [`session`] is what the window knows; [`jobs`] fill it in the background; [`trainer`] is the live world.
-//! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
-//! * [`mapping`] is the dialog that says what the columns of a foreign table mean.
-//! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes, [`icons`] for icons.
-//! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
+//! * [`session`] composes the state of the features; [`background`] runs their jobs.
+//! * [`document`], [`calibrate`], [`diagnose`], [`train`] and [`devices`] are the features: state, actions, and panels, one panel a file.
+//! * [`column_mapping`] is the dialog for the columns of a foreign table.
+//! * [`shell`] lays the panels out into the workspaces, with menu, commands and messages.
+//! * [`plots`] draws curves, [`scene`] draws worlds; [`kit`] has the colours, sizes, icons and widgets.
+//! * [`headless`] draws any of it without a window.
 
 pub mod background;
 pub mod calibrate;
