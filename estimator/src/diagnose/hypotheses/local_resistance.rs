@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, Law, LocalPush, LocalResistance};
@@ -20,8 +20,8 @@ const WIDTHS_AROUND: [f64; 5] = [0.65, 0.8, 1.0, 1.25, 1.5];
 const HUMP: &str = "place and width";
 
 impl Hypothesis for LocalResistance {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -53,10 +53,6 @@ impl Hypothesis for LocalResistance {
             [named(&LocalResistance).positive(), named(&LocalPush)]
         };
         data.points(ID, HUMP).flat_map(both).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
