@@ -1,7 +1,7 @@
 //! A tilt as a hypothesis: of a crank's plane, of an axis, or of a slope under a linear motion.
 
 use super::candidate::Candidate;
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
@@ -18,17 +18,13 @@ const TILT_STEPS: i32 = 12;
 const STEEPEST: f64 = 0.6;
 
 impl Hypothesis for GravityTilt {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsBothWays], ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         let turns = data.track.radius_m.and_then(|_| tilt(data.track));
         turns.into_iter().chain(slope(data.track)).collect()
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsBothWays]
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

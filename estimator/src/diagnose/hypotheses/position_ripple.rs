@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, PositionRipple};
@@ -21,8 +21,8 @@ const SHORT: f64 = 25.0;
 const LENGTHS: &str = "wave lengths";
 
 impl Hypothesis for PositionRipple {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -47,10 +47,6 @@ impl Hypothesis for PositionRipple {
         // A short ripple changes within a row.
         let short = SHORT * data.track.quantile(0.9, |r| r.motion.velocity.abs()) * data.track.period_s;
         data.points(ID, LENGTHS).map(|[length, ..]| ripple(data, length, length < short)).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

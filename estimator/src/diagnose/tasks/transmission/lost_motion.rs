@@ -8,7 +8,7 @@ use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
-use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
+use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use crate::estimate::EstimateError;
