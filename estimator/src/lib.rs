@@ -1,8 +1,7 @@
 //! From a log to numbers one can sign.
 //!
-//! `log` reads, `signal` derives, `segment` finds the states and their times, `identify` and `constraint` estimate,
-//! `calibrate` writes a world, `simulate` runs the measured motion through it. Every stage is a plain function between
-//! plain types.
+//! This crate diagnoses the base model, and it is the entrance to the crates below: `foundation` (signals, definitions of
+//! tasks, types of answers), `logs`, `estimation` and `training`.
 //!
 //! From a log to parameters with errors, and to the defects of the model:
 //!
@@ -25,19 +24,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod assistant;
-pub mod calibrate;
-pub mod cancellation;
-pub mod constraint;
 pub mod diagnose;
-pub mod estimate;
-pub mod hmm;
-pub mod identify;
-pub mod log;
-pub mod online;
-pub mod pipeline;
-pub mod segment;
-pub mod signal;
-pub mod simulate;
-pub mod training;
-pub mod words;
+
+pub use estimation::{calibrate, constraint, hmm, identify, online, pipeline, regression, simulate};
+pub use foundation::{cancellation, estimate, signal, words};
+pub use logs as log;
+pub use training;
+pub use training::assistant;
+
+/// Segmentation, with the definitions of the tasks that it follows.
+pub mod segment {
+    pub use estimation::segment::*;
+    pub use foundation::tasks::{Sign, SystemState, Thresholds, definition, library, shows};
+}

@@ -2,7 +2,7 @@
 
 use crate::diagnose::contract::Residual;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 
 /// Residuals of a comparison in each state. `state`: channel and state of a row; `None` for a row of no channel.
 pub fn residuals(

@@ -9,7 +9,7 @@ use crate::diagnose::data::row_means::{Weights, column};
 use crate::diagnose::hypotheses::basis_functions::generic;
 use crate::diagnose::selection::gram::gram;
 use crate::diagnose::selection::normal_equations::solve;
-use crate::signal::derive::{interpolate, interpolate_cubic};
+use foundation::signal::derive::{interpolate, interpolate_cubic};
 use haptics::law::{CoulombFriction, Effect, Inertia, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;

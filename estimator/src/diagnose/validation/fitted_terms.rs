@@ -5,8 +5,8 @@ use crate::diagnose::contract::Validation;
 use crate::diagnose::hypotheses::candidate::{Candidate, Searched};
 use crate::diagnose::options;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
+use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 
 /// Values that belong to one recording (a time, an insertion) and do not carry over to another.

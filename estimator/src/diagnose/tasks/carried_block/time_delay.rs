@@ -2,9 +2,8 @@
 //! explain most.
 
 use super::rows::{Place, Row, Rows};
-use crate::diagnose::recording::delay_scan::STEP_S;
-use crate::diagnose::recording::delay_scan::{Demands, Late, look};
-use crate::identify::linear::least_squares_values;
+use crate::diagnose::recording::delay_scan::{Demands, Late, STEP_S, look};
+use estimation::regression::linear::least_squares_values;
 
 /// Limits of a delay: beyond the longest one a hand is already at another movement.
 const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };

@@ -4,8 +4,8 @@
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
-use crate::estimate::EstimateError;
-use crate::identify::linear::{Values, least_squares_values};
+use estimation::regression::linear::{Values, least_squares_values};
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 

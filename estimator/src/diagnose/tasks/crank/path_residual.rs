@@ -3,7 +3,7 @@
 use super::path::{Arm, Path};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
 

@@ -6,7 +6,7 @@ use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::all::with_both_ways;
 use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::tasks::free_motion::Scale;
-use crate::identify::mechanism::Stated;
+use estimation::identify::mechanism::Stated;
 use haptics::law::Coordinate;
 
 /// Causes that a motion without a force sensor never shows.

@@ -5,7 +5,7 @@ use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::tasks::baseline_models::named;
 use crate::diagnose::tasks::one_coordinate;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The

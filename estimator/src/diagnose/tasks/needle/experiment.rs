@@ -10,7 +10,7 @@ use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::experiment::separation::separation;
 use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.

@@ -1,9 +1,8 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::recording::delay_scan::STEP_S;
-use crate::diagnose::recording::delay_scan::{Demands, Late, look};
-use crate::identify::linear::least_squares_values;
+use crate::diagnose::recording::delay_scan::{Demands, Late, STEP_S, look};
+use estimation::regression::linear::least_squares_values;
 
 /// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
 /// change their contact phase.

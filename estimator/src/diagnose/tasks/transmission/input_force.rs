@@ -10,8 +10,8 @@ use crate::diagnose::hypotheses::{
     coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
 use crate::diagnose::tasks::transmission::{Side, fit, generic};
-use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.

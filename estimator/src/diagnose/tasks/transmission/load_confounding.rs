@@ -5,7 +5,7 @@ use crate::diagnose::contract::Alternative;
 use crate::diagnose::hypotheses::{coulomb_friction, force_gain};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::{Use, solve};
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
 
 /// Noise share of the load's own part from which load and dry friction count as one regressor.
 const LOAD_NOISE_SHARE: f64 = 0.5;

@@ -1,0 +1,144 @@
+//! Sliding flat: height and orientation stay, the speed falls evenly.
+
+use super::pose::Track;
+use foundation::signal::derive::polynomial;
+use nalgebra::Vector3;
+
+/// Time on either side over which velocities are taken, s.
+const REACH_S: f64 = 0.0135;
+/// Slower than this it may stick or creep, m/s.
+const SLOW_M_S: f64 = 0.05;
+/// Turning faster than this it rolls or spins, rad/s.
+const TURNING_RAD_S: f64 = 0.6;
+/// Largest speed of rising or falling in a flat slide, m/s.
+const RISING_M_S: f64 = 0.03;
+/// Largest range of heights in a slide, m.
+const LEVEL_M: f64 = 2e-3;
+/// Limits by noise: in multiples of its effect, but at most `LOOSER` times the plain limits.
+const NOISES: f64 = 3.5;
+const LOOSER: f64 = 2.0;
+/// Its edge turns no faster than this share of the speed: friction then still goes against the speed, all but 4 % of it.
+const SPINNING: f64 = 0.4;
+/// Distance of the contact from a body's axis, in half widths: between that of an even pressure (0.8) and four corners
+/// (1.4) of a cube. If those are unknown it is in m: hands throw bodies about a decimetre wide.
+const FOOT: f64 = 1.1;
+const FOOT_M: f64 = 0.055;
+/// Relative difference between the two of the friction that does not go against the speed.
+const FOOT_ERROR: f64 = 0.6;
+/// A shorter slide tells nothing, samples and s.
+const LEAST: usize = 5;
+const LEAST_S: f64 = 0.05;
+
+/// One slide.
+#[derive(Clone, Debug)]
+pub struct Slide {
+    pub slowing_m_s2: f64,
+    /// Share of the friction that goes against the motion of the middle, a sample: the rest stops the turning.
+    pub direct: Vec<f64>,
+    pub samples: usize,
+    /// Index of the track, and the first sample in it.
+    pub track: usize,
+    pub first: usize,
+}
+
+impl Slide {
+    /// Friction over load, where falling is so much.
+    pub fn friction(&self, fall_m_s2: f64) -> f64 {
+        self.slowing_m_s2 / self.mean_direct() / fall_m_s2
+    }
+
+    fn mean_direct(&self) -> f64 {
+        self.direct.iter().sum::<f64>() / self.samples as f64
+    }
+}
+
+/// Share of a mean friction that is unknown because the foot is.
+pub fn unknown_of_foot(slides: &[Slide]) -> f64 {
+    let indirect: f64 = slides.iter().map(|s| 1.0 - s.mean_direct()).sum();
+    FOOT_ERROR * indirect / slides.len().max(1) as f64
+}
+
+/// Limits of a flat slide.
+struct Flat {
+    foot_m: f64,
+    rising_m_s: f64,
+    turning_rad_s: f64,
+}
+
+/// The slides of all tracks. `half_width_m`: of a cube, where it is known.
+pub fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> {
+    let noise = |which: fn((f64, f64)) -> f64| {
+        let mut all: Vec<f64> = tracks.iter().map(|t| which(t.slope_noise(t.steps(REACH_S)))).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    };
+    let limit = |plain: f64, noise: f64| plain.max(NOISES * noise).min(LOOSER * plain);
+    let flat = Flat {
+        foot_m: half_width_m.map_or(FOOT_M, |half| FOOT * half),
+        rising_m_s: limit(RISING_M_S, noise(|n| n.0)),
+        turning_rad_s: limit(TURNING_RAD_S, noise(|n| n.1)),
+    };
+    let all = tracks.iter().enumerate();
+    all.flat_map(|(k, track)| of_track(track, &flat).into_iter().map(move |s| Slide { track: k, ..s })).collect()
+}
+
+/// Speed of the edge's spin relative to the speed of the middle at a sample; `None` if the body does not slide flat.
+fn spinning(track: &Track, i: usize, flat: &Flat) -> Option<f64> {
+    let reach = track.steps(REACH_S);
+    let (velocity, spin) = (track.velocity(i, reach), track.spin(i, reach));
+    let speed = velocity.x.hypot(velocity.y);
+    let spinning = flat.foot_m * spin.z.abs() / speed;
+    let is_flat = speed > SLOW_M_S
+        && velocity.z.abs() < flat.rising_m_s
+        && spin.norm() < flat.turning_rad_s
+        && spinning < SPINNING;
+    is_flat.then_some(spinning)
+}
+
+fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
+    let n = track.points.len();
+    let reach = track.steps(REACH_S);
+    if n <= 2 * reach {
+        return Vec::new();
+    }
+    let spins: Vec<Option<f64>> = (0..n).map(|i| spinning(track, i, flat)).collect();
+    let height = |i: usize| track.points[i].z;
+    let mut found = Vec::new();
+    let mut start = None;
+    for i in 0..=n {
+        let goes_on =
+            i < n && spins[i].is_some() && start.is_none_or(|s: usize| (height(i) - height(s)).abs() < LEVEL_M);
+        match (start, goes_on) {
+            (None, true) => start = Some(i),
+            (Some(first), false) => {
+                // Both ends still see samples before and after.
+                found.extend(slide(track, first + reach, i.saturating_sub(reach), &spins));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The share of friction that goes against the motion of the middle, for contact on a ring of the foot's size, to
+/// second order.
+fn direct(spinning: f64) -> f64 {
+    1.0 - 0.25 * spinning * spinning
+}
+
+/// The way along the mean direction, as a parabola.
+fn slide(track: &Track, first: usize, end: usize, spins: &[Option<f64>]) -> Option<Slide> {
+    if end < first + LEAST || track.time_s[end - 1] - track.time_s[first] < LEAST_S {
+        return None;
+    }
+    let (points, time) = (&track.points[first..end], &track.time_s[first..end]);
+    let total = points[points.len() - 1] - points[0];
+    let along = Vector3::new(total.x, total.y, 0.0).try_normalize(1e-9)?;
+    let way: Vec<f64> = points.iter().map(|p| along.dot(&(p - points[0]))).collect();
+    let since: Vec<f64> = time.iter().map(|t| t - time[0]).collect();
+    let fitted = polynomial(&since, &way, 2);
+    let slowing_m_s2 = -2.0 * fitted.get(2)?;
+    let direct = spins[first..end].iter().map(|s| direct(s.unwrap_or(0.0))).collect();
+    (slowing_m_s2 > 0.0).then_some(Slide { slowing_m_s2, direct, samples: points.len(), track: 0, first })
+}

@@ -1,0 +1,11 @@
+//! Signals derived from recordings.
+
+pub mod chain;
+pub mod correlate;
+pub mod derive;
+pub mod filter;
+pub mod lag;
+pub mod noise;
+pub mod pieces;
+pub mod task;
+pub mod transform;
