@@ -28,9 +28,13 @@ pub mod diagnose;
 
 pub use estimation::{calibrate, constraint, hmm, identify, online, pipeline, regression, simulate};
 pub use foundation::{cancellation, estimate, signal, words};
-pub use logs as log;
-pub use training;
-pub use training::assistant;
+pub use training::{self, assistant};
+
+/// Logs, with the gaps of their clocks.
+pub mod log {
+    pub use foundation::signal::gaps::{gap_above_s, gaps};
+    pub use logs::*;
+}
 
 /// Segmentation, with the definitions of the tasks that it follows.
 pub mod segment {

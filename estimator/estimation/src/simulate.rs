@@ -12,13 +12,13 @@ use crate::identify::needle::sheet::{HELD, OBJECT};
 use crate::segment::task_of;
 use foundation::cancellation;
 use foundation::estimate::EstimateError;
+use foundation::signal::gaps::{gap_above_s, gaps};
 use foundation::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use haptics::Vec2;
 use haptics::law::Coordinate;
 use haptics::law::object::MembraneHistory;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::{Input, Mechanism, Source, State, World, step};
-use logs::{gap_above_s, gaps};
 use prediction::rms;
 
 /// Longest step of the simulation, s: that of the usual servo.

@@ -1,46 +1,19 @@
 //! Gaps, dropped samples and jumps of the clock.
 
 use super::findings::{is_position, limited, place};
-use super::profile::thinned;
+use foundation::signal::gaps::UsualStep;
 use haptics::recording::{Recording, Span, Warning};
 
-/// A step of more than this many periods is a gap, below it a few samples were dropped.
-const GAP_PERIODS: f64 = 10.0;
 /// A step of at least this many periods has lost a sample; a late cycle (measured: up to 1.8) has not.
 const DROPPED_PERIODS: f64 = 1.9;
 /// Samples on either side of a jump that show how fast a position moves.
 const AROUND: usize = 16;
-/// Fewer steps do not show the usual one.
-const MIN_STEPS: usize = 8;
-
-/// Median step of a clock, and one that only few exceed; `None` where there are too few.
-fn usual_steps(time_s: &[f64]) -> Option<(f64, f64)> {
-    if time_s.len() <= MIN_STEPS {
-        return None;
-    }
-    let step = |i: usize| time_s[i + 1] - time_s[i];
-    let mut ordered: Vec<f64> = thinned(time_s.len() - 1).map(step).collect();
-    ordered.sort_unstable_by(f64::total_cmp);
-    Some((ordered[ordered.len() / 2], ordered[ordered.len() * 95 / 100]))
-}
-
-/// Step above which there is a gap in the time, or a jump of the clock, s; `None` if too few steps show the usual one.
-pub fn gap_above_s(time_s: &[f64]) -> Option<f64> {
-    usual_steps(time_s).map(|(median, high)| (GAP_PERIODS * median).max(5.0 * high))
-}
-
-/// Samples after which such a step follows.
-pub fn gaps(time_s: &[f64]) -> Vec<usize> {
-    let above_s = gap_above_s(time_s).unwrap_or(f64::INFINITY);
-    let steps = time_s.windows(2).enumerate();
-    steps.filter(|(_, pair)| pair[1] - pair[0] > above_s).map(|(i, _)| i).collect()
-}
 
 /// Warnings about the time column.
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
     let Some(time) = &recording.time_s else { return Vec::new() };
-    let Some((median, high)) = usual_steps(time) else { return Vec::new() };
-    LongSteps::of(recording, time, median, high)
+    let Some(usual) = UsualStep::of(time) else { return Vec::new() };
+    LongSteps::of(recording, time, usual)
         .texts(recording)
         .into_iter()
         .filter(|(_, _, spans)| !spans.is_empty())
@@ -66,11 +39,11 @@ struct LongSteps {
 }
 
 impl LongSteps {
-    fn of(recording: &Recording, time: &[f64], median: f64, high: f64) -> Self {
+    fn of(recording: &Recording, time: &[f64], usual: UsualStep) -> Self {
+        let (median, high, gap_above) = (usual.median_s, usual.high_s, usual.gap_above_s());
         // On an uneven clock only a step far outside its own spread counts.
         let even = high <= 1.3 * median;
         let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
-        let gap_above = (GAP_PERIODS * median).max(5.0 * high);
         let mut found = Self::default();
         for (i, pair) in time.windows(2).enumerate() {
             let step = pair[1] - pair[0];

@@ -13,7 +13,6 @@ mod repeats;
 mod scale;
 mod spikes;
 
-pub use clock::{gap_above_s, gaps};
 pub use repeats::copied;
 
 use super::units;

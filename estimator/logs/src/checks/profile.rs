@@ -1,9 +1,7 @@
 //! Properties of a channel that several checks need, computed once.
 
+use foundation::signal::thinned::thinned;
 use haptics::recording::Span;
-
-/// Largest number of samples that are sorted: quantiles of a million samples are not needed to the last digit.
-const SORTED: usize = 8192;
 
 /// Extremes, quantiles, and how often the channel does not change.
 #[derive(Clone, Debug, Default)]
@@ -72,16 +70,6 @@ fn extremes(values: &[f64]) -> (f64, f64, usize) {
     (low, high, unchanged)
 }
 
-/// Indices of samples that stand for all `n`, increasing: one out of each equal block, not always at the same place in
-/// it. A periodic signal is therefore not always met in the same phase.
-pub fn thinned(n: usize) -> impl Iterator<Item = usize> {
-    let count = n.min(SORTED);
-    (0..count).map(move |k| {
-        let (first, end) = (k * n / count, (k + 1) * n / count);
-        first + (k * 7919) % (end - first).max(1)
-    })
-}
-
 /// Maximal runs of at least `length` equal values (`length` of 2 or more).
 pub fn holds(values: &[f64], length: usize) -> Vec<Span> {
     let mut found: Vec<Span> = Vec::new();
@@ -108,6 +96,7 @@ pub fn holds(values: &[f64], length: usize) -> Vec<Span> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use foundation::signal::thinned::MOST;
 
     /// The plain way.
     fn every_hold(values: &[f64], length: usize) -> Vec<Span> {
@@ -159,6 +148,6 @@ mod tests {
         let values: Vec<f64> = (0..1_000_000).map(|i| f64::from(i) * 1e-6).collect();
         let profile = Profile::of(&values);
         assert!((profile.quantile(0.5) - 0.5).abs() < 1e-3 && (profile.spread() - 0.9).abs() < 2e-3);
-        assert!(profile.sorted.len() <= SORTED && Profile::of(&[]).quantile(0.5) == 0.0);
+        assert!(profile.sorted.len() <= MOST && Profile::of(&[]).quantile(0.5) == 0.0);
     }
 }

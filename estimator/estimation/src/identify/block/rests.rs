@@ -9,6 +9,7 @@ const LEAST_STEP_M: f64 = 3e-3;
 pub struct Rest {
     /// Carry, from 0.
     pub carry: usize,
+    /// Samples of this end.
     pub samples: Vec<usize>,
     /// Carries of the blocks below, from the floor up.
     pub below: Vec<usize>,

@@ -16,10 +16,14 @@ pub const MAIN: &str = "weight_N";
 
 /// Everything that the block fit (and the diagnosis of blocks) works on.
 pub struct Blocks<'a> {
+    /// Signals of the task.
     pub signals: TaskSignals,
+    /// Bias and noise of the forces.
     pub levels: Levels,
+    /// States and subtasks.
     pub segmentation: Segmentation,
     pub(super) task: Definition,
+    /// The recording itself.
     pub recording: &'a Recording,
     /// Error of a single position and of a single force by the resolution of the log, m and N: averaging does not
     /// remove it.
@@ -27,12 +31,16 @@ pub struct Blocks<'a> {
     pub(super) resolution_n: f64,
     /// Vertical acceleration of the grip, m/s².
     pub acceleration_y: Vec<f64>,
-    /// Grip width and height, mean normal and summed vertical force, all through one and the same smoothing filter, and
-    /// the rate of the width: m, N, m/s. Noise in a force would otherwise flatten the slope of a position against it.
+    /// Grip width, m. It, the height, the grip, the lift, and the rate of the width pass through one and the same smoothing
+    /// filter. Noise in a force would otherwise flatten the slope of a position against it.
     pub width: Vec<f64>,
+    /// Grip height, m.
     pub height: Vec<f64>,
+    /// Mean normal force, N.
     pub grip: Vec<f64>,
+    /// Summed vertical force, N.
     pub lift: Vec<f64>,
+    /// Rate of the grip width, m/s.
     pub width_rate: Vec<f64>,
 }
 
@@ -57,6 +65,7 @@ fn unresolved_by_joints_m(recording: &Recording) -> f64 {
     ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(error).fold(0.0, f64::max) * finger.link_m
 }
 
+/// Name of a block in the results.
 pub fn object(number: usize) -> String {
     format!("block-{number}")
 }

@@ -37,13 +37,16 @@ pub fn may_stand(heights_m: impl Iterator<Item = f64>) -> bool {
 pub struct Slip {
     /// Index of the rest.
     pub rest: usize,
+    /// Beginning, s.
     pub start_s: f64,
+    /// Duration, s.
     pub length_s: f64,
 }
 
 /// One end of a carry among the rows.
 #[derive(Clone, Debug)]
 pub struct Stretch {
+    /// Rows of this end.
     pub rows: Range<usize>,
     /// From when the block stands, s.
     pub from_s: f64,
@@ -51,16 +54,20 @@ pub struct Stretch {
 
 /// Heights of the grip while blocks stand, rest by rest.
 pub struct Heights<'a> {
+    /// Times of the rows, s.
     pub time_s: &'a [f64],
+    /// Heights of the grip, m.
     pub height_m: &'a [f64],
     /// Half of the window that the heights are means over, s.
     pub half_s: f64,
+    /// Ends of the carries.
     pub rests: &'a [Stretch],
 }
 
 /// A slip that was tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Tried {
+    /// Ramp of the slip.
     pub slip: Slip,
     /// Estimated way of the slip, m.
     pub way_m: f64,

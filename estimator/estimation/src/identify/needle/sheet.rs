@@ -28,6 +28,7 @@ pub(super) const LEAST_LOADING: usize = 20;
 
 /// The loading curve with its change by the pads' unknown give.
 pub struct Sheet {
+    /// Fitted loading curve.
     pub loading: Loading,
     /// The same with pads that give one standard error more.
     softer: Loading,
@@ -37,6 +38,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
+    /// The loading curve of all pushes.
     pub fn of(along: &Along, pushes: &[Push]) -> Result<Self, EstimateError> {
         let mut holds: Vec<usize> = pushes.iter().map(|p| p.hold).collect();
         holds.dedup();

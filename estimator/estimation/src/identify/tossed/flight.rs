@@ -27,11 +27,15 @@ pub fn least(track: &Track) -> usize {
 /// Parameters common to all flights.
 #[derive(Clone, Copy, Debug)]
 pub struct Fall {
+    /// Downward acceleration, m/s².
     pub down_m_s2: f64,
+    /// Standard error of it, m/s².
     pub error_m_s2: f64,
     /// Level acceleration, m/s².
     pub aside_m_s2: f64,
+    /// Number of flights.
     pub throws: usize,
+    /// Number of samples in all flights.
     pub samples: usize,
 }
 

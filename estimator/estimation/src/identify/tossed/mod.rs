@@ -29,7 +29,9 @@ const OFF: f64 = 3.0;
 pub struct Tossed {
     /// One a recording.
     pub tracks: Vec<Track>,
+    /// Parameters of all flights together.
     pub fall: Fall,
+    /// Slides of all recordings.
     pub slides: Vec<slide::Slide>,
 }
 

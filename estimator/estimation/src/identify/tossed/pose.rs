@@ -7,6 +7,7 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 /// One recording.
 #[derive(Clone, Debug)]
 pub struct Track {
+    /// Times, s.
     pub time_s: Vec<f64>,
     /// Two level coordinates and the height, m.
     pub points: Vec<Vector3<f64>>,

@@ -32,12 +32,15 @@ const LEAST_S: f64 = 0.05;
 /// One slide.
 #[derive(Clone, Debug)]
 pub struct Slide {
+    /// Deceleration, m/s².
     pub slowing_m_s2: f64,
     /// Share of the friction that goes against the motion of the middle, a sample: the rest stops the turning.
     pub direct: Vec<f64>,
+    /// Number of samples.
     pub samples: usize,
-    /// Index of the track, and the first sample in it.
+    /// Index of the track.
     pub track: usize,
+    /// First sample in the track.
     pub first: usize,
 }
 
