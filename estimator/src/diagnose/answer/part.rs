@@ -9,7 +9,7 @@ use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 use haptics::law::entries;
 
 /// Role of a channel in the answer.

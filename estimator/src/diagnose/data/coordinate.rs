@@ -2,8 +2,8 @@
 //! theirs, too.
 
 use super::regression_data::Track;
-use crate::estimate::EstimateError;
-use crate::identify::mechanism::path::{keeps_to, spare_m};
+use estimation::identify::mechanism::path::{keeps_to, spare_m};
+use foundation::estimate::EstimateError;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
@@ -99,10 +99,9 @@ pub fn none(recording: &Recording) -> EstimateError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::diagnose;
     use crate::diagnose::findings::Findings;
     use crate::diagnose::options::Options;
-    use crate::diagnose::validate;
+    use crate::diagnose::{diagnose, validate};
     use haptics::recording::Channel;
 
     const RADIUS_M: f64 = 0.3;

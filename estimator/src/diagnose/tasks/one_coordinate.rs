@@ -14,8 +14,7 @@ use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
     backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
 };
-use crate::diagnose::selection::channel::Channel;
-use crate::diagnose::selection::channel::leave_out_what_is_unsure;
+use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
 use crate::diagnose::selection::layout::{Blocks, Held, Layout};
@@ -23,8 +22,8 @@ use crate::diagnose::selection::noise_model::Noise;
 use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares_values;
+use estimation::regression::linear::least_squares_values;
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
 

@@ -5,7 +5,7 @@ use crate::diagnose::hypotheses::added_constraint;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::{AddedConstraint, Kind};
 use haptics::world::Cable;

@@ -1,7 +1,8 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
-use crate::estimate::EstimateError;
-use crate::segment::{SystemState, segment};
+use estimation::segment::segment;
+use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 

@@ -3,15 +3,14 @@
 
 use super::curve;
 use super::model::Known;
-use super::rows::FREE_EVERY;
-use super::rows::{Place, Row, Seen, direction};
+use super::rows::{FREE_EVERY, Place, Row, Seen, direction};
 use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use haptics::Vec2;
 
 /// Numbers of throws. The least that is likely to suffice is proposed.

@@ -3,7 +3,7 @@
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::profile_likelihood::known;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 
 /// Tried half gaps, as shares of the input's range.
 const GAPS: Axis = Axis::geometric(3e-3, 0.1, 14);
