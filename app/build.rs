@@ -7,12 +7,16 @@ mod revision;
 use std::path::Path;
 
 /// What the program is made of, from the workspace's top: a change there may make the checkout differ from its revision.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 13] = [
     "Cargo.toml",
     "Cargo.lock",
     "app/Cargo.toml",
     "app/src",
     "estimator/src",
+    "estimator/foundation/src",
+    "estimator/logs/src",
+    "estimator/estimation/src",
+    "estimator/training/src",
     "haptics/src",
     "render/src",
     "assets",

@@ -1,7 +1,7 @@
 //! Draws the Train and Devices pages in both themes and two sizes into a folder: `cargo run -p app --example pages -- FOLDER`.
 
-use app::ui::picture_input::PictureInput;
-use app::ui::screenshot::{DEVICES, TRAIN, picture};
+use app::ui::headless::picture_input::PictureInput;
+use app::ui::headless::screenshot::{DEVICES, TRAIN, picture};
 use haptics::world::presets::BUILT_IN;
 use std::path::PathBuf;
 

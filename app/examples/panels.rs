@@ -1,8 +1,8 @@
 //! Draws every panel of the window into a folder: `cargo run -p app --example panels -- FOLDER LOG…`.
 
 use anyhow::Context as _;
-use app::ui::picture_input::PictureInput;
-use app::ui::screenshot::{picture, pictures};
+use app::ui::headless::picture_input::PictureInput;
+use app::ui::headless::screenshot::{picture, pictures};
 use std::path::PathBuf;
 
 /// Panels with the size they are drawn in.

@@ -1,5 +1,5 @@
 //! Opens the window: `cargo run -p app --example ui -- [LOG]`.
-use app::ui::run::{RunOptions, run};
+use app::ui::shell::run::{RunOptions, run};
 
 fn main() -> anyhow::Result<()> {
     let log = std::env::args().nth(1).map(Into::into);

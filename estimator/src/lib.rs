@@ -1,8 +1,7 @@
 //! From a log to numbers one can sign.
 //!
-//! `log` reads, `signal` derives, `segment` finds the states and their times, `identify` and `constraint` estimate,
-//! `calibrate` writes a world, `simulate` runs the measured motion through it. Every stage is a plain function between
-//! plain types.
+//! This crate diagnoses the base model, and it is the entrance to the crates below: `foundation` (signals, definitions of
+//! tasks, types of answers), `logs`, `estimation` and `training`.
 //!
 //! From a log to parameters with errors, and to the defects of the model:
 //!
@@ -25,21 +24,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "ablation")]
-pub mod ablation;
-pub mod assistant;
-pub mod calibrate;
-pub mod cancellation;
-pub mod constraint;
 pub mod diagnose;
-pub mod estimate;
-pub mod hmm;
-pub mod identify;
-pub mod log;
-pub mod online;
-pub mod pipeline;
-pub mod segment;
-pub mod signal;
-pub mod simulate;
-pub mod training;
-pub mod words;
+
+pub use estimation::{calibrate, constraint, hmm, identify, online, pipeline, regression, simulate};
+#[cfg(feature = "ablation")]
+pub use foundation::ablation;
+pub use foundation::{cancellation, estimate, signal, words};
+pub use training::{self, assistant};
+
+/// Logs, with the gaps of their clocks.
+pub mod log {
+    pub use foundation::signal::gaps::{gap_above_s, gaps};
+    pub use logs::*;
+}
+
+/// Segmentation, with the definitions of the tasks that it follows.
+pub mod segment {
+    pub use estimation::segment::*;
+    pub use foundation::tasks::{Sign, SystemState, Thresholds, definition, library, shows};
+}

@@ -1,12 +1,17 @@
-//! The arrows between the crates point one way: haptics ← estimator ← app, haptics ← render ← app.
+//! The arrows between the crates point one way: haptics ← foundation ← logs, estimation ← training, estimator ← app,
+//! haptics ← render ← app.
 
 use cargo_metadata::MetadataCommand;
 use std::collections::BTreeSet;
 
 /// Workspace members that `package` may depend on in its normal build.
-const ALLOWED: [(&str, &[&str]); 7] = [
+const ALLOWED: [(&str, &[&str]); 11] = [
     ("haptics", &[]),
-    ("estimator", &["haptics"]),
+    ("foundation", &["haptics"]),
+    ("logs", &["haptics", "foundation"]),
+    ("estimation", &["haptics", "foundation"]),
+    ("training", &["haptics", "foundation", "logs", "estimation"]),
+    ("estimator", &["haptics", "foundation", "logs", "estimation", "training"]),
     ("render", &["haptics"]),
     ("blind", &["haptics", "estimator"]),
     ("app", &["haptics", "estimator", "render", "blind"]),

@@ -53,8 +53,8 @@ fn history() -> Vec<u8> {
 
 /// What a window keeps of itself, and a project.
 fn sessions() -> Vec<Vec<u8>> {
-    let kept = app::ui::autosave::State { toured: true, ..Default::default() };
-    let project = app::ui::project::Project { touchstone_project: 1, ..Default::default() };
+    let kept = app::ui::document::autosave::State { toured: true, ..Default::default() };
+    let project = app::ui::document::project::Project { touchstone_project: 1, ..Default::default() };
     vec![serde_json::to_vec(&kept).expect("JSON"), serde_json::to_vec(&project).expect("JSON"), b"{}".to_vec()]
 }
 

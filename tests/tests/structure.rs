@@ -8,8 +8,17 @@ use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 use tests::workspace;
 
-/// Crates whose structure is held.
-const CRATES: [&str; 4] = ["haptics", "estimator", "render", "app"];
+/// Folders of the crates whose structure is held.
+const CRATES: [&str; 8] = [
+    "haptics",
+    "estimator/foundation",
+    "estimator/logs",
+    "estimator/estimation",
+    "estimator/training",
+    "estimator",
+    "render",
+    "app",
+];
 /// Most modules of an import circle, by crate.
 const MOST_IN_A_CIRCLE: usize = 5;
 /// Most files of the diagnosis outside its rooms.
@@ -178,7 +187,7 @@ fn reached<'a>(imports: &'a BTreeMap<Module, BTreeSet<Module>>, from: &'a Module
 fn import_circles_are_small_and_stay_in_their_folder() {
     for name in CRATES {
         let imports = imports(name);
-        assert!(imports.len() > 30, "{name}: {} modules were looked at", imports.len());
+        assert!(imports.len() > 20, "{name}: {} modules were looked at", imports.len());
         let reached: BTreeMap<&Module, BTreeSet<&Module>> = imports.keys().map(|m| (m, reached(&imports, m))).collect();
         for module in imports.keys() {
             let back = |other: &&&Module| **other == module || reached[**other].contains(module);
@@ -272,7 +281,7 @@ fn comments_say_first_what_a_thing_is() {
                 }
             }
         }
-        assert!(all > 300, "{name}: {all} comments were looked at");
+        assert!(all > 200, "{name}: {all} comments were looked at");
         let share = riddles.len() as f64 / all as f64;
         assert!(
             share <= MOST_RIDDLES,

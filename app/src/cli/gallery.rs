@@ -1,7 +1,7 @@
 //! `touchstone gallery`: every panel and scene as pictures, with a page that shows them.
 
 use super::{Output, progress};
-use crate::ui::gallery::plates;
+use crate::ui::headless::gallery::plates;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -25,7 +25,7 @@ mod stated;
 pub mod table;
 
 use crate::tasks::Chosen;
-use crate::ui::run;
+use crate::ui::shell::run;
 use clap::{Args, Parser, Subcommand};
 use estimator::log::{LogError, Watch};
 use haptics::device::haply::farewell;
@@ -136,9 +136,13 @@ struct ControlArgs {
 const USUAL_CONTROL: &str = "2";
 
 fn parse_control(text: &str) -> Result<f64, String> {
-    let most = text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::trainer::control::MOST_CONTROL_N_S_M);
+    let most =
+        text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::train::trainer::control::MOST_CONTROL_N_S_M);
     most.ok_or_else(|| {
-        format!("`{text}` is no damping; write up to {} N s/m, like 2", crate::ui::trainer::control::MOST_CONTROL_N_S_M)
+        format!(
+            "`{text}` is no damping; write up to {} N s/m, like 2",
+            crate::ui::train::trainer::control::MOST_CONTROL_N_S_M
+        )
     })
 }
 

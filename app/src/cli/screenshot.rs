@@ -1,8 +1,9 @@
 //! `touchstone screenshot`: a picture without a window.
 
 use super::{LogArgs, Output, parse_size, record};
-use crate::ui::picture_input::PictureInput;
-use crate::ui::screenshot::{self, MAPPING, PictureName, WORKBENCH};
+use crate::ui::headless::picture_input::PictureInput;
+use crate::ui::headless::screenshot;
+use crate::ui::headless::screenshot::{MAPPING, PictureName, WORKBENCH};
 use anyhow::Context;
 use clap::Args;
 use haptics::device::{Device, ScriptedOperator, Skill};

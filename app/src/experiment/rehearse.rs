@@ -174,7 +174,7 @@ fn judged(answer: &Findings, id: &str, separates: &[String], recording: Recordin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ui::gallery::samples::leaking;
+    use crate::ui::headless::gallery::samples::leaking;
     use blind::{Bench, Effect, Log, Spec};
     use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
     use haptics::recording::Channel;

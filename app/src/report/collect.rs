@@ -1,8 +1,8 @@
 //! Runs the stages on one log: segment, fit, calibrate, simulate, diagnose. A failed stage is replaced by a sentence.
 
 use super::source::Source;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::residuals::Residuals;
-use crate::ui::prepare::Prepared;
 use estimator::diagnose::{self, Findings};
 use estimator::estimate::Parameter;
 use estimator::online::enough_for;

@@ -1,91 +1,24 @@
 //! The window.
 //!
-//! * [`session`] is what the window knows; [`jobs`] fill it in the background; [`trainer`] is the live world.
-//! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
-//! * [`mapping`] is the dialog that says what the columns of a foreign table mean.
-//! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes, [`icons`] for icons.
-//! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
+//! * [`session`] composes the state of the features; [`background`] runs their jobs.
+//! * [`document`], [`calibrate`], [`diagnose`], [`train`] and [`devices`] are the features: state, actions, and panels, one panel a file.
+//! * [`column_mapping`] is the dialog for the columns of a foreign table.
+//! * [`shell`] lays the panels out into the workspaces, with menu, commands and messages.
+//! * [`plots`] draws curves, [`scene`] draws worlds; [`kit`] has the colours, sizes, icons and widgets.
+//! * [`headless`] draws any of it without a window.
 
-pub mod actions;
-pub mod app;
-pub mod assistant;
-pub mod atlas;
-pub mod autosave;
 pub mod background;
-pub mod by_hand;
-pub mod calibration;
-pub mod checked;
-pub mod checking;
-pub mod comfort;
-pub mod command_palette;
-#[cfg(test)]
-mod device_tests;
-pub mod diagnosing;
-pub mod diagnosis_state;
-pub mod dialogs;
-pub mod dock;
+pub mod calibrate;
+pub mod column_mapping;
+pub mod devices;
+pub mod diagnose;
 pub mod document;
-pub mod editing_rules;
-pub mod experimenting;
-pub mod experiments;
-pub mod file_kind;
-pub mod files;
-pub mod film;
-pub mod first_picture;
-pub mod fit_choice;
-pub mod fitting;
-pub mod follow;
-pub mod frames;
-pub mod gallery;
-pub mod guided;
-pub mod guiding;
-pub mod keys;
+pub mod headless;
 pub mod kit;
-pub mod learning;
-pub mod lessons;
-pub mod mapping;
-pub mod mapping_actions;
-pub mod menu;
-pub mod message_list;
-pub mod messages;
-pub mod opening;
-pub mod overlays;
-pub mod palette;
-pub mod panel;
-pub mod panel_id;
-pub mod panels;
-pub mod picture_input;
-pub mod playback;
 pub mod plots;
-pub mod prepare;
-pub mod project;
-pub mod project_files;
-pub mod recent;
-pub mod recorder;
-pub mod refits;
-pub mod replayed;
-pub mod restore;
-pub mod rules;
-pub mod run;
 pub mod scene;
-pub mod screenshot;
-pub mod sensitivity;
 pub mod session;
-pub mod showing_video;
-pub mod stage;
-pub mod starting_over;
+pub mod shell;
 #[cfg(test)]
 mod tests;
-pub mod tour;
-pub mod tour_progress;
-pub mod trainees;
-pub mod trainer;
-pub mod training;
-pub mod trying_values;
-pub mod undo;
-pub mod undoing;
-pub mod videos;
-pub mod wanting_sensitivity;
-pub mod what_if;
-pub mod window;
-pub mod workspace;
+pub mod train;

@@ -1,25 +1,25 @@
 //! Data of the window: recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
-use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::experiments::Experiments;
-use crate::ui::fit_choice::FitChoice;
+use crate::ui::diagnose::experiment_state::Experiments;
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::scene::layers::SceneLayers;
 
-use super::prepare::Prepared;
 use crate::ui::background::jobs::{Answer, JobKind, Jobs};
-use crate::ui::file_kind::LOAD;
-use crate::ui::mapping::state::Mapping;
+use crate::ui::column_mapping::state::Mapping;
+use crate::ui::document::file_kind::LOAD;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::choices::PlotChoices;
 
-use super::calibration::Calibration;
-use super::document::Document;
-use super::message_list::Messages;
-use super::panel_id::PanelId;
-use super::training::Training;
-use super::undo::Undo;
-use super::workspace::Workspace;
 use crate::tasks::Chosen;
-use crate::ui::videos::Videos;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::document::state::Document;
+use crate::ui::document::undo::Undo;
+use crate::ui::document::videos::Videos;
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::state::Training;
 use std::sync::Arc;
 
 /// Everything that is shared between panels.

@@ -6,7 +6,7 @@ use crate::diagnose::answer::time_series::Course;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::extension::hypothetical_worlds::Hypothesis;
 use crate::diagnose::recording::delay_scan::Late;
-use crate::diagnose::validation::fitted_terms::Kept;
+use crate::diagnose::validation::on_other_recordings::Kept;
 use haptics::law::Effect;
 use std::ops::{Deref, DerefMut};
 

@@ -121,7 +121,7 @@ pub fn validate(
             Task::Switch => tasks::switch::channels(one, options)?,
         };
         let order: Vec<&str> = diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
-        validation::fitted_terms::measure(&diagnosis.kept, &order, &channels)
+        validation::on_other_recordings::measure(&diagnosis.kept, &order, &channels)
     };
     recordings.iter().map(of).collect()
 }

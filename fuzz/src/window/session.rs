@@ -1,7 +1,7 @@
 //! Any bytes as the kept state of a window, and as a project: read, or put aside and said.
 
-use app::ui::autosave::{Autosave, State};
-use app::ui::project::Project;
+use app::ui::document::autosave::{Autosave, State};
+use app::ui::document::project::Project;
 
 pub fn run(bytes: &[u8]) {
     let path = crate::targets::file("session.json");

@@ -4,7 +4,7 @@ use crate::documents::attempt;
 use app::history::attempt::Attempt;
 use app::history::store::{Query, Store};
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
-use app::ui::project::{Project, Source};
+use app::ui::document::project::{Project, Source};
 use haptics::device::{ScriptedOperator, Skill};
 use haptics::recording::Meta;
 use haptics::servo::recorder::SensorModel;

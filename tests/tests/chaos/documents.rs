@@ -5,8 +5,8 @@ use crate::{Chaos, must_be_a_sentence, mutate};
 use app::history::attempt::{Attempt, Conditions};
 use app::history::keeper::History;
 use app::history::store::{Query, Store};
-use app::ui::autosave::State as Kept;
-use app::ui::project::Project;
+use app::ui::document::autosave::State as Kept;
+use app::ui::document::project::Project;
 use estimator::segment::definition::Definition;
 use estimator::training::lesson::Lesson;
 use haptics::device::{ScriptedOperator, Skill};
@@ -82,7 +82,8 @@ pub fn spoiled(chaos: &mut Chaos) {
 
 /// Projects, and what a window keeps of itself.
 fn spoiled_windows(chaos: &mut Chaos, path: &Path) {
-    let source = app::ui::project::Source { log: PathBuf::from("a.csv"), meta: Some(PathBuf::from("b.json")) };
+    let source =
+        app::ui::document::project::Source { log: PathBuf::from("a.csv"), meta: Some(PathBuf::from("b.json")) };
     let project = Project { touchstone_project: 1, recordings: vec![source], ..Project::default() };
     let kept = Kept { project: project.clone(), toured: true, ..Kept::default() };
     let project = serde_json::to_vec(&project).expect("JSON");

@@ -5,7 +5,7 @@ use crate::{Chaos, child, must_be_a_sentence};
 use app::history::keeper::{Answer, History};
 use app::history::store::{Query, Store};
 use app::recorder::{Recorder, Status};
-use app::ui::project::Project;
+use app::ui::document::project::Project;
 use estimator::log;
 use haptics::servo::TickRecord;
 use haptics::servo::tap::tap;

@@ -2,9 +2,9 @@
 
 use crate::{Chaos, MEMORY, must_be_a_sentence};
 use app::history::store::Store;
-use app::ui::autosave::Autosave;
-use app::ui::prepare::Prepared;
-use app::ui::project::Project;
+use app::ui::document::autosave::Autosave;
+use app::ui::document::prepared::Prepared;
+use app::ui::document::project::Project;
 use estimator::log;
 use estimator::segment::definition::Definition;
 use estimator::training::lesson::Lesson;

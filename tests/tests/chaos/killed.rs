@@ -3,7 +3,7 @@
 use crate::{Chaos, child};
 use app::history::store::{Query, Store};
 use app::recorder::folder;
-use app::ui::project::Project;
+use app::ui::document::project::Project;
 use estimator::log;
 use rand::RngExt as _;
 use std::fs::File;

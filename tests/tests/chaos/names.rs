@@ -2,7 +2,7 @@
 
 use crate::{Chaos, logs};
 use app::history::store::{Query, Store};
-use app::ui::project::{Project, Source};
+use app::ui::document::project::{Project, Source};
 use estimator::log;
 use haptics::recording::{Channel, Recording};
 use rand::RngExt as _;

@@ -7,7 +7,7 @@ mod servo;
 
 use crate::Chaos;
 use crate::workbench::Bench;
-use app::ui::trainees;
+use app::ui::train::trainees;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

@@ -2,13 +2,15 @@
 //! on the way. At the end the good log still opens and is fitted.
 
 use crate::{Chaos, logs, must_be_a_sentence};
-use app::ui::autosave::{Autosave, State as Kept};
-use app::ui::dock::arrangement::Dock;
-use app::ui::message_list::Tone;
-use app::ui::project_files::project_of;
-use app::ui::refits::FIT;
+use app::ui::calibrate::fitting;
+use app::ui::calibrate::refits::FIT;
+use app::ui::document::autosave::{Autosave, State as Kept};
+use app::ui::document::project_files::project_of;
+use app::ui::document::{opening, project_files, undo_actions};
 use app::ui::session::Session;
-use app::ui::{fitting, follow, opening, project_files, undoing};
+use app::ui::shell::dispatch;
+use app::ui::shell::dock::arrangement::Dock;
+use app::ui::shell::message_list::Tone;
 use rand::RngExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -20,7 +22,7 @@ const DEEDS: usize = 14;
 /// A frame without a picture.
 fn frame(ctx: &egui::Context, session: &mut Session) {
     ctx.begin_pass(egui::RawInput::default());
-    follow::poll(session, ctx);
+    dispatch::poll(session, ctx);
     // Nobody draws: what would go to a graphics card is let go.
     ctx.end_pass().textures_delta.clear();
 }
@@ -65,7 +67,7 @@ impl Bench {
         let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
         match chaos.rng.random_range(0..6) {
             0 => project_files::add_log(session, ctx, &path),
-            1 => undoing::undo(
+            1 => undo_actions::undo(
                 &mut session.document,
                 &mut session.calibration,
                 &mut session.plots,

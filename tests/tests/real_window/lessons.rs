@@ -1,10 +1,10 @@
 //! Lessons in a real window: opened and begun by their names, done with a pointer that goes where a person's would, graded from their files.
 
 use crate::screen::{Hand, SCREEN, Screen, command, drawn, kept, start, try_command, until};
+use app::ui::headless::screenshot::trainer_place;
 use app::ui::kit::theme;
-use app::ui::lessons::pointer::{Pointed, pointer_through};
 use app::ui::scene::view::Place;
-use app::ui::screenshot::trainer_place;
+use app::ui::train::lessons::pointer::{Pointed, pointer_through};
 use estimator::training::lesson::Lesson;
 use estimator::training::lesson::goal::Kind;
 use haptics::Vec2;

@@ -2,7 +2,7 @@
 
 use crate::screen::{SCREEN, Screen, drawn, kept, start, until, within};
 use crate::{by_hand, drag, drop::drop_file};
-use app::ui::gallery::by_pointer::{Places, places};
+use app::ui::headless::gallery::by_pointer::{Places, places};
 use app::ui::kit::theme::Palette;
 use egui::{Color32, Pos2, Rect};
 use estimator::segment::SystemState;

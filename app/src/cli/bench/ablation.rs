@@ -223,7 +223,7 @@ fn markdown(said: &Said) -> String {
     }
     let _ = write!(text, "\n|---|---|{}\n", "--:|--:|--:|--:|--:|--:|".repeat(said.factors.len()));
     for row in &said.constants {
-        let file = row.file.trim_start_matches("estimator/src/").trim_end_matches(".rs");
+        let file = row.file.split("src/").nth(1).unwrap_or(&row.file).trim_end_matches(".rs");
         let value = row.value.replace('|', "\\|").replace('\n', " ");
         let _ = write!(text, "| `{file}` {} | {value} |", row.name);
         for c in &row.counts {

@@ -1,8 +1,8 @@
 //! `touchstone bench frames`: processor time of a frame of each panel, with a long log.
 
 use super::super::{Output, parse_size};
-use crate::ui::frames::{Costs, Loaded, SUBJECTS, Subject};
-use crate::ui::gallery::samples::askew_world;
+use crate::ui::headless::frame_costs::{Costs, Loaded, SUBJECTS, Subject};
+use crate::ui::headless::gallery::samples::askew_world;
 use clap::Args;
 use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::Recording;

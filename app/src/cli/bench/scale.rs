@@ -6,7 +6,7 @@ use super::loglog::{self, Curve};
 use super::table::plain;
 use super::whole::{best_s, long};
 use crate::cli::{Output, progress};
-use crate::ui::frames::{Loaded, SUBJECTS};
+use crate::ui::headless::frame_costs::{Loaded, SUBJECTS};
 use clap::Args;
 use estimator::diagnose::{self, diagnose};
 use estimator::hmm::{Chain, Covariance, Gaussian, Model};

@@ -7,7 +7,7 @@ use super::online::OnlineBench;
 use super::table::{Figure, Said, Wanted};
 use super::{ServoBench, opening, peers, window};
 use crate::cli::{ControlArgs, Output, progress};
-use crate::ui::gallery::samples::askew_world;
+use crate::ui::headless::gallery::samples::askew_world;
 use clap::Args;
 use estimator::diagnose::{self, diagnose};
 use estimator::pipeline::{Options, Prepared, analyse_prepared};

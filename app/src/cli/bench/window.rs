@@ -3,7 +3,7 @@
 
 use super::table::{Figure, Wanted};
 use super::whole::WholeBench;
-use crate::ui::first_picture::SAID;
+use crate::ui::headless::first_picture::SAID;
 use anyhow::Context as _;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};

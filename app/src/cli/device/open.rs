@@ -1,7 +1,7 @@
 //! The available devices, and their construction from the command line.
 
 use crate::operator;
-use crate::ui::trainer::remote::Remote;
+use crate::ui::train::trainer::remote::Remote;
 use anyhow::Context;
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};

@@ -3,9 +3,9 @@
 
 use crate::report::chart::frame::{Frame, key, short};
 use crate::text::format;
+use crate::ui::document::prepared::{Prepared, Trace};
 use crate::ui::plots::decimate::{Columns, decimate_in};
 use crate::ui::plots::levels::Samples;
-use crate::ui::prepare::{Prepared, Trace};
 use egui_plot::PlotPoint;
 use estimator::log::gaps;
 use haptics::recording::{Recording, Span};

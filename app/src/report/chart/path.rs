@@ -2,7 +2,7 @@
 
 use super::bad;
 use crate::report::chart::frame::{Frame, key, range_of};
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;
 use haptics::world::Guide;

@@ -3,7 +3,7 @@
 use super::curves::NoiseCache;
 use super::derived::Derived;
 use super::shift::{Held, Likeliest};
-use crate::ui::prepare::Group;
+use crate::ui::document::prepared::Group;
 use estimator::signal::transform::Transform;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! Doubtful spans of a recording: shaded where they are, explained under the pointer.
 
+use crate::ui::document::prepared::{Group, Prepared};
 use crate::ui::kit::theme::palette;
-use crate::ui::prepare::{Group, Prepared};
 use egui::{Pos2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
 use haptics::recording::Warning;

@@ -3,7 +3,7 @@
 
 use super::levels::Levels;
 use crate::ui::background::jobs::{JobKind, Jobs, Started, Ticket, change, no_change};
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use estimator::signal::transform::{Transform, mean};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

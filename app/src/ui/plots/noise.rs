@@ -1,7 +1,7 @@
 //! Noise of a curve: the band around the prediction of a model.
 
 use super::levels::Levels;
-use crate::ui::prepare::Prepared;
+use crate::ui::document::prepared::Prepared;
 use estimator::segment::{Segmentation, SystemState};
 use estimator::signal::derive::even_period;
 use estimator::signal::filter::white_noise_gain;

@@ -1,5 +1,6 @@
 //! One plot over time: its curves, those of the models, the noise band, the states behind them, and the cursor.
 
+use crate::ui::document::prepared::{Group, Prepared};
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{Palette, palette};
 use crate::ui::plots::axes::{AXIS_WIDTH, still_plot, time_axis};
@@ -12,7 +13,6 @@ use crate::ui::plots::line::ThinnedLine;
 use crate::ui::plots::plot_header::gutter;
 use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
 use crate::ui::plots::shift::Grasp;
-use crate::ui::prepare::{Group, Prepared};
 use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span};
 use estimator::segment::Segmentation;

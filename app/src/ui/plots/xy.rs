@@ -3,10 +3,10 @@
 use super::axes::{AXIS_WIDTH, still_plot, variable_axis};
 use super::choices::XyColor;
 use super::levels::{Levels, Samples};
+use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::palette;
 use crate::ui::plots::time_plot::axis_height;
-use crate::ui::prepare::Prepared;
 use egui::{Color32, Pos2, Sense, Stroke, Ui, Vec2};
 use egui_plot::{Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform};
 use estimator::segment::Segmentation;

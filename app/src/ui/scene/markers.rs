@@ -1,9 +1,9 @@
 //! Detected constraints as marks in the picture.
 
 use super::overlay::bounds;
-use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
-use crate::ui::prepare::Prepared;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::state::Document;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;
 use haptics::world::Guide;

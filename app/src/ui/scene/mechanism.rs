@@ -2,10 +2,10 @@
 //! The sizes are chosen for the picture, since the recording has none. The rail is as long as the recorded travel.
 
 use crate::text::format;
+use crate::ui::document::prepared::Prepared;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::plots::axes::{decimals, marks};
-use crate::ui::prepare::Prepared;
 use egui::{Align2, FontId, Pos2, Rect, Ui};
 use haptics::Vec2;
 use haptics::world::{Block, Guide, State, World, presets};

@@ -2,9 +2,9 @@
 //! explains (figure 5.12).
 
 use super::overlay::window;
-use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
-use crate::ui::prepare::Prepared;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::state::Document;
 use crate::ui::session::Session;
 use haptics::Vec2;
 use render::{ColorRole, ConstraintMarker, ForceVector};

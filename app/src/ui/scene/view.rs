@@ -1,11 +1,11 @@
 //! The 3-D view as a widget: picture, orbit, zoom, pan, reset; by mouse and by keys.
 
 use super::callback::{picture, pixels};
-use super::rig::Rig;
 use crate::ui::kit::icons;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::palette;
+use crate::ui::scene::camera_rig::Rig;
 use egui::{Key, PointerButton, Rect, Response, Sense};
 use haptics::world::{State, World};
 use render::{Camera, ViewOptions};

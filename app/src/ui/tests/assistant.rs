@@ -1,13 +1,13 @@
 //! The assistant over the trainer's picture: what it says, when it is silent, and that every part of it can be switched off.
 
 use super::{empty, train_window};
-use crate::ui::app::App;
-use crate::ui::lessons::pointer;
-use crate::ui::lessons::practising;
 use crate::ui::session::Session;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::{Clock, Operator};
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::lessons::pointer;
+use crate::ui::train::lessons::practising;
+use crate::ui::train::trainer::live::{Clock, Operator};
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use haptics::Vec2;

@@ -2,13 +2,13 @@
 
 use super::experiment::{asked_about, pair, quiet, settled};
 use super::until;
-use crate::ui::app::App;
-use crate::ui::experiments::REHEARSE;
-use crate::ui::gallery::samples::{leaking, leaking_world};
-use crate::ui::guided::Phase;
-use crate::ui::guiding;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::workspace::Workspace;
+use crate::ui::diagnose::experiment_state::REHEARSE;
+use crate::ui::diagnose::guidance;
+use crate::ui::diagnose::guided_experiment::Phase;
+use crate::ui::headless::gallery::samples::{leaking, leaking_world};
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -61,7 +61,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
     let carried = table.steps.iter().position(|s| s.words == "Take hold.").expect("a step") + 1;
     // Half way through the carry the block is in the air.
     let middle_s = 0.5 * (table.steps[carried - 1].until_s + table.steps[carried].until_s);
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, middle_s);
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, middle_s);
     let lifted_m = |session: &crate::ui::session::Session| {
         session
             .training
@@ -70,7 +70,7 @@ fn a_person_carries_the_block_along_the_rings_and_settles_it() {
             .map_or(0.0, |(s, w)| s.state.bodies[0].center_m.y - w.blocks[0].start.center_m.y)
     };
     assert!(lifted_m(session) > 2e-3, "lifted by {} m", lifted_m(session));
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, table.duration_s());
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, table.duration_s());
     assert!(lifted_m(session).abs() < 2e-3, "and put down again: {} m", lifted_m(session));
     harness.run_steps(2);
     until(&mut harness, "the recording", |app| {

@@ -2,12 +2,12 @@
 
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
-use crate::ui::app::App;
-use crate::ui::checked::{CHECK, Checked, Holds, On, check_now, holds};
+use crate::ui::diagnose::checked::{CHECK, Checked, Holds, On, check_now, holds};
+use crate::ui::document::prepared::Prepared;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::prepare::Prepared;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
 use crate::ui::tests::picture;
 use blind::{Bench, Effect};
 use egui::Role;

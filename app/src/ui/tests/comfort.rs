@@ -1,14 +1,14 @@
 //! Comfort in Train: a pause when the window loses the focus, everything anew by one key, a left hand, what is remembered.
 
 use super::{empty, in_train, keep, no_driver, train_window};
-use crate::ui::app::App;
-use crate::ui::lessons::practising;
-use crate::ui::lessons::state::Phase;
-use crate::ui::screenshot;
+use crate::ui::headless::screenshot;
+use crate::ui::shell::app::App;
 use crate::ui::tests::picture;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::hold::{Cause as HoldCause, PAUSED};
-use crate::ui::trainer::live::{Operator, Trainer};
+use crate::ui::train::lessons::practising;
+use crate::ui::train::lessons::state::Phase;
+use crate::ui::train::trainer::live::{Operator, Trainer};
+use crate::ui::train::trainer::pause::{Cause as HoldCause, PAUSED};
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::Harness;

@@ -1,19 +1,19 @@
 //! The Diagnose workspace: what it asks for, what it answers, the extended model and how it is felt.
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
-use crate::ui::app::App;
-use crate::ui::diagnosing;
-use crate::ui::diagnosis_state;
-use crate::ui::diagnosis_state::StartFrom;
-use crate::ui::diagnosis_state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
-use crate::ui::follow;
+use crate::ui::diagnose::actions;
+use crate::ui::diagnose::state::StartFrom;
+use crate::ui::diagnose::state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
+use crate::ui::diagnose::state::{ask, extend};
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::Operator;
-use crate::ui::workspace::Workspace;
+use crate::ui::train::trainer::live::Operator;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use blind::{Bench, Effect, Log, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -45,8 +45,7 @@ fn loaded(recording: Recording) -> Session {
 pub fn diagnosed(recording: Recording) -> Session {
     let mut session = loaded(recording);
     let from = session.diagnosing.from;
-    let answer =
-        diagnosis_state::ask(&session.document.recordings, &session.calibration.choice, from, Progress::default());
+    let answer = ask(&session.document.recordings, &session.calibration.choice, from, Progress::default());
     match answer {
         Ok(answer) => session.diagnosing.answer = Some(Arc::new(answer)),
         Err(problem) => session.diagnosing.problem = Some(problem),
@@ -116,14 +115,9 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
 fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() {
     let mut session = diagnosed(RIPPLED.clone());
     let answer = session.diagnosing.answer.clone().expect("an answer");
-    let worlds = diagnosis_state::extend(
-        &session.document.recordings,
-        &session.calibration.choice,
-        session.diagnosing.from,
-        &answer,
-    );
+    let worlds = extend(&session.document.recordings, &session.calibration.choice, session.diagnosing.from, &answer);
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    session.training.trainer.compare = Some(diagnosing::comparison(&session.diagnosing).expect("a crank can be felt"));
+    session.training.trainer.compare = Some(actions::comparison(&session.diagnosing).expect("a crank can be felt"));
     session.training.trainer.operator = Operator::Scripted;
     session.training.trainer.choose(WorldChoice::After).expect("the extended world");
     session.workspace = Workspace::Train;
@@ -163,8 +157,12 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     session.workspace = Workspace::Calibrate;
     let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
-        crate::ui::panel::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
+        dispatch::poll(session, &ctx);
+        crate::ui::shell::panel::Panel::ui(
+            &mut crate::ui::calibrate::panels::results::ResultsPanel::default(),
+            ui,
+            session,
+        );
     });
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);
@@ -178,14 +176,10 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     session.workspace = Workspace::Diagnose;
     let mut second = RIPPLED.clone();
     second.name = "again".to_owned();
-    let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
+    let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::document::prepared::Prepared::new(r)));
     session.show(recordings.to_vec());
-    let answer = diagnosis_state::ask(
-        &session.document.recordings,
-        &session.calibration.choice,
-        session.diagnosing.from,
-        Progress::default(),
-    );
+    let answer =
+        ask(&session.document.recordings, &session.calibration.choice, session.diagnosing.from, Progress::default());
     let answer = answer.expect("an answer");
     assert_eq!(answer.residuals.len(), 2);
     assert!(answer.residuals.iter().all(|r| !r.is_empty()));
@@ -225,14 +219,9 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
     assert!(ids.contains(&"viscous-friction") && ids.contains(&"coulomb-friction"), "{ids:?}");
-    let worlds = diagnosis_state::extend(
-        &session.document.recordings,
-        &session.calibration.choice,
-        session.diagnosing.from,
-        &answer,
-    );
+    let worlds = extend(&session.document.recordings, &session.calibration.choice, session.diagnosing.from, &answer);
     session.diagnosing.worlds = Some(Arc::new(worlds.expect("both worlds")));
-    let why = diagnosing::comparison(&session.diagnosing).expect_err("nothing to hold");
+    let why = actions::comparison(&session.diagnosing).expect_err("nothing to hold");
     assert!(why.contains("save the extended world"), "{why}");
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
@@ -246,7 +235,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
 fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     let mut session = loaded(RIPPLED.clone());
     let ctx = egui::Context::default();
-    diagnosing::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
+    actions::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, &ctx);
     session.give_up(&ctx, DIAGNOSE);
     assert!(!session.jobs.is_running(DIAGNOSE));
     let harness = window(session);
@@ -255,12 +244,7 @@ fn a_cancelled_diagnosis_says_so_and_can_be_begun_again() {
     // And the engine itself ends when nobody wants its answer.
     let session = loaded(RIPPLED.clone());
     let unwanted = Progress::new(|share| share < 0.3);
-    let ended = diagnosis_state::ask(
-        &session.document.recordings,
-        &session.calibration.choice,
-        session.diagnosing.from,
-        unwanted,
-    );
+    let ended = ask(&session.document.recordings, &session.calibration.choice, session.diagnosing.from, unwanted);
     assert!(ended.is_err_and(|problem| problem.contains("cancelled")));
 }
 

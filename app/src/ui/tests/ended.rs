@@ -1,7 +1,7 @@
 //! A fit that nobody waits for any more ends soon, and leaves nothing half done for the next one.
 
 use super::{cart, performed};
-use crate::ui::trainer::choice::WorldChoice;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use estimator::cancellation;
 use estimator::pipeline::{self, Prepared};
 use estimator::segment::Method;

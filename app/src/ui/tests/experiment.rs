@@ -2,18 +2,18 @@
 
 use super::{harness, until};
 use crate::experiment::simulated::simulated_object;
-use crate::ui::app::App;
 use crate::ui::background::jobs::Jobs;
-use crate::ui::experimenting;
-use crate::ui::experiments::REHEARSE;
-use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
-use crate::ui::guided::Phase;
-use crate::ui::guiding;
-use crate::ui::opening;
+use crate::ui::diagnose::experiment;
+use crate::ui::diagnose::experiment_state::REHEARSE;
+use crate::ui::diagnose::guidance;
+use crate::ui::diagnose::guided_experiment::Phase;
+use crate::ui::document::opening;
+use crate::ui::headless::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::session::Session;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::Clock;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::trainer::live::Clock;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -187,11 +187,11 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     assert!(harness.query_by_label("Touch nothing.").is_some());
     let session = &mut harness.state_mut().session;
     let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.run_steps(2);
     assert!(harness.query_by_label("Take hold.").is_some());
     let session = &mut harness.state_mut().session;
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, all_s);
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, all_s);
     harness.run_steps(2);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
@@ -228,7 +228,7 @@ fn an_experiment_that_is_left_keeps_no_file() {
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
     let session = &mut harness.state_mut().session;
-    guiding::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
+    guidance::follow_rings(&session.experiments, &mut session.training.trainer, 3.0);
     harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
     harness.run_steps(3);
     let session = &harness.state().session;
@@ -266,7 +266,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     "hung".clone_into(&mut real.name);
     let path = saved(&real, folder.path());
     let ctx = harness.ctx.clone();
-    experimenting::add_experiment(&mut harness.state_mut().session, &ctx, &path);
+    experiment::add_experiment(&mut harness.state_mut().session, &ctx, &path);
     until(&mut harness, "the answer to both", |app| {
         let s = &app.session;
         s.document.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(&s.jobs)

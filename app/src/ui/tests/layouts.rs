@@ -1,10 +1,10 @@
 //! Named arrangements, used as a person does: by the palette, the menu and the dialog.
 
 use super::{STACK, harness, session};
-use crate::ui::app::App;
-use crate::ui::autosave::Autosave;
-use crate::ui::panel_id::PanelId;
-use crate::ui::workspace::Workspace;
+use crate::ui::document::autosave::Autosave;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Event, Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

@@ -1,15 +1,15 @@
 //! Lessons as a trainee goes through them: shown, practised, tested, told what to do better.
 
 use super::{in_train, train_window, until};
-use crate::ui::app::App;
-use crate::ui::lessons::pointer;
-use crate::ui::lessons::practising;
-use crate::ui::lessons::state::{Debrief, Phase};
-use crate::ui::message_list::Messages;
-use crate::ui::trainees;
-use crate::ui::trainer::live::Operator;
-use crate::ui::training::Training;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::message_list::Messages;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::lessons::pointer;
+use crate::ui::train::lessons::practising;
+use crate::ui::train::lessons::state::{Debrief, Phase};
+use crate::ui::train::state::Training;
+use crate::ui::train::trainees;
+use crate::ui::train::trainer::live::Operator;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -51,7 +51,7 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
             missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
         }
         let (again, _) =
-            crate::ui::lessons::state::graded_from(&debrief.path, None).expect("graded from its file alone");
+            crate::ui::train::lessons::state::graded_from(&debrief.path, None).expect("graded from its file alone");
         assert_eq!(again, debrief.grade, "{}", lesson.id);
         assert!(debrief.trace.duration_s() > 2.0, "{}", lesson.id);
     }

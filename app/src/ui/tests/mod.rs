@@ -25,16 +25,16 @@ mod video;
 mod window;
 mod workbench;
 
-use super::app::App;
-use super::panel::Picture;
-use super::prepare::Prepared;
 use super::session::{self, Session};
 use crate::ui::background::jobs::JobKind;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::screenshot;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::live::{Clock, Operator, Trainer};
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel::Picture;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui_kittest::Harness;
 use haptics::recording::{Channel, Recording};
 use std::io::Write;
@@ -93,10 +93,11 @@ pub fn session(recording: Recording) -> Session {
     session.training.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match crate::ui::refits::analyse(&session.document.recordings, &session.calibration.choice) {
+    match crate::ui::calibrate::refits::analyse(&session.document.recordings, &session.calibration.choice) {
         Ok(analysis) => {
-            session.calibration.replays = crate::ui::refits::replay_all(&analysis.world, &session.document.recordings);
-            session.calibration.enough = crate::ui::refits::judge(&analysis, &session.document.recordings);
+            session.calibration.replays =
+                crate::ui::calibrate::refits::replay_all(&analysis.world, &session.document.recordings);
+            session.calibration.enough = crate::ui::calibrate::refits::judge(&analysis, &session.document.recordings);
             session.calibration.analysis = Some(Arc::new(analysis));
             session.calibration.refits.answered(&session.calibration.choice.clone());
         }

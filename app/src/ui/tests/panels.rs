@@ -2,16 +2,16 @@
 
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::text::format;
-use crate::ui::follow;
+use crate::ui::calibrate::panels::parameters::ParametersPanel;
+use crate::ui::calibrate::panels::recording::RecordingPanel;
+use crate::ui::calibrate::panels::results::ResultsPanel;
+use crate::ui::calibrate::refits::FIT;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::panel::Panel;
-use crate::ui::panels::list::PANELS;
-use crate::ui::panels::parameters::ParametersPanel;
-use crate::ui::panels::recording::RecordingPanel;
-use crate::ui::panels::results::ResultsPanel;
-use crate::ui::refits::FIT;
-use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel;
+use crate::ui::shell::panel_list::PANELS;
 use crate::ui::tests::picture;
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
@@ -52,7 +52,7 @@ fn refit_starts_a_job_and_brings_a_fit() {
     session.calibration.analysis = None;
     let mut harness = harness(session, [300.0, 800.0], |ui, session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         RecordingPanel::default().ui(ui, session);
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();

@@ -2,9 +2,9 @@
 
 use super::thresholds::{COLORS, DARK, INK, LIGHT, MARGIN, SURFACE};
 use super::{STACK, count_near, empty, no_driver, session};
-use crate::ui::gallery::plates;
+use crate::ui::headless::gallery::plates;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::screenshot;
 use crate::ui::tests::picture;
 use crate::video::tests::no_reader;
 use estimator::segment::SystemState;

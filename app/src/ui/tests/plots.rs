@@ -2,20 +2,20 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
-use crate::ui::diagnosis_state;
-use crate::ui::follow;
+use crate::ui::calibrate::panels::log::LogPanel;
+use crate::ui::calibrate::refits::{analyse, replay_all, replay_forces};
+use crate::ui::diagnose::state::extend;
+use crate::ui::document::overlays;
+use crate::ui::document::overlays::ALIGN;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::overlays;
-use crate::ui::overlays::ALIGN;
-use crate::ui::panel::Panel as _;
-use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::choices::{LogView, XyAxis, XyColor};
-use crate::ui::prepare::Prepared;
-use crate::ui::refits::{analyse, replay_all, replay_forces};
-use crate::ui::screenshot;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel as _;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
-use crate::ui::workspace::Workspace;
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -28,7 +28,7 @@ pub fn log<'a>(session: Session) -> Harness<'a, Session> {
     let mut panel = LogPanel::default();
     harness(session, [1000.0, 640.0], move |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         panel.ui(ui, session);
     })
 }
@@ -44,8 +44,7 @@ fn extended() -> Session {
     session.workspace = Workspace::Calibrate;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let from = session.diagnosing.from;
-    let worlds = diagnosis_state::extend(&session.document.recordings, &session.calibration.choice, from, &answer)
-        .expect("extended");
+    let worlds = extend(&session.document.recordings, &session.calibration.choice, from, &answer).expect("extended");
     session.diagnosing.replays = replay_forces(&worlds.after, &session.document.recordings);
     session.diagnosing.worlds = Some(Arc::new(worlds));
     session

@@ -1,23 +1,23 @@
 //! The editor of a task's rules: chips, faults, live states, saving.
 
 use super::{CRANK, STACK, harness, session, until};
-use crate::ui::calibration::Calibration;
-use crate::ui::document::Document;
-use crate::ui::editing_rules;
-use crate::ui::follow;
-use crate::ui::panel::Panel as _;
-use crate::ui::panels::rules::RulesPanel;
-use crate::ui::refits::SEGMENT;
+use crate::ui::calibrate::panels::rules::RulesPanel;
+use crate::ui::calibrate::refits::SEGMENT;
+use crate::ui::calibrate::rule_editing;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::document::state::Document;
 use crate::ui::session::Session;
+use crate::ui::shell::dispatch;
+use crate::ui::shell::panel::Panel as _;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
 
 fn open(mut session: Session) -> Harness<'static, Session> {
-    session.calibration.rules = editing_rules::open(&session.document, &session.calibration, &mut session.messages);
+    session.calibration.rules = rule_editing::open(&session.document, &session.calibration, &mut session.messages);
     harness(session, [820.0, 620.0], |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
-        follow::poll(session, &ctx);
+        dispatch::poll(session, &ctx);
         RulesPanel.ui(ui, session);
     })
 }
@@ -88,6 +88,6 @@ fn a_built_in_name_is_not_taken_and_every_kind_of_task_is_drawn() {
 #[test]
 fn a_recording_of_unknown_task_has_no_rules_and_says_so() {
     let mut session = super::empty();
-    assert!(editing_rules::open(&session.document, &session.calibration, &mut session.messages).is_none());
+    assert!(rule_editing::open(&session.document, &session.calibration, &mut session.messages).is_none());
     assert!(session.messages.banners[0].text.contains("choose one"), "{:?}", session.messages.banners);
 }

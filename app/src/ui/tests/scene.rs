@@ -2,15 +2,15 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
+use crate::ui::calibrate::panels::scene::ScenePanel;
+use crate::ui::calibrate::refits::replay_all;
+use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
-use crate::ui::panel::Panel;
-use crate::ui::panels::scene::ScenePanel;
-use crate::ui::refits::replay_all;
 use crate::ui::scene::layers::SceneLayers;
-use crate::ui::scene::likeness::Likeness;
 use crate::ui::scene::overlay::{options_for, scene_world};
-use crate::ui::screenshot;
+use crate::ui::scene::similarity::Likeness;
 use crate::ui::session::Session;
+use crate::ui::shell::panel::Panel;
 use crate::ui::tests::picture;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -2,10 +2,10 @@
 
 use super::plots::{again, log, two};
 use super::{CRANK, session, until};
-use crate::ui::overlays;
-use crate::ui::overlays::ALIGN;
+use crate::ui::document::overlays;
+use crate::ui::document::overlays::ALIGN;
+use crate::ui::document::undo_actions;
 use crate::ui::session::Session;
-use crate::ui::undoing;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
 
@@ -85,12 +85,12 @@ fn a_drag_of_the_curve_shifts_its_recording_and_undo_takes_it_back() {
     assert_ne!(icon(&harness), CursorIcon::Grabbing);
     // More than half a second of pictures: the change is done with.
     harness.run_steps(60);
-    assert!(undoing::can_undo(&harness.state().document, &harness.state().calibration, &harness.state().plots));
+    assert!(undo_actions::can_undo(&harness.state().document, &harness.state().calibration, &harness.state().plots));
     let session = harness.state_mut();
-    undoing::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+    undo_actions::undo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), 0.0);
     let session = harness.state_mut();
-    undoing::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
+    undo_actions::redo(&mut session.document, &mut session.calibration, &mut session.plots, &mut session.messages);
     assert_eq!(offset_s(&harness), shifted_s);
 }
 

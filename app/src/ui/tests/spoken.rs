@@ -2,13 +2,13 @@
 
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
-use crate::ui::app::App;
-use crate::ui::editing_rules;
-use crate::ui::panels::list;
+use crate::ui::calibrate::rule_editing;
+use crate::ui::document::video_actions;
 use crate::ui::plots::choices::LogView;
 use crate::ui::session::Session;
-use crate::ui::showing_video;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 
 /// The widgets without a name in one state of the whole window, with where they are.
 fn unnamed(what: &str, session: Session, change: impl FnOnce(&mut App)) -> Vec<String> {
@@ -28,16 +28,16 @@ fn at(workspace: Workspace, mut session: Session) -> Session {
 #[test]
 fn every_widget_has_a_name_for_a_screen_reader() {
     let everywhere = |workspace: Workspace| {
-        move |app: &mut App| list::of(workspace).into_iter().for_each(|pane| app.dock.bring(workspace, pane))
+        move |app: &mut App| panel_list::of(workspace).into_iter().for_each(|pane| app.dock.bring(workspace, pane))
     };
     let mut crank = session(CRANK.clone());
     crank.calibration.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
-    rules.calibration.rules = editing_rules::open(&rules.document, &rules.calibration, &mut rules.messages);
+    rules.calibration.rules = rule_editing::open(&rules.document, &rules.calibration, &mut rules.messages);
     let mut xy = session(STACK.clone());
     xy.plots.view = LogView::Xy;
     let mut video = session(STACK.clone());
-    showing_video::open_video(
+    video_actions::open_video(
         &mut video.document,
         &mut video.wanted_pane,
         &mut video.messages,

@@ -2,12 +2,12 @@
 
 use super::{empty, harness, until_quiet};
 use crate::operator;
-use crate::ui::app::App;
-use crate::ui::opening;
-use crate::ui::trainer::choice::WorldChoice;
-use crate::ui::trainer::control::USUAL_CONTROL_N_S_M;
-use crate::ui::trainer::live::Operator;
-use crate::ui::trainer::task::task_hint;
+use crate::ui::document::opening;
+use crate::ui::shell::app::App;
+use crate::ui::train::trainer::control::USUAL_CONTROL_N_S_M;
+use crate::ui::train::trainer::live::Operator;
+use crate::ui::train::trainer::task::task_hint;
+use crate::ui::train::trainer::world_choice::WorldChoice;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::device::Mistake;

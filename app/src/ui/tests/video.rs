@@ -1,14 +1,14 @@
 //! The video of the hand beside a recording, used as a person does.
 
 use super::{STACK, clockless_path, empty, harness, session, until};
-use crate::ui::app::App;
-use crate::ui::opening;
-use crate::ui::panel_id::PanelId;
-use crate::ui::prepare::Prepared;
+use crate::ui::document::opening;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::video_actions;
+use crate::ui::document::videos::State;
 use crate::ui::session::Session;
-use crate::ui::showing_video;
-use crate::ui::videos::State;
-use crate::ui::workspace::Workspace;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use crate::video::tests::{bar, film, no_reader};
 use egui::Role;
 use egui_kittest::Harness;
@@ -60,17 +60,17 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
 
     press(&mut harness, Role::Button, "Align video");
     until(&mut harness, "its place", |app| {
-        showing_video::video_source(&app.session.document).is_some_and(|v| v.begins_at_s != 0.0)
+        video_actions::video_source(&app.session.document).is_some_and(|v| v.begins_at_s != 0.0)
     });
     let first = harness.state().session.document.recordings[0].span().0;
-    let begins_at_s = showing_video::video_source(&harness.state().session.document).expect("a video").begins_at_s;
+    let begins_at_s = video_actions::video_source(&harness.state().session.document).expect("a video").begins_at_s;
     assert!((begins_at_s - (first - 1.7)).abs() < 0.06, "it begins at {begins_at_s} s");
     until(&mut harness, "the picture that belongs to the cursor", |app| {
         app.session.document.videos.shown() == Some(142)
     });
 
     // It is kept with the project, and goes with another recording.
-    let project = crate::ui::project_files::project_of(
+    let project = crate::ui::document::project_files::project_of(
         harness.state().session.workspace,
         &harness.state().session.document,
         &harness.state().session.calibration,
@@ -78,7 +78,7 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     );
     assert_eq!(project.videos, harness.state().session.document.videos.sources);
     press(&mut harness, Role::Button, "Take the video away");
-    assert!(showing_video::video_source(&harness.state().session.document).is_none());
+    assert!(video_actions::video_source(&harness.state().session.document).is_none());
     assert!(harness.query_by_label("Choose a video …").is_some());
 }
 
@@ -91,7 +91,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     let file = folder.path().join("a.mkv");
     film(&file, RATE_HZ, 100, |k| bar(k as f64 / 100.0));
     let mut session = session(STACK.clone());
-    showing_video::open_video(
+    video_actions::open_video(
         &mut session.document,
         &mut session.wanted_pane,
         &mut session.messages,
@@ -107,7 +107,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     press(&mut harness, Role::Button, "They belong together");
     let session = &harness.state().session;
     assert!(session.document.videos.loose_s.is_none());
-    assert!((showing_video::video_source(&session.document).expect("a video").begins_at_s - 7.5).abs() < 1e-9);
+    assert!((video_actions::video_source(&session.document).expect("a video").begins_at_s - 7.5).abs() < 1e-9);
     assert_eq!(session.document.videos.shown(), Some(50), "the picture stays");
     // Before its beginning, the first picture stands there, with a word.
     harness.state_mut().session.document.seek(5.0);
@@ -131,7 +131,7 @@ fn a_video_that_stands_beside_its_log_is_found_with_its_sidecar() {
         let session = &mut harness.state_mut().session;
         opening::open(&mut session.document, &mut session.jobs, &ctx, log);
         until(&mut harness, "the log", |app| !app.session.document.recordings.is_empty());
-        showing_video::video_source(&harness.state().session.document).cloned().expect("a video")
+        video_actions::video_source(&harness.state().session.document).cloned().expect("a video")
     };
     let beside = opened(&log);
     assert_eq!((beside.file, beside.begins_at_s), (folder.path().join("run.mp4"), 0.0));
@@ -183,7 +183,7 @@ fn what_is_in_the_way_of_a_video_is_said() {
     until(&mut harness, "the refusal", |app| !app.session.jobs.is_busy());
     assert!(matches!({
             let session = &mut harness.state_mut().session;
-            showing_video::video(&session.document, &mut session.jobs, &ctx)
+            video_actions::video(&session.document, &mut session.jobs, &ctx)
         }, State::Failed(why) if why.contains("no video")));
     assert!(harness.query_by_label("Try again").is_some());
 }

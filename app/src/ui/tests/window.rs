@@ -2,11 +2,11 @@
 
 use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
-use crate::ui::app::App;
-use crate::ui::opening;
-use crate::ui::recorder;
-use crate::ui::trainer::live::{Clock, Operator};
-use crate::ui::workspace::Workspace;
+use crate::ui::document::opening;
+use crate::ui::shell::app::App;
+use crate::ui::shell::workspace::Workspace;
+use crate::ui::train::recorder;
+use crate::ui::train::trainer::live::{Clock, Operator};
 use egui_kittest::kittest::Queryable;
 use haptics::recording::Meta;
 

@@ -1,15 +1,15 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
 use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
-use crate::ui::actions::list::Action;
-use crate::ui::app::App;
-use crate::ui::diagnosis_state::DIAGNOSE;
-use crate::ui::fitting;
-use crate::ui::opening;
-use crate::ui::panel_id::PanelId;
-use crate::ui::project_files;
-use crate::ui::trying_values;
-use crate::ui::workspace::Workspace;
+use crate::ui::calibrate::fitting;
+use crate::ui::calibrate::what_if_actions;
+use crate::ui::diagnose::state::DIAGNOSE;
+use crate::ui::document::opening;
+use crate::ui::document::project_files;
+use crate::ui::shell::actions::list::Action;
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::workspace::Workspace;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -115,10 +115,10 @@ fn another_value_is_tried_on_the_replay_and_frozen() {
     harness.run_steps(2);
     assert!(harness.query_by_label("Crank · weight").is_some());
     let fitted = weight(&harness, "crank").0;
-    trying_values::try_value(&mut harness.state_mut().session.calibration, "crank.weight_N", Some(2.0 * fitted));
+    what_if_actions::try_value(&mut harness.state_mut().session.calibration, "crank.weight_N", Some(2.0 * fitted));
     settle(&mut harness);
     assert!(!harness.state().session.calibration.what_if.is_behind());
-    let shown = trying_values::shown_curves(&harness.state().session.document, &harness.state().session.calibration)
+    let shown = what_if_actions::shown_curves(&harness.state().session.document, &harness.state().session.calibration)
         .expect("curves")
         .curves
         .clone();
@@ -247,7 +247,7 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     let mut app = App::new(empty());
     app.keep(&state, true);
     assert!(app.tour.is_on(), "the first start shows around");
-    app.tour = crate::ui::tour_progress::Tour::default();
+    app.tour = crate::ui::shell::tour_progress::Tour::default();
     let mut first = harness(app, [1480.0, 920.0], |ui, app: &mut App| app.show(ui));
     let ctx = first.ctx.clone();
     let session = &mut first.state_mut().session;

@@ -2,6 +2,5 @@ pub mod atlas;
 pub(crate) mod build;
 pub(crate) mod cause;
 pub(crate) mod part;
-pub(crate) mod rejected;
 pub(crate) mod resolved_questions;
 pub mod time_series;

@@ -99,10 +99,9 @@ pub fn none(recording: &Recording) -> EstimateError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::diagnose;
     use crate::diagnose::findings::Findings;
     use crate::diagnose::options::Options;
-    use crate::diagnose::validate;
+    use crate::diagnose::{diagnose, validate};
     use haptics::recording::Channel;
 
     const RADIUS_M: f64 = 0.3;

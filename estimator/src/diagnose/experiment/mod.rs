@@ -1,5 +1,3 @@
-pub(crate) mod motions;
-pub(crate) mod predicted_rows;
 pub(crate) mod proposal;
 pub(crate) mod separation;
 pub(crate) mod strokes;

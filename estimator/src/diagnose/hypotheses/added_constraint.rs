@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::{Candidate, Searched};
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{AddedConstraint, Cable, Effect, Kind};
@@ -25,8 +25,8 @@ const WALL: &str = "wall";
 const CABLE: &str = "cable";
 
 impl Hypothesis for AddedConstraint {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -72,10 +72,6 @@ impl Hypothesis for AddedConstraint {
         };
         all.extend(data.points(ID, CABLE).map(cable));
         all
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -1,25 +1,25 @@
 //! The list of all hypotheses, and the library of candidates that they make together.
 
-use super::axis_sign::AxisSign;
+use super::axis_sign::AXIS_SIGN;
 use super::candidate::Candidate;
-use super::channel_fault::ChannelFault;
-use super::fingertip_slip::FingertipSlip;
+use super::channel_fault::CHANNEL_FAULT;
+use super::fingertip_slip::FINGERTIP_SLIP;
 use super::force_cross_axis::ForceCrossAxis;
 use super::force_gain::ForceGain;
-use super::force_saturation::ForceSaturation;
+use super::force_saturation::FORCE_SATURATION;
 use super::grid::{Grid, Near, Ranges};
 use super::hypothesis::Hypothesis;
-use super::joint_offset::JointOffset;
-use super::length_scale::LengthScale;
+use super::joint_offset::JOINT_OFFSET;
+use super::length_scale::LENGTH_SCALE;
 use super::library::Dictionary;
-use super::pad_compliance::PadCompliance;
+use super::pad_compliance::PAD_COMPLIANCE;
 use super::regressor_cache::Columns;
 use super::relations::{Form, Relation};
 use super::sensor_fault::SensorFault;
-use super::stiffness_hardening::StiffnessHardening;
+use super::stiffness_hardening::STIFFNESS_HARDENING;
 use super::time_delay::TimeDelay;
 use super::variable::Variable;
-use super::velocity_loss::VelocityLoss;
+use super::velocity_loss::VELOCITY_LOSS;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::{Row, Track};
 use haptics::law::{
@@ -52,15 +52,15 @@ pub(crate) static ALL: [&dyn Hypothesis; 31] = [
     &ForceBias,
     &ForceDrift,
     &ForceCrossAxis,
-    &ForceSaturation,
-    &ChannelFault,
-    &AxisSign,
-    &JointOffset,
-    &LengthScale,
-    &PadCompliance,
-    &StiffnessHardening,
-    &FingertipSlip,
-    &VelocityLoss,
+    &FORCE_SATURATION,
+    &CHANNEL_FAULT,
+    &AXIS_SIGN,
+    &JOINT_OFFSET,
+    &LENGTH_SCALE,
+    &PAD_COMPLIANCE,
+    &STIFFNESS_HARDENING,
+    &FINGERTIP_SLIP,
+    &VELOCITY_LOSS,
 ];
 
 /// The hypothesis of a cause; none for a regressor of the base model or a generic term.
@@ -70,12 +70,12 @@ pub(crate) fn hypothesis(id: &str) -> Option<&'static dyn Hypothesis> {
 
 /// Exactness and variables of a cause's law.
 pub(crate) fn form(id: &str) -> Form {
-    hypothesis(id).map_or(Form::Exact(&[]), Hypothesis::form)
+    hypothesis(id).map_or(Form::Exact(&[]), |h| h.about().form)
 }
 
 /// Relations of a cause.
 pub(crate) fn relations(id: &str) -> &'static [Relation] {
-    hypothesis(id).map_or(&[], Hypothesis::relations)
+    hypothesis(id).map_or(&[], |h| h.about().relations)
 }
 
 /// Variable that shows a cause best along one coordinate.
@@ -104,7 +104,7 @@ pub(crate) fn is_share(candidate: &Candidate) -> bool {
 /// Pairs of causes with the same regressor for every motion, and the reason in words.
 pub(crate) fn twins() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
     ALL.iter().flat_map(|hypothesis| {
-        hypothesis.relations().iter().filter_map(|relation| match relation {
+        hypothesis.about().relations.iter().filter_map(|relation| match relation {
             Relation::SameAs(other, why) => Some((hypothesis.id(), *other, *why)),
             _ => None,
         })
@@ -113,7 +113,7 @@ pub(crate) fn twins() -> impl Iterator<Item = (&'static str, &'static str, &'sta
 
 /// Causes that a one-way motion that slows down cannot show.
 pub(crate) fn with_both_ways() -> impl Iterator<Item = &'static str> {
-    let needs = |hypothesis: &&&dyn Hypothesis| hypothesis.relations().contains(&Relation::NeedsBothWays);
+    let needs = |hypothesis: &&&dyn Hypothesis| hypothesis.about().relations.contains(&Relation::NeedsBothWays);
     ALL.iter().filter(needs).map(|hypothesis| hypothesis.id())
 }
 

@@ -1,13 +1,7 @@
 //! A mirrored or swapped axis as a hypothesis, which is found before any regression.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Elsewhere};
 
 pub(crate) const ID: &str = "axis-sign";
 
-pub(crate) struct AxisSign;
-
-impl Hypothesis for AxisSign {
-    fn id(&self) -> &'static str {
-        ID
-    }
-}
+pub(crate) static AXIS_SIGN: Elsewhere = Elsewhere(About { id: ID, ..About::PLAIN });

@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
@@ -14,8 +14,13 @@ pub(crate) const ID: &str = "backlash";
 const GAP: &str = "half gap";
 
 impl Hypothesis for Backlash {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Curve(&[Over::Motion, Over::Place]),
+            relations: &[Relation::LosesMotion, Relation::NeedsForce],
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -28,14 +33,6 @@ impl Hypothesis for Backlash {
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         data.points(ID, GAP).flat_map(|[way, ..]| behind(data, way)).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Motion, Over::Place])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::LosesMotion, Relation::NeedsForce]
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::gravity_tilt;
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use haptics::law::{EccentricMass, Effect, Kind};
@@ -10,8 +10,16 @@ use haptics::law::{EccentricMass, Effect, Kind};
 pub(crate) const ID: &str = "eccentric-mass";
 
 impl Hypothesis for EccentricMass {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Exact(&[Over::Place]),
+            relations: &[Relation::SameAs(
+                gravity_tilt::ID,
+                "on one crank gravity on a mass off the axis and a tilted plane are the same force",
+            )],
+            ..About::PLAIN
+        }
     }
 
     /// Across the arm's weight; for an angle without any gravity in the model, both parts.
@@ -24,17 +32,6 @@ impl Hypothesis for EccentricMass {
             linear.push(("b", data.units().force));
         }
         vec![Candidate::of(ID, Kind::Plant, columns, linear)]
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Place])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::SameAs(
-            gravity_tilt::ID,
-            "on one crank gravity on a mass off the axis and a tilted plane are the same force",
-        )]
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

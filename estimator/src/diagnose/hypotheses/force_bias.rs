@@ -1,7 +1,7 @@
 //! A bias of the force channel as a hypothesis.
 
 use super::candidate::Candidate;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, add_halved};
@@ -13,8 +13,8 @@ use haptics::law::{Effect, ForceBias, Kind};
 pub(crate) const ID: &str = "force-bias";
 
 impl Hypothesis for ForceBias {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsForce], ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
@@ -29,10 +29,6 @@ impl Hypothesis for ForceBias {
         }
         let held = data.every(&|r| if r.place == Place::Along { bias.force(&r.motion) } else { 0.0 });
         vec![Candidate::one(ID, Kind::Instrument, "b", data.units().force, held)]
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
     }
 
     fn best_seen_against(&self, planar: bool) -> Variable {

@@ -1,7 +1,7 @@
 //! Cross-talk of the force axes as a hypothesis, if the force has two.
 
 use super::candidate::{Candidate, HARDLY};
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, fingers};
@@ -14,8 +14,8 @@ pub(crate) const ID: &str = "force-cross-axis";
 pub(crate) struct ForceCrossAxis;
 
 impl Hypothesis for ForceCrossAxis {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsForce], seen: Variable::Across, ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
@@ -32,14 +32,6 @@ impl Hypothesis for ForceCrossAxis {
             one("kappa_yx", "1", cross(Vec2::y(), Vec2::x())),
             Candidate { cost: turned.cost + HARDLY, ..turned },
         ]
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Across
     }
 
     fn add_to_fault(&self, fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {

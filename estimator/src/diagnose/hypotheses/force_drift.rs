@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::sensor_fault::{SensorFault, add_each, add_halved};
@@ -17,8 +17,14 @@ pub(crate) const ID: &str = "force-drift";
 const SETTLING: &str = "time constant";
 
 impl Hypothesis for ForceDrift {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Exact(&[Over::Time]),
+            relations: &[Relation::Settles, Relation::NeedsForce],
+            seen: Variable::Time,
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -32,18 +38,6 @@ impl Hypothesis for ForceDrift {
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         let settles = data.points(ID, SETTLING).map(|[tau, ..]| drift(data, tau).at("tau", tau, "s"));
         std::iter::once(drift(data, 0.0)).chain(settles).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Time])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::Settles, Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Time
     }
 
     fn add_to_fault(&self, fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {

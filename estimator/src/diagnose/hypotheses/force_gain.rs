@@ -1,7 +1,7 @@
 //! A wrong gain of the force channel as a hypothesis, if a force is completely known.
 
 use super::candidate::Candidate;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each};
@@ -13,8 +13,8 @@ pub(crate) const ID: &str = "force-gain";
 pub(crate) struct ForceGain;
 
 impl Hypothesis for ForceGain {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsForce], seen: Variable::Force, ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
@@ -24,14 +24,6 @@ impl Hypothesis for ForceGain {
             known.iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
         }
         vec![Candidate::one(ID, Kind::Instrument, "g - 1", "1", known)]
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Force
     }
 
     fn add_to_fault(&self, fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {

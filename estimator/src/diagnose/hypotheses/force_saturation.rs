@@ -1,23 +1,10 @@
 //! A saturated force channel as a hypothesis. The raw samples show it, no regressor does.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Elsewhere};
 use super::relations::Relation;
 use super::variable::Variable;
 
 pub(crate) const ID: &str = "force-saturation";
 
-pub(crate) struct ForceSaturation;
-
-impl Hypothesis for ForceSaturation {
-    fn id(&self) -> &'static str {
-        ID
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Force
-    }
-}
+pub(crate) static FORCE_SATURATION: Elsewhere =
+    Elsewhere(About { id: ID, relations: &[Relation::NeedsForce], seen: Variable::Force, ..About::PLAIN });

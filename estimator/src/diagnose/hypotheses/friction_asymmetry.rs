@@ -1,7 +1,7 @@
 //! Friction that differs by direction, as a hypothesis: dry, viscous, or in proportion to the load.
 
 use super::candidate::{Candidate, Column, HARDLY};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
@@ -11,8 +11,14 @@ use haptics::law::{Effect, FrictionAsymmetry};
 pub(crate) const ID: &str = "friction-asymmetry";
 
 impl Hypothesis for FrictionAsymmetry {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Exact(&[Over::Motion]),
+            relations: &[Relation::NeedsBothWays],
+            seen: Variable::Velocity,
+            ..About::PLAIN
+        }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
@@ -28,18 +34,6 @@ impl Hypothesis for FrictionAsymmetry {
         }
         all.push(data.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
         all
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Motion])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsBothWays]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Velocity
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

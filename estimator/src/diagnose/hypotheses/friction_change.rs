@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
@@ -20,8 +20,14 @@ const WARMING: &str = "time constant";
 const STARTS: &str = "start";
 
 impl Hypothesis for FrictionChange {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Curve(&[Over::Motion, Over::Time]),
+            relations: &[Relation::OfDryFriction, Relation::ShareOfDryFriction, Relation::NeedsBothWays],
+            seen: Variable::Time,
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -44,18 +50,6 @@ impl Hypothesis for FrictionChange {
         let step = |[start, ..]: [f64; 3]| change(of_dry(&[0.0, 1.0, 0.0, start, 0.0])).at("t0", start, "s");
         let in_time = data.points(ID, WARMING).map(warm).chain(data.points(ID, STARTS).map(step));
         in_time.chain(with_channels(data)).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Motion, Over::Time])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::OfDryFriction, Relation::ShareOfDryFriction, Relation::NeedsBothWays]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Time
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

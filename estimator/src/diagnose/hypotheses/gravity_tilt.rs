@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::candidate::Candidate;
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
@@ -18,17 +18,13 @@ const TILTS: Axis = Axis::even(-1.4, 1.4, 25);
 const SINES: Axis = Axis::even(0.0, 0.6, 31);
 
 impl Hypothesis for GravityTilt {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsBothWays], ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         let turns = data.track.radius_m.and_then(|_| tilt(data.track));
         turns.into_iter().chain(slope(data.track)).collect()
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsBothWays]
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -11,10 +11,45 @@ use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::Track;
 use haptics::law::{Effect, Law};
 
+/// Everything about a cause that does not depend on data.
+#[derive(Clone, Copy)]
+pub(crate) struct About {
+    /// Id from `docs/causes/README.md`.
+    pub(crate) id: &'static str,
+    /// The law of a cause that has one parameter, which is linear and positive.
+    pub(crate) law: Option<&'static dyn Law>,
+    /// Exact law or empirical curve, and the variables of the law.
+    pub(crate) form: Form,
+    /// Its relations to other causes and to the recording.
+    pub(crate) relations: &'static [Relation],
+    /// Variable that shows it best.
+    pub(crate) seen: Variable,
+}
+
+impl About {
+    /// Without a name.
+    pub(crate) const PLAIN: Self =
+        Self { id: "", law: None, form: Form::Exact(&[]), relations: &[], seen: Variable::Place };
+}
+
+/// Cause without regressors along one coordinate: other tests or tasks find it.
+pub(crate) struct Elsewhere(pub(crate) About);
+
+impl Hypothesis for Elsewhere {
+    fn about(&self) -> About {
+        self.0
+    }
+}
+
 /// One cause: one file each. A task without one coordinate makes its own regressors for it.
 pub(crate) trait Hypothesis: Sync {
+    /// Name, law and relations.
+    fn about(&self) -> About;
+
     /// Id from `docs/causes/README.md`.
-    fn id(&self) -> &'static str;
+    fn id(&self) -> &'static str {
+        self.about().id
+    }
 
     /// Searched values of the first round.
     fn coarse(&self, _ranges: &Ranges<'_>) -> Vec<Point> {
@@ -26,35 +61,20 @@ pub(crate) trait Hypothesis: Sync {
         Vec::new()
     }
 
-    /// The law of a cause that has one parameter, which is linear and positive.
-    fn law(&self) -> Option<&'static dyn Law> {
-        None
-    }
-
     /// Its candidates along one coordinate: regressors with the sign and the range that the name demands.
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
-        self.law().map(|law| data.plain(law, &[1.0], 0).positive()).into_iter().collect()
-    }
-
-    /// Exact law or empirical curve, and the variables of the law.
-    fn form(&self) -> Form {
-        Form::Exact(&[])
-    }
-
-    /// Its relations to other causes and to the recording.
-    fn relations(&self) -> &'static [Relation] {
-        &[]
+        self.about().law.map(|law| data.plain(law, &[1.0], 0).positive()).into_iter().collect()
     }
 
     /// Variable that shows it best. `planar`: the force has two axes, whose share along the motion depends on the
     /// position.
     fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Place
+        self.about().seen
     }
 
     /// Its laws in a world. Empty if no world has such a law.
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
-        self.law().map(|law| Effect::new(law, &[found.value(0)])).into_iter().collect()
+        self.about().law.map(|law| Effect::new(law, &[found.value(0)])).into_iter().collect()
     }
 
     /// Widens the standard errors of its parameters by that which the rows cannot resolve.

@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
@@ -22,8 +22,18 @@ const BENT: &str = "presliding distance";
 const STRAIGHT: &str = "presliding distance of a straight spring";
 
 impl Hypothesis for Hysteresis {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Curve(&[Over::Motion, Over::Place]),
+            relations: &[
+                Relation::OfDryFriction,
+                Relation::ShareOfDryFriction,
+                Relation::TakesDryFriction,
+                Relation::LosesMotion,
+            ],
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -40,14 +50,6 @@ impl Hypothesis for Hysteresis {
         let bent = data.points(ID, BENT).map(|[way, ..]| bent(data, way, 0.0));
         let straight = |[way, ..]: [f64; 3]| self::bent(data, way, STRAIGHT_SHAPE).at("shape", STRAIGHT_SHAPE, "1");
         bent.chain(data.points(ID, STRAIGHT).map(straight)).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Motion, Over::Place])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::OfDryFriction, Relation::ShareOfDryFriction, Relation::TakesDryFriction, Relation::LosesMotion]
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

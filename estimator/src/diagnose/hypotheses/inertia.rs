@@ -1,26 +1,20 @@
 //! Inertia as a hypothesis.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::relations::Relation;
 use super::variable::Variable;
-use haptics::law::{Inertia, Law};
+use haptics::law::Inertia;
 
 pub(crate) const ID: &str = "inertia";
 
 impl Hypothesis for Inertia {
-    fn id(&self) -> &'static str {
-        ID
-    }
-
-    fn law(&self) -> Option<&'static dyn Law> {
-        Some(&Inertia)
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Acceleration
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            law: Some(&Inertia),
+            relations: &[Relation::NeedsForce],
+            seen: Variable::Acceleration,
+            ..About::PLAIN
+        }
     }
 }

@@ -1,18 +1,9 @@
 //! A wrong scale of all lengths as a hypothesis. Tasks with known lengths make its regressor.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Elsewhere};
 use super::relations::{Form, Over};
 
 pub(crate) const ID: &str = "length-scale";
 
-pub(crate) struct LengthScale;
-
-impl Hypothesis for LengthScale {
-    fn id(&self) -> &'static str {
-        ID
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Path])
-    }
-}
+pub(crate) static LENGTH_SCALE: Elsewhere =
+    Elsewhere(About { id: ID, form: Form::Exact(&[Over::Path]), ..About::PLAIN });

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, Law, LocalPush, LocalResistance};
@@ -18,8 +18,8 @@ const WIDTHS: Axis = Axis::geometric(0.12, 0.35, 3);
 const HUMP: &str = "place and width";
 
 impl Hypothesis for LocalResistance {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -51,10 +51,6 @@ impl Hypothesis for LocalResistance {
             [named(&LocalResistance).positive(), named(&LocalPush)]
         };
         data.points(ID, HUMP).flat_map(both).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
@@ -16,8 +16,14 @@ const SETTLING: &str = "time constant";
 const STARTS: &str = "start";
 
 impl Hypothesis for MassChange {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Exact(&[Over::Time]),
+            relations: &[Relation::Settles, Relation::NeedsForce],
+            seen: Variable::Time,
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -49,18 +55,6 @@ impl Hypothesis for MassChange {
             .chain(settles)
             .chain(data.points(ID, STARTS).map(step))
             .collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Time])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::Settles, Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Time
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, PositionRipple};
@@ -17,8 +17,8 @@ const RIPPLES: Axis = Axis::even(2.0, 40.0, 39);
 const LENGTHS: &str = "wave lengths";
 
 impl Hypothesis for PositionRipple {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -41,10 +41,6 @@ impl Hypothesis for PositionRipple {
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         data.points(ID, LENGTHS).map(|[length, ..]| ripple(data, length)).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -1,26 +1,20 @@
 //! Quadratic drag as a hypothesis.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::relations::{Form, Over};
 use super::variable::Variable;
-use haptics::law::{Law, QuadraticDrag};
+use haptics::law::QuadraticDrag;
 
 pub(crate) const ID: &str = "quadratic-drag";
 
 impl Hypothesis for QuadraticDrag {
-    fn id(&self) -> &'static str {
-        ID
-    }
-
-    fn law(&self) -> Option<&'static dyn Law> {
-        Some(&QuadraticDrag)
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Motion])
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Velocity
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            law: Some(&QuadraticDrag),
+            form: Form::Curve(&[Over::Motion]),
+            seen: Variable::Velocity,
+            ..About::PLAIN
+        }
     }
 }

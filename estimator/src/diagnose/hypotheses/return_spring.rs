@@ -4,7 +4,7 @@ use super::added_constraint;
 use super::axis::Axis;
 use super::candidate::{Candidate, Shape, about_its_zero};
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over};
 use crate::diagnose::data::regression_data::Track;
@@ -21,8 +21,8 @@ const CUBIC: &str = "cubic";
 const HARDENING: &str = "hardening";
 
 impl Hypothesis for ReturnSpring {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, form: Form::Curve(&[Over::Place]), ..About::PLAIN }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -67,10 +67,6 @@ impl Hypothesis for ReturnSpring {
         };
         all.extend(data.points(ID, HARDENING).map(|[rest, ..]| stiffening(rest)));
         all
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Place])
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

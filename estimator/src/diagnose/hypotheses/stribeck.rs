@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::candidate::Candidate;
 use super::grid::{Near, Point, Ranges};
-use super::hypothesis::{Found, Hypothesis};
+use super::hypothesis::{About, Found, Hypothesis};
 use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
@@ -32,8 +32,14 @@ const HIGHER: f64 = 1.5;
 const DECAY: &str = "decay";
 
 impl Hypothesis for Stribeck {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            form: Form::Curve(&[Over::Motion]),
+            relations: &[Relation::OfDryFriction],
+            seen: Variable::Velocity,
+            ..About::PLAIN
+        }
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
@@ -60,18 +66,6 @@ impl Hypothesis for Stribeck {
             if alpha > 0.0 { falls.at("alpha", alpha, "1") } else { falls }
         };
         data.points(ID, DECAY).map(of).collect()
-    }
-
-    fn form(&self) -> Form {
-        Form::Curve(&[Over::Motion])
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::OfDryFriction]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Velocity
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {

@@ -1,7 +1,7 @@
 //! A delay of the force after the motion as a hypothesis.
 
 use super::candidate::Candidate;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, fingers};
@@ -16,20 +16,12 @@ pub(crate) const ID: &str = "time-delay";
 pub(crate) struct TimeDelay;
 
 impl Hypothesis for TimeDelay {
-    fn id(&self) -> &'static str {
-        ID
+    fn about(&self) -> About {
+        About { id: ID, relations: &[Relation::NeedsForce], seen: Variable::ForceRate, ..About::PLAIN }
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
         vec![Candidate::one(ID, Kind::Instrument, "tau", "s", late(data))]
-    }
-
-    fn relations(&self) -> &'static [Relation] {
-        &[Relation::NeedsForce]
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::ForceRate
     }
 
     fn add_to_fault(&self, fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {

@@ -1,13 +1,7 @@
 //! Loss of velocity in an impact as a hypothesis. The thrown body makes its regressor.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Elsewhere};
 
 pub(crate) const ID: &str = "velocity-loss";
 
-pub(crate) struct VelocityLoss;
-
-impl Hypothesis for VelocityLoss {
-    fn id(&self) -> &'static str {
-        ID
-    }
-}
+pub(crate) static VELOCITY_LOSS: Elsewhere = Elsewhere(About { id: ID, ..About::PLAIN });

@@ -1,26 +1,20 @@
 //! Viscous friction as a hypothesis.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{About, Hypothesis};
 use super::relations::{Form, Over};
 use super::variable::Variable;
-use haptics::law::{Law, ViscousFriction};
+use haptics::law::ViscousFriction;
 
 pub(crate) const ID: &str = "viscous-friction";
 
 impl Hypothesis for ViscousFriction {
-    fn id(&self) -> &'static str {
-        ID
-    }
-
-    fn law(&self) -> Option<&'static dyn Law> {
-        Some(&ViscousFriction)
-    }
-
-    fn form(&self) -> Form {
-        Form::Exact(&[Over::Motion])
-    }
-
-    fn best_seen_against(&self, _planar: bool) -> Variable {
-        Variable::Velocity
+    fn about(&self) -> About {
+        About {
+            id: ID,
+            law: Some(&ViscousFriction),
+            form: Form::Exact(&[Over::Motion]),
+            seen: Variable::Velocity,
+            ..About::PLAIN
+        }
     }
 }

@@ -2,5 +2,4 @@ pub(crate) mod delay_scan;
 pub(crate) mod grip_axis_signs;
 pub(crate) mod rate_signs;
 pub(crate) mod sample_faults;
-pub(crate) mod sample_offset;
 pub(crate) mod time_delay;

@@ -28,7 +28,7 @@ const USABLE_GAPS: usize = 3;
 /// Looks at the raw samples.
 pub fn faults(recording: &Recording) -> Faults {
     let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
-    for warning in log::check(recording) {
+    for warning in logs::check(recording) {
         let id = match warning.kind.as_str() {
             "saturation" => force_saturation::ID,
             kind if CHANNEL.contains(&kind) && is_sensed(&warning) => channel_fault::ID,

@@ -1,7 +1,6 @@
 pub(crate) mod channel;
 pub(crate) mod comparison;
 pub(crate) mod dry_friction;
-pub(crate) mod estimates;
 pub(crate) mod gram;
 pub(crate) mod held_out_gain;
 pub(crate) mod jackknife;
@@ -11,7 +10,6 @@ pub(crate) mod noise_model;
 pub(crate) mod normal_equations;
 pub(crate) mod prescreen;
 pub(crate) mod profile_likelihood;
-pub(crate) mod pruning;
 pub(crate) mod restarts;
 pub(crate) mod rules;
 pub(crate) mod stepwise;

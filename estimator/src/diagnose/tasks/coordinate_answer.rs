@@ -17,10 +17,10 @@ use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
-use crate::diagnose::recording::sample_offset::{apart, rest_s, skew};
+use crate::diagnose::recording::time_delay::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::estimates::of_hardening_spring;
 use crate::diagnose::selection::held_out_gain::rms;
+use crate::diagnose::selection::profile_likelihood::of_hardening_spring;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
 

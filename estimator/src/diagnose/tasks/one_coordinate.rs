@@ -15,12 +15,11 @@ use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
     backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
 };
-use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
 use crate::diagnose::selection::layout::{Blocks, Held, Layout};
 use crate::diagnose::selection::noise_model::Noise;
-use crate::diagnose::selection::pruning::leave_out_what_is_unsure;
 use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;

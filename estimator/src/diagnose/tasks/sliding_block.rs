@@ -16,8 +16,8 @@ use crate::diagnose::contract::{
 use crate::diagnose::data::limits::{CERTAIN, HAND_CLOSES_S, HAND_REST_M_S, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
-use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal;
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::{

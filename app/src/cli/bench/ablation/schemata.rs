@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Folders below the workspace whose constants vary.
-pub(super) const FOLDERS: [&str; 2] = ["estimator/src/diagnose", "estimator/src/identify"];
+pub(super) const FOLDERS: [&str; 2] = ["estimator/src/diagnose", "estimator/estimation/src/identify"];
 /// Numeric types of constants that can be multiplied.
 const TYPES: [&str; 9] = ["f64", "usize", "u64", "u32", "u16", "u8", "isize", "i64", "i32"];
 /// Text in front of the unit tests of a file.
@@ -264,13 +264,13 @@ impl Source {
             let value = self.text[equals.end..end.start].trim().to_owned();
             edits.push((keyword, "fn".to_owned()));
             edits.push((colon, "() -> ".to_owned()));
-            edits.push((equals, format!("{{ crate::ablation::value({}, ", constants.len())));
+            edits.push((equals, format!("{{ foundation::ablation::value({}, ", constants.len())));
             edits.push((end, ") }".to_owned()));
             constants.push(Constant { name: name.text.clone(), file: self.file.clone(), line: name.line, value });
         }
         for (name, literal, line) in self.limits() {
             let value = self.text[literal.clone()].to_owned();
-            edits.push((literal, format!("crate::ablation::value({}, {value})", constants.len())));
+            edits.push((literal, format!("foundation::ablation::value({}, {value})", constants.len())));
             constants.push(Constant { name, file: self.file.clone(), line, value });
         }
         let mut imports_until = 0;

@@ -2,13 +2,14 @@
 
 use super::faults::faults;
 use super::painted::Paint;
-use crate::ui::app::App;
-use crate::ui::gallery::plates::plates;
-use crate::ui::gallery::plates::{Plate, Studio};
+use crate::ui::headless::gallery::plates::plates;
+use crate::ui::headless::gallery::plates::{Plate, Studio};
+use crate::ui::headless::screenshot;
+use crate::ui::headless::screenshot::in_whole_window;
 use crate::ui::kit::theme;
-use crate::ui::panel::Picture;
 use crate::ui::scene::callback;
-use crate::ui::screenshot::{self, in_whole_window};
+use crate::ui::shell::app::App;
+use crate::ui::shell::panel::Picture;
 use crate::ui::tests::{keep, picture};
 use egui_kittest::wgpu::WgpuTestRenderer;
 use egui_kittest::{Harness, HarnessBuilder};

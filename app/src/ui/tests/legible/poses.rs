@@ -1,24 +1,24 @@
 //! Poses of the window: menus, cards of the tour, messages, long names, every panel in every workspace.
 
 use super::pages::Stage;
-use crate::ui::app::App;
-use crate::ui::autosave::State;
-use crate::ui::calibration::Calibration;
-use crate::ui::diagnosis_state::Diagnosing;
-use crate::ui::dock::name_field::Naming;
-use crate::ui::document::Document;
-use crate::ui::message_list::Tone;
-use crate::ui::overlays;
-use crate::ui::panel_id::PanelId;
-use crate::ui::panels::list;
+use crate::ui::calibrate::sensitivity_actions;
+use crate::ui::calibrate::state::Calibration;
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::document::autosave::State;
+use crate::ui::document::overlays;
+use crate::ui::document::prepared::Prepared;
+use crate::ui::document::project::{Project, Source};
+use crate::ui::document::state::Document;
 use crate::ui::plots::choices::LogView;
-use crate::ui::prepare::Prepared;
-use crate::ui::project::{Project, Source};
 use crate::ui::session::Session;
+use crate::ui::shell::app::App;
+use crate::ui::shell::dock::name_field::Naming;
+use crate::ui::shell::message_list::Tone;
+use crate::ui::shell::panel_id::PanelId;
+use crate::ui::shell::panel_list;
+use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::diagnose::{RIPPLED, diagnosed};
 use crate::ui::tests::{CRANK, STACK, cart, empty, picture, session};
-use crate::ui::wanting_sensitivity;
-use crate::ui::workspace::Workspace;
 use egui_kittest::kittest::Queryable as _;
 use haptics::recording::{Channel, Recording};
 use std::sync::Arc;
@@ -65,9 +65,9 @@ fn workspaces_with_nothing_in_them_can_be_read() {
 fn every_panel_can_be_brought_in_and_read_and_arranged() {
     let mut found = String::new();
     let mut full = diagnosed(RIPPLED.clone());
-    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
+    sensitivity_actions::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in [Workspace::Calibrate, Workspace::Diagnose] {
-        for pane in list::of(workspace) {
+        for pane in panel_list::of(workspace) {
             let mut app =
                 in_workspace(like(full.workspace, &full.document, &full.calibration, &full.diagnosing), workspace);
             app.dock.bring(workspace, pane);
@@ -85,12 +85,12 @@ fn every_panel_can_be_brought_in_and_read_and_arranged() {
 fn every_panel_alone_can_be_read() {
     let mut found = String::new();
     let mut full = session(STACK.clone());
-    wanting_sensitivity::look_at_sensitivity(&full.document, &mut full.calibration);
+    sensitivity_actions::look_at_sensitivity(&full.document, &mut full.calibration);
     for workspace in WORKSPACES {
-        for pane in list::of(workspace) {
+        for pane in panel_list::of(workspace) {
             let mut app =
                 in_workspace(like(full.workspace, &full.document, &full.calibration, &full.diagnosing), workspace);
-            for other in list::of(workspace).into_iter().filter(|other| *other != pane) {
+            for other in panel_list::of(workspace).into_iter().filter(|other| *other != pane) {
                 if app.dock.has(workspace, other) {
                     app.dock.toggle(workspace, other);
                 }

@@ -4,8 +4,8 @@
 use super::net_force::Carry;
 use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
-use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::experiment::waypoints::HAND_SPEEDS_M_S;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};

@@ -16,11 +16,9 @@ pub(crate) mod recorded;
 pub(crate) mod regrasp;
 pub(crate) mod rows;
 pub(crate) mod signals;
-pub(crate) mod simulated_channels;
 pub(crate) mod standing_height;
 #[cfg(test)]
 pub(crate) mod tests;
-pub(crate) mod time_delay;
 
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::part::Part;

@@ -1,23 +1,26 @@
 //! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong
 //! with the sensors.
+//!
+//! Time delay of the forces after the motion of carried blocks, from the shift for which their weight and inertia
+//! explain most.
 
 use super::cable::{cables, errors, pulls};
 use super::free_body::Airborne;
 use super::net_force_candidates::{generic, instrument, plant};
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
-use super::time_delay::late;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, MOST_ROUNDS};
+use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     added_constraint, force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change,
     viscous_friction,
 };
-use crate::diagnose::recording::delay_scan::Late;
+use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
@@ -27,6 +30,7 @@ use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
 use haptics::world::{Cable, World};
+use std::collections::BTreeSet;
 
 /// The comparison with the data for its texts.
 pub struct Carry<'a> {
@@ -296,4 +300,82 @@ impl Told for Carry<'_> {
             _ => return None,
         })
     }
+}
+
+impl Simulated for Carry<'_> {
+    fn base(&self, values: &[f64]) -> Vec<Act> {
+        let of = |(number, weight_n): (&usize, &f64)| {
+            let found = vec![parameter("weight", *weight_n, 0.0, "N"), parameter("block", *number as f64, 0.0, "1")];
+            ("weight".to_owned(), found)
+        };
+        self.weighed.iter().zip(values).map(of).collect()
+    }
+
+    /// A world has no drag in the air, no mass without weight, and no sudden change of weight.
+    fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
+        let mut found = candidate.parameters(values);
+        if candidate.id != added_constraint::ID {
+            found.truncate(candidate.linear.len());
+        }
+        match candidate.id {
+            gravity_tilt::ID | added_constraint::ID => {}
+            // The start of a leak does not carry over to another recording: there it leaks from the start.
+            mass_change::ID if found.iter().any(|p| p.name == "rate" && p.value < 0.0) => {}
+            _ => return None,
+        }
+        Some((candidate.id.to_owned(), self.of_blocks(candidate, found)))
+    }
+
+    /// Such a drift leaves alone what its sensors read before.
+    fn is_late(&self, candidate: &Candidate) -> bool {
+        let Some((_, time_s)) = self.compared.view.over.iter().find(|(v, _)| *v == Variable::Time) else {
+            return false;
+        };
+        let drifts = candidate.id == force_drift::ID && candidate.searched.is_empty();
+        drifts
+            && candidate.columns.iter().any(|column| {
+                let sensors: BTreeSet<usize> =
+                    (0..column.len()).filter(|i| column[*i] != 0.0).map(|i| self.compared.view.sensor[i]).collect();
+                let silent = |i: &usize| column[*i] == 0.0 && sensors.contains(&self.compared.view.sensor[*i]);
+                (0..column.len()).filter(silent).any(|i| time_s[i] > 0.0)
+            })
+    }
+}
+
+/// Limits of a delay: beyond the longest one a hand is already at another movement.
+const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };
+
+/// Delay with the smallest residual of weights, their inertia and constant sensor errors. `known`: weights that the
+/// sidecar states, N.
+pub fn late(rows: &Rows<'_>, known: &[Option<f64>]) -> Option<Late> {
+    let carried: Vec<&Row> = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { .. })).collect();
+    let sample_s = rows.seen.iter().map(|s| s.sample_s).fold(0.0, f64::max);
+    look_by_samples(sample_s, &DEMANDS, &|by| left(rows, &carried, known, by))
+}
+
+/// Residual power per row, and number of rows, with the forces of this many samples later.
+fn left(rows: &Rows<'_>, carried: &[&Row], known: &[Option<f64>], by: isize) -> Option<(f64, f64)> {
+    let blocks = rows.blocks();
+    let mut columns = vec![Vec::new(); blocks + 2];
+    let mut y = Vec::new();
+    for row in carried {
+        let Place::Carried { number, axis } = row.place else { continue };
+        let one = &rows.seen[row.recording];
+        let Some(acceleration) = row.i.checked_add_signed(-by).and_then(|i| one.acceleration[axis].get(i)) else {
+            continue;
+        };
+        let up = if axis == 1 { 1.0 } else { 0.0 };
+        let needed = up + acceleration / one.blocks.recording.meta.gravity().max(1e-9);
+        let given = known[number - 1].map_or(0.0, |weight_n| weight_n * needed);
+        for (k, column) in columns[..blocks].iter_mut().enumerate() {
+            column.push(if k + 1 == number && known[k].is_none() { needed } else { 0.0 });
+        }
+        for (k, column) in columns[blocks..].iter_mut().enumerate() {
+            // Beside free weights, a constant would leave only the accelerations to determine them.
+            let is_open = axis == 1 && known.iter().any(Option::is_none);
+            column.push(f64::from(u8::from(k == axis && !is_open)));
+        }
+        y.push(rows.force_n(row) - given);
+    }
+    left_of_fit(columns, &y)
 }

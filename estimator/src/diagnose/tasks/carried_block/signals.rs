@@ -7,10 +7,11 @@ pub(crate) mod tests;
 use crate::diagnose::data::limits::{CONTACT_MARGIN_S, HAND_CLOSES_S, HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
 use estimation::identify::block::placement_time::{stands_from, usual_lift};
 use estimation::identify::block::signals::{Blocks, MAIN, object};
-use estimation::segment::{Method, SystemState};
+use estimation::segment::Method;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth};
+use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 
 /// Margin at the ends of free motion, which may already touch, s.

@@ -1,8 +1,9 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::diagnose::data::limits::{FEWEST, HAND_CLOSES_S, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
-use estimation::segment::{SystemState, segment};
+use estimation::segment::segment;
 use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 

@@ -2,11 +2,9 @@
 
 pub(crate) mod axis_signs;
 pub(crate) mod bearing_load;
-pub(crate) mod bearing_load_confounding;
 pub(crate) mod contact_phases;
 pub(crate) mod grasp_slip;
 pub(crate) mod path;
-pub(crate) mod path_residual;
 pub(crate) mod rows;
 
 use super::baseline_models::plain_crank;
@@ -48,8 +46,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
     let as_measured = track.clone();
     let (mut bearing_n, mut study) = look(&mut track)?;
     if bearing_n.is_none() {
-        let again =
-            bearing_load_confounding::beside_causes(&as_measured, (&track, &study), (&model, &fixed), gravity_m_s2)?;
+        let again = bearing_load::beside_causes(&as_measured, (&track, &study), (&model, &fixed), gravity_m_s2)?;
         if let Some((weight_n, other, found)) = again {
             (bearing_n, track, study) = (Some(weight_n), other, found);
         }
@@ -120,8 +117,8 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
         }
         found.tracks.push(rows);
         let path = signals.path(recording);
-        found.short.extend(path_residual::short_arc(&path, &circle.arm, &circle.study));
-        let terms = path_residual::unexplained(&path, &circle.arm, &circle.study);
+        found.short.extend(path::short_arc(&path, &circle.arm, &circle.study));
+        let terms = path::unexplained(&path, &circle.arm, &circle.study);
         found.paths.push(PathFit { study: circle.study, terms });
     }
     Ok(found)

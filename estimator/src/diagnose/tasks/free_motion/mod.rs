@@ -5,20 +5,24 @@
 //! has the most noise, so it is the target. The data determine only ratios to the inertia. Values known from the
 //! sidecar or the world set the scale, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the
 //! inertia.
+//!
+//! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
 pub(crate) mod rows;
-pub(crate) mod scale;
 
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::explain;
 use super::one_coordinate;
-use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract;
+use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::data::covariates;
 use crate::diagnose::data::limits::{HALF, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::hypotheses::all::with_both_ways;
+use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -76,11 +80,11 @@ pub(crate) fn diagnose(
     }
     options.progress.tell(0.8)?;
     let evidence = Evidence {
-        model: scale::model_name(&model),
+        model: model_name(&model),
         causes: faults,
-        warnings: scale::sentence(&track, scale).into_iter().collect(),
+        warnings: sentence(&track, scale).into_iter().collect(),
         atlas: options.atlas,
-        reads: &|named| scale::put_right(named, &track),
+        reads: &|named| put_right(named, &track),
         ..Evidence::default()
     };
     let mut found = explain(&track, &model, &study, &[], evidence);
@@ -218,4 +222,129 @@ fn inertia_by(stated: Stated, model: &Model, study: &ChannelFit) -> Option<(f64,
     let spread: f64 = pairs.map(|(a, b)| solved.values[a] * solved.values[b] * solved.inverse[(a, b)]).sum();
     let error = (variance * spread.max(0.0)).sqrt() / ratio.max(1e-300);
     (ratio > SIGNIFICANT * error).then(|| (known / ratio, error / ratio))
+}
+
+/// Causes that a motion without a force sensor never shows.
+const HIDDEN: [&str; 2] = [force_gain::ID, force_bias::ID];
+
+/// Adapts texts that were written for a driven motion.
+pub fn put_right(found: &mut Named, track: &Track) {
+    let Some(free) = track.freely else { return };
+    let angular = track.coordinate == Coordinate::Angular;
+    for parameter in found.causes.iter_mut().flat_map(|c| &mut c.parameters) {
+        if parameter.unit.starts_with('N') {
+            parameter.std_error = parameter.std_error.hypot(parameter.value * free.relative_error);
+            if !free.is_known {
+                parameter.unit = per_inertia(&parameter.unit).to_owned();
+            }
+        }
+    }
+    for hidden in &mut found.not_excited {
+        hidden.why = format!(
+            "this free motion hides it behind the model's own terms; {}",
+            if angular { "release it from farther away, or from both sides" } else { "let it go faster, or both ways" }
+        );
+    }
+    let why = "the recording has no force column, so there is no force sensor whose gain or bias could show";
+    found.not_excited.extend(HIDDEN.map(|id| NotExcited::new(id, why)));
+    if track.goes_one_way() {
+        let why = "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
+                   go the other way, too";
+        found.not_excited.extend(with_both_ways().map(|id| NotExcited::new(id, why)));
+    }
+}
+
+/// The terms of the model, each once, the inertia first.
+pub fn model_name(model: &Model) -> String {
+    let mut names = vec!["inertia"];
+    for effect in model {
+        if !names.contains(&effect.law().id()) {
+            names.push(effect.law().id());
+        }
+    }
+    names.join("+")
+}
+
+/// A unit of the laws per kg m² or kg.
+fn per_inertia(unit: &str) -> &str {
+    const UNITS: [(&str, &str); 11] = [
+        ("N m", "rad/s²"),
+        ("N m s", "1/s"),
+        ("N m s²", "1/rad"),
+        ("N m/rad", "1/s²"),
+        ("N m/rad³", "1/(rad² s²)"),
+        ("N", "m/s²"),
+        ("N s/m", "1/s"),
+        ("N s²/m²", "1/m"),
+        ("N/m", "1/s²"),
+        ("N/m³", "1/(m² s²)"),
+        ("N/m^1.5", "1/(m^0.5 s²)"),
+    ];
+    UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
+}
+
+/// Sentence on the source of the scale of all values; `None` for a driven motion.
+pub fn sentence(track: &Track, scale: Scale) -> Option<String> {
+    let free = track.freely?;
+    let angular = track.coordinate == Coordinate::Angular;
+    let (what, unit) = if angular { ("moment of inertia", "kg m²") } else { ("mass", "kg") };
+    let name = if angular { "inertia_kg_m2, or mass_kg and com_m of a pendulum" } else { "mass_kg" };
+    let inertia = free.inertia;
+    Some(match scale {
+        Scale::Stated => {
+            format!(
+                "there is no force column: the motion is taken to be free, with the stated {what} of {inertia:.4} {unit}"
+            )
+        }
+        Scale::ByRatio(by) => format!(
+            "there is no force column: the motion is taken to be free, and the known {} gives a {what} of {inertia:.4} {unit} ± {:.2} % \
+             beside what was found",
+            known(by),
+            100.0 * free.relative_error
+        ),
+        Scale::Hidden => format!(
+            "there is no force column, and what the sidecar knows does not show in this motion: all values are per unit of {what} (1 {unit}); \
+             state {name} under \"known\" in the sidecar"
+        ),
+        Scale::Nothing => format!(
+            "there is no force column and nothing is known: all values are per unit of {what} (1 {unit}); state {name} under \"known\" in the \
+             sidecar"
+        ),
+    })
+}
+
+fn known(by: Stated) -> &'static str {
+    match by {
+        Stated::Inertia(_) => "inertia",
+        Stated::Gravity(_) => "gravity moment",
+        Stated::Viscous(_) => "viscous friction",
+        Stated::Coulomb(_) => "Coulomb friction",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::hypotheses::all::can_show;
+    use haptics::law::{EccentricMass, Effect, Law, ViscousFriction, entries};
+
+    #[test]
+    fn units_are_per_unit_of_inertia() {
+        assert_eq!(per_inertia("N m"), "rad/s²");
+        // Every law that a free motion can show has its units in the table.
+        let laws = entries().filter(|e| can_show(e.id, true));
+        for spec in laws.flat_map(|e| e.parameters) {
+            for unit in [spec.unit, spec.unit_angular] {
+                assert!(!per_inertia(unit).starts_with('N'), "{unit} of {}", spec.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_model_names_each_term_once() {
+        let laws: [&'static dyn Law; 3] = [&EccentricMass, &EccentricMass, &ViscousFriction];
+        let model: Model = laws.map(|law| Effect::new(law, &[1.0])).to_vec();
+        assert_eq!(model_name(&model), "inertia+eccentric-mass+viscous-friction");
+        assert_eq!(model_name(&Model::new()), "inertia");
+    }
 }

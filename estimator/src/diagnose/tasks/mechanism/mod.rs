@@ -1,6 +1,7 @@
 //! Diagnosis of mechanisms with one degree of freedom.
+//!
+//! Axis signs of a mechanism: a force that drives its motion on balance is counted the other way.
 
-pub(crate) mod axis_signs;
 pub(crate) mod rows;
 pub(crate) mod sensor_zero;
 
@@ -8,20 +9,20 @@ use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::{explain, without_known};
 use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
 use crate::diagnose::answer::build::Evidence;
-use crate::diagnose::contract::Validation;
-use crate::diagnose::data::regression_data::Model;
+use crate::diagnose::contract::{Cause, Validation};
+use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::{rate_signs, sample_faults, sample_offset, time_delay};
+use crate::diagnose::recording::{rate_signs, sample_faults, time_delay};
 use crate::diagnose::validation::on_other_recordings;
 use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
 pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    if let Some(chain) = recordings.iter().find(|r| estimation::identify::mechanism::is_chain(r)) {
+    if let Some(chain) = recordings.iter().find(|r| foundation::signal::chain::is_chain(r)) {
         return Err(EstimateError::Other(format!(
             "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
             chain.name
@@ -54,8 +55,8 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, Es
             break;
         }
         again.skew_s = skew_s;
-        again.warnings.retain(|w| !w.starts_with(sample_offset::APART));
-        again.warnings.push(sample_offset::apart(skew_s));
+        again.warnings.retain(|w| !w.starts_with(time_delay::APART));
+        again.warnings.push(time_delay::apart(skew_s));
         (found, rest_s) = (again, rest);
     }
     Ok(found)
@@ -83,7 +84,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
         }
         rows.hung = vec![known_weight::Hung::on_mechanism(recording, rows.coordinate)];
         rows.extra = vec![covariates::of(recording)];
-        faults.extend(axis_signs::of_mechanism(&mut rows, recording, mirrored_rate)?);
+        faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
         tracks.push(rows);
         faults.extend(found.causes);
     }
@@ -111,7 +112,7 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Fi
     let mut found = explain(&track, &model, &study, &[], evidence);
     found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
     found.delay.guess_s = time_delay::guess_s(&track, &model);
-    let skew_s = sample_offset::skewed_s(&study, &track);
+    let skew_s = time_delay::skewed_s(&study, &track);
     Ok((found, skew_s))
 }
 
@@ -131,7 +132,7 @@ fn track_of(
     recording: &Recording,
     path: Option<&haptics::world::MechanismPath>,
     diagnosis: &Findings,
-) -> Result<regression_data::Track, EstimateError> {
+) -> Result<Track, EstimateError> {
     let bad = sample_faults::faults(recording).bad;
     if estimation::identify::mechanism::raw(recording, path)?.force.is_some() {
         if diagnosis.per_inertia {
@@ -144,4 +145,25 @@ fn track_of(
         return rows::track(recording, &bad, path);
     }
     free_motion::rows::track(recording, &bad, path)
+}
+
+/// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The
+/// sign is corrected in the rows.
+pub fn of_mechanism(
+    track: &mut Track,
+    recording: &Recording,
+    rate: Option<&str>,
+) -> Result<Option<Cause>, EstimateError> {
+    if !one_coordinate::drives(track, &named("mass+viscous+coulomb")?)? {
+        return Ok(rate.map(sample_faults::against_motion));
+    }
+    for row in &mut track.rows {
+        row.y = -row.y;
+        row.force = -row.force;
+        row.force_rate = -row.force_rate;
+    }
+    // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
+    let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
+    let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
+    Ok(Some(sample_faults::driving(name)))
 }

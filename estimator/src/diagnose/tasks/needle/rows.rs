@@ -1,11 +1,12 @@
 //! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the
 //! hole.
+//!
+//! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::interpolation::Between;
-use super::time_delay::{Forces, late};
-use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSES_S, PAUSE_S};
+use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSES_S, PAUSE_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
-use crate::diagnose::recording::delay_scan::Late;
+use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
 use estimation::identify::needle::sheet::Sheet;
 use estimation::identify::needle::signals::{Along, along};
@@ -302,4 +303,63 @@ fn phases(
         }
     }
     found
+}
+
+/// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
+/// the plain model and correlate with some delay by chance.
+const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: SURE };
+
+/// The smoothed forces of a recording, one per sample, to which every row refers.
+pub struct Forces<'a> {
+    pub force_n: &'a [f64],
+    /// Sample of each row.
+    pub of_row: &'a [usize],
+    pub sample_s: f64,
+}
+
+/// Delay with the smallest residual of a model with held weight and a sheet that may harden and keep a dent. A sheet
+/// with drag looks like a negative delay, which is therefore not reported. A needle between two pads moves in them by
+/// more than a hand moves during a delay, so only single tools are tested.
+pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
+    if needle.two_fingered {
+        return None;
+    }
+    let compared: Vec<usize> = (0..needle.rows.len()).filter(|i| is_compared(needle, &needle.rows[*i])).collect();
+    let columns = columns(needle, &compared);
+    let late = look_by_samples(forces.sample_s, &DEMANDS, &|by| left(forces, &compared, &columns, by));
+    late.map(|late| Late { is_seen: late.is_seen && late.tau_s > 0.0, ..late })
+}
+
+/// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
+/// shaft at a reversal is not known well enough.
+fn is_compared(needle: &Needle, row: &Row) -> bool {
+    let at_surface = row.depth_m.abs() < CONTACT_MARGIN_S * row.rate_m_s.abs();
+    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * CONTACT_MARGIN_S);
+    !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
+}
+
+/// Regressors of the plain model over the compared rows.
+fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
+    let of = |f: &dyn Fn(&Row) -> f64| compared.iter().map(|i| f(&needle.rows[*i])).collect::<Vec<f64>>();
+    let when = |phases: &'static [Phase], f: &'static dyn Fn(&Row) -> f64| {
+        of(&|r: &Row| if phases.contains(&r.phase) && r.depth_m > 0.0 { f(r) } else { 0.0 })
+    };
+    let mut columns: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.hold == h)))).collect();
+    columns.push(of(&|r| r.time_s));
+    let touched: &'static [Phase] = &[Phase::Loading, Phase::Unloading];
+    columns.push(when(touched, &|_| 1.0));
+    columns.push(when(touched, &|r| r.depth_m));
+    columns.push(when(touched, &|r| r.depth_m.powi(3)));
+    // Above its deepest indentation, a sheet has another law.
+    columns.push(when(&[Phase::Unloading], &|_| 1.0));
+    columns.push(when(&[Phase::Unloading], &|r| r.depth_m));
+    columns
+}
+
+/// Residual power per row, and number of rows, with the forces of this many samples later.
+fn left(forces: &Forces<'_>, compared: &[usize], columns: &[Vec<f64>], by: isize) -> Option<(f64, f64)> {
+    let later = |i: usize| forces.of_row[i].checked_add_signed(by).and_then(|at| forces.force_n.get(at));
+    let (kept, y): (Vec<usize>, Vec<f64>) =
+        compared.iter().enumerate().filter_map(|(k, i)| Some((k, *later(*i)?))).unzip();
+    left_of_fit(columns.iter().map(|column| kept.iter().map(|k| column[*k]).collect()).collect(), &y)
 }

@@ -3,12 +3,11 @@
 
 use super::curve;
 use super::model::Known;
-use super::rows::FREE_EVERY;
-use super::rows::{Place, Row, Seen, direction};
+use super::rows::{FREE_EVERY, Place, Row, Seen, direction};
 use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
-use crate::diagnose::experiment::motions::FREE_S;
 use crate::diagnose::experiment::proposal;
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;

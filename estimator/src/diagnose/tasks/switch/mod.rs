@@ -9,24 +9,24 @@ pub(crate) mod experiment;
 pub(crate) mod held_knob;
 pub(crate) mod model;
 pub(crate) mod rows;
-pub(crate) mod simulated_channels;
 pub(crate) mod stop;
 pub(crate) mod throw;
 
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited};
+use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
+use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{
     added_constraint, backlash, coulomb_friction, force_gain, friction_asymmetry, friction_change, hysteresis,
-    length_scale, local_resistance, return_spring,
+    length_scale, local_resistance, pad_compliance, return_spring, viscous_friction,
 };
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::rules::Rules;
-use crate::diagnose::tasks::switch::simulated_channels::InWorld;
 use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 use model::Known;
@@ -120,4 +120,24 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let motion = "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
                   two seconds before and after";
     NextExperiment::of_first(open, motion, 0.8)
+}
+
+/// Causes that a world's switch or its pads can have. A world has no change of friction over time and no length scale.
+pub(crate) const POSSIBLE: [&str; 7] = [
+    viscous_friction::ID,
+    coulomb_friction::ID,
+    friction_asymmetry::ID,
+    return_spring::ID,
+    local_resistance::ID,
+    added_constraint::ID,
+    pad_compliance::ID,
+];
+
+/// Effects of a switch's channel. Its base model is already in the world.
+pub(crate) struct InWorld;
+
+impl Simulated for InWorld {
+    fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
+        POSSIBLE.contains(&candidate.id).then(|| (candidate.id.to_owned(), candidate.parameters(values)))
+    }
 }

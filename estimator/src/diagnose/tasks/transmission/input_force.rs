@@ -1,22 +1,34 @@
 //! Force at the input of a transmission against its motion and the load.
+//!
+//! Dry friction of an input beside a load that reverses with the motion, as dry friction does.
+//!
+//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load
+//! act against it. (Its inertia is a small part of the force: a measured force that drove it would be followed in all
+//! its errors.)
 
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
-use super::held_input::Input;
-use super::load_confounding::Confounding;
 use super::rows::{Columns, Row, Seen, constants, stretches_of};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
-use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::contract::{Alternative, CauseParameter, RolloutOf};
+use crate::diagnose::data::limits::{HALF, SHORTEST_S};
+use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
+use crate::diagnose::free_run::integrate::{Side, over, remembered};
+use crate::diagnose::free_run::windows::{Errors, NO_LAW};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{
-    coulomb_friction, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
+    coulomb_friction, force_gain, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
-use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::comparison::{ChannelFit, Compared};
+use crate::diagnose::selection::normal_equations::{Use, solve};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
-use haptics::law::Kind;
+use haptics::law::{
+    CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction, Motion, QuadraticDrag, ReturnSpring,
+    ViscousFriction,
+};
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
 const SLOW_SPEED_SHARE: f64 = 0.1;
@@ -102,5 +114,155 @@ impl Told for Force {
             }
         }
         found
+    }
+}
+
+/// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
+const SHAPE: f64 = 0.03;
+
+/// Separability of a load from dry friction.
+pub struct Confounding {
+    /// Share of the load's own part (beyond the other regressors) that may be noise or another shape of the reversal, 0
+    /// to 1.
+    noise: f64,
+    /// Load per unit of direction, N or N m.
+    slope: f64,
+    /// Coefficient of the load in the comparison, in units of force per unit of load.
+    weight: f64,
+}
+
+impl Confounding {
+    /// Separability in a comparison whose base model has the load as regressor `load`. `direction`: the regressor of
+    /// dry friction, a value per row.
+    pub fn of(study: &ChannelFit, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
+        let used: Vec<usize> = (0..rows.len())
+            .filter(|i| study.layout.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
+            .collect();
+        let others = study.base.iter().enumerate().filter(|(k, _)| *k != load).map(|(_, column)| column.as_slice());
+        let columns: Vec<&[f64]> = others.chain([direction, study.base[load].as_slice()]).collect();
+        let gram = nalgebra::DMatrix::from_fn(columns.len(), columns.len(), |a, b| {
+            used.iter().map(|i| columns[a][*i] * columns[b][*i]).sum::<f64>()
+        });
+        let beside: Vec<usize> = (0..columns.len() - 1).collect();
+        let solved = solve(&gram, &beside, columns.len() - 1)?;
+        let loads: Vec<f64> = rows.iter().map(|r| r.load.unwrap_or(0.0)).collect();
+        let own = (solved.rss / used.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        let weight = *study.solved.as_ref()?.values.get(load)?;
+        let slope = *solved.values.last()?;
+        let noise = ((white_noise(&loads).powi(2) + (SHAPE * slope).powi(2)) / own).min(1.0);
+        Some(Self { noise, slope, weight })
+    }
+
+    /// True if load and dry friction are equivalent in this recording.
+    pub fn is_one(&self) -> bool {
+        self.noise > HALF
+    }
+
+    /// Error of this dry friction due to the load, N or N m. Noise of a regressor biases its coefficient towards zero,
+    /// and dry friction takes over the missing part. If the two are equivalent, all that reverses with the direction
+    /// may belong to either.
+    pub fn error(&self, friction: f64) -> f64 {
+        let shared = self.weight * self.slope;
+        if self.is_one() { (friction + shared).abs() } else { (shared * self.noise / (1.0 - self.noise)).abs() }
+    }
+
+    /// Alternative explanation of that friction by the load.
+    pub fn alternative(&self) -> Option<Alternative> {
+        self.is_one().then(|| Alternative {
+            id: force_gain::ID.to_owned(),
+            instead_of: coulomb_friction::ID.to_owned(),
+            posterior: 0.5,
+            why: WHY.to_owned(),
+        })
+    }
+}
+
+/// Why friction cannot be told from the load.
+pub const WHY: &str = "the load at the output turns round with the motion, as dry friction does: with another gain of its sensor, or another \
+     lever, it makes the same force; record runs under other loads";
+
+/// Free-run simulation of a transmission's input.
+pub struct Input {
+    rows: Vec<Row>,
+    stretch: Vec<usize>,
+    unit: &'static str,
+    /// Index of the acceleration among the model's regressors. Its coefficient is the inertia.
+    inertia: usize,
+    /// Middle of its travel, the position at which the regressor of a spring is zero.
+    middle: f64,
+}
+
+impl Input {
+    /// `unit`: of the force; `inertia`: index of the acceleration among the model's regressors.
+    pub fn new((rows, stretch): (&[Row], &[usize]), unit: &'static str, inertia: usize, seen: &Seen) -> Self {
+        let (low, high) = seen.ends();
+        Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
+    }
+
+    /// Law of a friction of this size, or of a cause that is a law by itself.
+    fn law(&self, id: &str, value: f64) -> Option<Effect> {
+        Some(match id {
+            load_friction::ID => Effect::new(&LoadFriction, &[value]),
+            viscous_friction::ID => Effect::new(&ViscousFriction, &[value]),
+            quadratic_drag::ID => Effect::new(&QuadraticDrag, &[value]),
+            return_spring::ID => Effect::new(&ReturnSpring, &[value, 0.0, 0.0, self.middle]),
+            _ => return None,
+        })
+    }
+
+    /// Laws of the causes; `None` if one has no law.
+    fn effects(&self, fit: &Fit<'_>) -> Option<Vec<Effect>> {
+        let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[fit.values[self.inertia].max(0.0)])], 0.0);
+        for (candidate, own) in fit.causes() {
+            match candidate.id {
+                coulomb_friction::ID => dry += own[0],
+                // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
+                hysteresis::ID => {
+                    let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
+                    dry -= own[0];
+                    effects.push(Effect::new(&Hysteresis, &[own[0], own[0] / way]));
+                }
+                id => effects.push(self.law(id, own[0])?),
+            }
+        }
+        effects.push(Effect::new(&CoulombFriction, &[dry.max(0.0)]));
+        Some(effects)
+    }
+
+    fn motion(&self, i: usize) -> Motion {
+        let Row { time_s, input, rate, acceleration, load, .. } = self.rows[i];
+        Motion {
+            time_s,
+            position: input,
+            velocity: rate,
+            acceleration,
+            direction: rate.signum(),
+            normal_force_n: load.unwrap_or(0.0),
+            ..Motion::default()
+        }
+    }
+}
+
+impl Forward for Input {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Force, self.unit)
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        let all: Vec<usize> = (0..self.rows.len()).collect();
+        consecutive(&all, &|i| self.rows[i].time_s, SHORTEST_S, &|a, b| self.stretch[a] == self.stretch[b])
+    }
+
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        let effects = self.effects(fit).ok_or_else(|| NO_LAW.to_owned())?;
+        // The sensors' zeros and the load drive it; they are no laws.
+        let of_model = fit.columns().take(fit.study.base.len()).enumerate().filter(|(k, _)| *k != self.inertia);
+        let beside: Vec<(&[f64], f64)> = of_model.map(|(_, column)| column).collect();
+        let row = |i: usize| (self.motion(i), fit.less(i, &beside));
+        let first = window[0];
+        let began = (0..first).rev().find(|i| self.rows[*i].recording != self.rows[first].recording);
+        let past: Vec<Motion> = (began.map_or(0, |i| i + 1)..=first).map(|i| self.motion(i)).collect();
+        let memory = remembered(&effects, &past);
+        Ok(over(window, &row, Side { effects: &effects, memory, acts: &mut |_, _| 0.0, driven: false }))
     }
 }

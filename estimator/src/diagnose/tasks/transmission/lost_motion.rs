@@ -9,7 +9,7 @@ use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
-use crate::diagnose::recording::sample_offset::CLOCKS_DIFFER_S;
+use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use foundation::estimate::EstimateError;

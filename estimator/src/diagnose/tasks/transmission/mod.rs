@@ -3,9 +3,7 @@
 
 pub(crate) mod filtered_columns;
 pub(crate) mod grid;
-pub(crate) mod held_input;
 pub(crate) mod input_force;
-pub(crate) mod load_confounding;
 pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
@@ -84,7 +82,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Findings, E
         if force.compared.study.has(coulomb_friction::ID) {
             beside.alternatives.extend(told.alternative());
         } else {
-            beside.not_excited.push(NotExcited::new(coulomb_friction::ID, load_confounding::WHY));
+            beside.not_excited.push(NotExcited::new(coulomb_friction::ID, input_force::WHY));
         }
     }
     // The force is the quantity that a trainee feels, so its figures represent the whole diagnosis.

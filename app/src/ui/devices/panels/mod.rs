@@ -1,0 +1,6 @@
+//! Panels of the devices, one a file.
+
+pub mod device_detail;
+pub mod device_log;
+pub mod devices;
+pub mod remote;

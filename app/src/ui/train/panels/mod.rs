@@ -1,0 +1,18 @@
+//! Panels of the live world, one a file.
+
+pub mod assistant;
+pub mod before_after;
+pub mod comfort;
+pub mod debrief;
+pub mod delay;
+pub mod guide;
+pub mod legend;
+pub mod lessons;
+pub mod overlay_marks;
+pub mod passivity;
+pub mod progress;
+pub mod scripted_operator;
+pub mod touch_and_keys;
+pub mod trainer_side;
+pub mod trainer_timing;
+pub mod trainer_view;

@@ -1,0 +1,12 @@
+//! Identification.
+
+pub mod barrel;
+pub mod block;
+pub mod crank;
+mod limits;
+pub mod mechanism;
+pub mod needle;
+mod pads;
+pub mod priors;
+pub mod switch;
+pub mod tossed;

@@ -1,0 +1,7 @@
+//! Linear regression with standard errors that count autocorrelation, and its robust and resampled forms.
+
+pub mod bootstrap;
+pub mod influence;
+pub mod linear;
+pub mod long_run_variance;
+pub mod robust;

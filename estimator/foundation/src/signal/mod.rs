@@ -1,0 +1,13 @@
+//! Signals derived from recordings.
+
+pub mod chain;
+pub mod correlate;
+pub mod derive;
+pub mod filter;
+pub mod gaps;
+pub mod lag;
+pub mod noise;
+pub mod pieces;
+pub mod task;
+pub mod thinned;
+pub mod transform;

@@ -1,0 +1,29 @@
+//! Warnings about samples: which channel, which spans, and where in words.
+
+use crate::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+
+/// No more spans than this are listed for faults that are no reason to leave samples out.
+const MAX_SPANS: usize = 200;
+
+/// A warning about one channel.
+pub(super) fn about(kind: &str, channel: &Channel, spans: Vec<Span>, text: String) -> Warning {
+    Warning { kind: kind.to_owned(), column: Some(channel.name.clone()), spans, text }
+}
+
+/// Place of a sample, for people.
+pub(super) fn place(recording: &Recording, sample: usize) -> String {
+    match recording.time_s.as_ref().and_then(|t| t.get(sample)) {
+        Some(time) => format!("{time:.3} s (sample {sample})"),
+        None => format!("sample {sample}"),
+    }
+}
+
+pub(super) fn limited(mut spans: Vec<Span>) -> Vec<Span> {
+    spans.truncate(MAX_SPANS);
+    spans
+}
+
+pub(super) fn is_position(channel: &Channel) -> bool {
+    units::is_program_name(&channel.name) && matches!(channel.unit.as_str(), "m" | "rad")
+}

@@ -1,0 +1,217 @@
+//! Channels that stand still, stand at a limit, or move in coarse steps.
+
+use super::findings::{about, is_position, limited, place};
+use super::profile::{Profile, holds};
+use crate::units;
+use crate::units::Dimension;
+use foundation::signal::noise::{white_noise, white_noise_under_fast_motion};
+use haptics::recording::{Channel, Recording, Span, Warning};
+
+/// Least number of samples of a plateau at the extreme value (`facts/diagnosis.md`, step 0).
+const PLATEAU_SAMPLES: usize = 8;
+/// Least ratio of that number to the one at any of the next values: a smooth peak without noise holds 2.4 times as
+/// many.
+const PLATEAU_EXCESS: f64 = 4.0;
+/// The same ratio for noise larger than the steps, which thins a peak out towards its top.
+const NOISY_EXCESS: f64 = 1.5;
+/// Least excess of that number over the mean of the next values with such noise, in its standard deviations (counts by
+/// chance).
+const EXCESS_SIGMAS: f64 = 4.5;
+/// Noise in steps from which it counts as larger than them.
+const NOISY_STEPS: f64 = 1.0;
+/// Number of next values that are compared: the last quanta of a noisy peak hold few samples each.
+const NEXT_VALUES: usize = 4;
+/// A channel that normally changes from sample to sample and then holds for this many samples is stuck.
+const STUCK_SAMPLES: usize = 25;
+/// Share of unchanged steps above which a channel is taken as coarsely quantised, and holding is normal.
+const QUIET_SHARE: f64 = 0.2;
+/// Share of a force channel that may stand at its limit; more is a channel that does not work.
+const SATURATED_SHARE: f64 = 0.9;
+/// The same share of a voltage or current, which may be switched.
+const SWITCHED_SHARE: f64 = 0.5;
+/// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
+/// (quantum/√12) is then above 1 % of that range.
+const COARSE_LEVELS: f64 = 30.0;
+/// Fewer samples do not show a quantum.
+const COARSE_SAMPLES: usize = 200;
+
+/// A channel of the program that is constant, or that stops changing for a while other than at its `limit`.
+pub fn stuck(recording: &Recording, channel: &Channel, profile: &Profile, limit: Option<&Warning>) -> Option<Warning> {
+    let values = &channel.values;
+    let first = *values.first()?;
+    if values.len() < STUCK_SAMPLES {
+        return None;
+    }
+    if profile.is_constant() {
+        let text = format!("{} is {first} in every sample; check that it was connected", channel.name);
+        return Some(about("stuck-channel", channel, vec![Span { first: 0, end: values.len() }], text));
+    }
+    if profile.unchanged + 1 < STUCK_SAMPLES {
+        return None;
+    }
+    let holds = holds(values, STUCK_SAMPLES);
+    let held: usize = holds.iter().map(|s| s.end - s.first - 1).sum();
+    let moving = values.len() - 1 - held;
+    // Besides its holds the channel must change at nearly every sample, and a zero is a tool that touches nothing.
+    let quiet = (profile.unchanged - held) as f64 > QUIET_SHARE * moving as f64 || moving < STUCK_SAMPLES;
+    let at_limit =
+        |hold: &Span| limit.is_some_and(|l| l.spans.iter().any(|s| s.first < hold.end && hold.first < s.end));
+    let holds: Vec<Span> = holds.into_iter().filter(|s| values[s.first] != 0.0 && !at_limit(s)).collect();
+    if quiet || holds.is_empty() || is_position(channel) && !moves_around(values, &holds) {
+        return None;
+    }
+    let longest = holds.iter().map(|s| s.end - s.first).max().unwrap_or(0);
+    let text = format!(
+        "{} stops changing {} time(s), from {} on, for up to {longest} samples; leave these out",
+        channel.name,
+        holds.len(),
+        place(recording, holds[0].first)
+    );
+    Some(about("stuck-channel", channel, limited(holds), text))
+}
+
+/// True when a position was on its way at the edges of a hold: a thing that came to rest has not got stuck.
+fn moves_around(values: &[f64], holds: &[Span]) -> bool {
+    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let place = steps.len() * 95 / 100;
+    let (_, typical, _) = steps.select_nth_unstable_by(place, f64::total_cmp);
+    holds.iter().any(|&Span { first, end }| {
+        if end < values.len() {
+            // It comes back elsewhere, in one leap.
+            return (values[end] - values[first]).abs() > 4.0 * *typical;
+        }
+        // It never comes back, and stopped at full speed.
+        first >= 3 && (values[first] - values[first - 3]).abs() > 3.0 * 0.5 * *typical
+    })
+}
+
+/// Pile-up at exactly the extreme value of a force, torque, voltage or current. Every span is listed: fits leave them out.
+pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) -> Option<Warning> {
+    let sensed = units::find(&channel.unit)
+        .is_some_and(|u| matches!(u.dimension, Dimension::Force | Dimension::Torque) || matches!(u.symbol, "V" | "A"));
+    if !sensed || channel.values.len() < 2 * PLATEAU_SAMPLES || profile.is_constant() {
+        return None;
+    }
+    let share = if matches!(channel.unit.as_str(), "V" | "A") { SWITCHED_SHARE } else { SATURATED_SHARE };
+    let both =
+        [(1.0, profile.high), (-1.0, -profile.low)].map(|(side, top)| rail(recording, channel, (side, top), share));
+    let mut spans: Vec<Span> = both.into_iter().flatten().flatten().collect();
+    let first = *spans.iter().min_by_key(|s| s.first)?;
+    spans.sort_by_key(|s| s.first);
+    let samples: usize = spans.iter().map(|s| s.end - s.first).sum();
+    let text = format!(
+        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: the sensor was at its limit; they are left out of fits",
+        channel.name,
+        channel.values[first.first].abs(),
+        channel.unit,
+        place(recording, first.first)
+    );
+    Some(about("saturation", channel, spans, text))
+}
+
+/// Spans in which `side`·value is exactly `top`, the largest, if they are too many for chance: in this channel on this
+/// side, or in all that stop at the very same value.
+fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share: f64) -> Option<Vec<Span>> {
+    let values = &channel.values;
+    let own: [(&[f64], f64); 1] = [(values, side)];
+    let at_top = count(&own, top);
+    // A channel whose extreme is zero has an end, not a rail; most of the record at one value is stuck or switched.
+    if top == 0.0 || at_top == 0 || at_top as f64 > share * values.len() as f64 {
+        return None;
+    }
+    if !piles_up(&own, top) {
+        let all = stopping_at(recording, channel, top);
+        if all.len() < 2 || !piles_up(&all, top) {
+            return None;
+        }
+    }
+    let mut spans: Vec<Span> = Vec::new();
+    for i in (0..values.len()).filter(|&i| side * values[i] == top) {
+        match spans.last_mut().filter(|s| s.end == i) {
+            Some(span) => span.end = i + 1,
+            None => spans.push(Span { first: i, end: i + 1 }),
+        }
+    }
+    Some(spans)
+}
+
+/// Samples at exactly a level on these sides of these channels.
+fn count(sides: &[(&[f64], f64)], level: f64) -> usize {
+    sides.iter().map(|(values, side)| values.iter().filter(|&&v| side * v == level).count()).sum()
+}
+
+/// Sides of the channels in the same unit that reach exactly as far as `top`: sensors of one kind have the same limit to both sides.
+fn stopping_at<'a>(recording: &'a Recording, channel: &Channel, top: f64) -> Vec<(&'a [f64], f64)> {
+    let same = recording.channels.iter().filter(|c| c.unit == channel.unit);
+    let sides = same.flat_map(|c| [1.0, -1.0].map(|side| (c.values.as_slice(), side)));
+    sides.filter(|(values, side)| values.iter().map(|v| side * v).fold(f64::NEG_INFINITY, f64::max) == top).collect()
+}
+
+/// True if more samples stand at exactly `top`, the largest on these sides, than chance puts there.
+fn piles_up(sides: &[(&[f64], f64)], top: f64) -> bool {
+    let at_top = count(sides, top);
+    if at_top < PLATEAU_SAMPLES {
+        return false;
+    }
+    let below = |level: f64| {
+        let all = sides.iter().flat_map(|(values, side)| values.iter().map(move |v| side * v));
+        all.filter(|&v| v < level).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut levels = vec![top];
+    for _ in 0..NEXT_VALUES {
+        levels.push(below(levels[levels.len() - 1]));
+    }
+    let next: Vec<f64> = levels[1..].iter().map(|level| count(sides, *level) as f64).collect();
+    let most = next.iter().copied().fold(0.0, f64::max);
+    let mean = next.iter().sum::<f64>() / next.len() as f64;
+    let step = (levels[1] - levels[NEXT_VALUES]) / (NEXT_VALUES - 1) as f64;
+    let noisy = sides.iter().all(|(values, _)| white_noise(values) > NOISY_STEPS * step);
+    let many = at_top as f64;
+    let stands_out = noisy && many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt();
+    many >= PLATEAU_EXCESS * most || stands_out
+}
+
+/// Channels whose quantum is large against the usual range of all channels in their unit.
+pub fn coarse(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
+    let channels = || recording.channels.iter().zip(profiles).filter(|(c, _)| units::is_program_name(&c.name));
+    channels()
+        .filter_map(|(channel, profile)| {
+            let quantum = quantum(profile)?;
+            let same = channels().filter(|(c, _)| c.unit == channel.unit);
+            let range = same.map(|(_, p)| p.spread()).fold(0.0, f64::max);
+            if channel.values.len() < COARSE_SAMPLES || quantum * COARSE_LEVELS < range {
+                return None;
+            }
+            // Noise larger than the steps carries the finer detail across them: means of many samples have it.
+            if white_noise_under_fast_motion(&channel.values) > NOISY_STEPS * quantum {
+                return None;
+            }
+            let text = format!(
+                "{} moves in steps of {quantum:.4e} {}, {:.0} % of its usual range: finer detail was not measured, and derivatives of it are mostly noise",
+                channel.name,
+                channel.unit,
+                100.0 * quantum / profile.spread()
+            );
+            let all = Span { first: 0, end: channel.values.len() };
+            Some(about("quantised", channel, vec![all], text))
+        })
+        .collect()
+}
+
+/// The step that all values are whole multiples of apart, when there are few enough of them to tell.
+fn quantum(profile: &Profile) -> Option<f64> {
+    const MOST_LEVELS: usize = 512;
+    if profile.spread() <= 0.0 {
+        return None;
+    }
+    let mut levels = profile.sorted.clone();
+    levels.dedup();
+    // A channel of two values is switched, not quantised.
+    if levels.len() < 3 || levels.len() > MOST_LEVELS {
+        return None;
+    }
+    let gaps = || levels.windows(2).map(|w| w[1] - w[0]);
+    let quantum = gaps().fold(f64::INFINITY, f64::min);
+    let even = gaps().all(|gap| (gap / quantum - (gap / quantum).round()).abs() < 0.02);
+    even.then_some(quantum)
+}

@@ -1,0 +1,162 @@
+//! Units that look wrong by 1000, 100 or 57.3: a velocity that is not its position's, a hand that reaches too far, a force
+//! that no finger has.
+
+use super::profile::Profile;
+use crate::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+
+/// Factors between units that people mix up, with their names.
+const FACTORS: [(f64, &str); 3] = [(1000.0, "1000"), (100.0, "100"), (180.0 / std::f64::consts::PI, "57.3")];
+/// A measured ratio may differ from the factor by this, either way: noise on the velocity lowers it.
+const TOLERANCE: f64 = 1.2;
+/// Below this correlation over the windows, position and velocity say too little about each other.
+const CORRELATED: f64 = 0.9;
+/// Largest number of windows over which displacement and mean velocity are compared.
+const WINDOWS: usize = 200;
+/// Least number of samples in each window.
+const WINDOW_SAMPLES: usize = 4;
+/// Least number of windows.
+const FEWEST_WINDOWS: usize = 10;
+/// Largest distance of the tips, in reaches of the hand, with links up to ten times longer than stated.
+const FARTHEST_REACHES: f64 = 20.0;
+/// Least motion of a working hand, as a share of its reach.
+const NEAREST_REACHES: f64 = 1.0 / 500.0;
+/// Largest angle of a joint of the hand from zero, rad: three turns.
+const FARTHEST_JOINT_RAD: f64 = 19.0;
+/// Least angle that some joint of a working hand passes, rad.
+const NEAREST_JOINT_RAD: f64 = 0.05;
+/// Largest force of a finger, N.
+const LARGEST_FINGER_N: f64 = 500.0;
+/// Least largest force of fingers that hold anything, N.
+const SMALLEST_FINGER_N: f64 = 0.01;
+/// Forces on an object of known weight lie within this factor of it.
+const WEIGHT_FACTOR: f64 = 200.0;
+/// A coordinate of a mechanism does not go further, m: a metre of travel in mm.
+const FARTHEST_MECHANISM_M: f64 = 100.0;
+/// Fewer samples do not show a range.
+const FEWEST_SAMPLES: usize = 50;
+
+/// Everything whose unit is doubtful.
+pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
+    if recording.len() < FEWEST_SAMPLES {
+        return Vec::new();
+    }
+    let mut found = rates(recording);
+    found.extend(ranges(recording, profiles));
+    found
+}
+
+fn doubt(recording: &Recording, column: &str, text: String) -> Warning {
+    let all = Span { first: 0, end: recording.len() };
+    Warning { kind: "unit".to_owned(), column: Some(column.to_owned()), spans: vec![all], text }
+}
+
+/// Velocity channels against the changes of their positions.
+fn rates(recording: &Recording) -> Vec<Warning> {
+    let Some(time) = &recording.time_s else { return Vec::new() };
+    let mut found = Vec::new();
+    for velocity in &recording.channels {
+        let Some(position) = position_of(recording, velocity) else { continue };
+        let Some(ratio) = ratio(time, &position.values, &velocity.values) else { continue };
+        let near = |factor: f64| ratio / factor < TOLERANCE && factor / ratio < TOLERANCE;
+        for (factor, name) in FACTORS {
+            let how = if near(factor) {
+                format!("{name} times")
+            } else if near(1.0 / factor) {
+                format!("1/{name} of")
+            } else {
+                continue;
+            };
+            let text = format!(
+                "{} changes at {how} the rate that {} states: the unit of one of the two, or of the time, is wrong by {name}; correct it in the column's name, or give \"scale\" in the sidecar",
+                position.name, velocity.name
+            );
+            found.push(doubt(recording, &velocity.name, text));
+        }
+    }
+    found
+}
+
+/// `vx1_m_s` → `x1_m`, `dq_rad_s` → `q_rad`.
+fn position_of<'a>(recording: &'a Recording, velocity: &Channel) -> Option<&'a Channel> {
+    let (quantity, unit) = units::split(&velocity.name)?;
+    let (stem, unit) = match unit.si {
+        "m_s" => (quantity.strip_prefix('v').or_else(|| quantity.strip_prefix('d'))?, "m"),
+        "rad_s" => (quantity.strip_prefix('d')?, "rad"),
+        _ => return None,
+    };
+    recording.channels.iter().find(|c| units::split(&c.name).is_some_and(|(q, u)| q == stem && u.si == unit))
+}
+
+/// Ratio of the rate of the position to the stated velocity, by least squares over windows long enough that noise
+/// averages out; `None` if the two are hardly correlated.
+fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
+    let n = time.len();
+    let window = (n / WINDOWS).max(WINDOW_SAMPLES);
+    let (mut pp, mut pv, mut vv, mut count) = (0.0, 0.0, 0.0, 0);
+    let mut first = 0;
+    while first + window < n {
+        let end = first + window;
+        let moved = position[end] - position[first];
+        let stated: f64 = (first..end).map(|i| 0.5 * (velocity[i] + velocity[i + 1]) * (time[i + 1] - time[i])).sum();
+        (pp, pv, vv) = (pp + moved * moved, pv + moved * stated, vv + stated * stated);
+        count += 1;
+        first = end;
+    }
+    let together = pv.abs() > CORRELATED * (pp * vv).sqrt();
+    (count >= FEWEST_WINDOWS && together && vv > 0.0).then(|| (pv / vv).abs())
+}
+
+/// Positions, angles and forces against the abilities of a hand.
+fn ranges(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
+    let hand = recording.meta.hand();
+    let reach_m = 2.0 * hand.fingers[0].link_m.max(hand.fingers[1].link_m)
+        + hand.fingers.iter().map(|f| f.base_m.x.hypot(f.base_m.y)).fold(0.0, f64::max);
+    let group = |stems: &[&str], unit: &str, fingered: bool| -> Vec<(&Channel, &Profile)> {
+        recording
+            .channels
+            .iter()
+            .zip(profiles)
+            .filter(|(c, p)| {
+                let Some((quantity, own)) = units::split(&c.name) else { return false };
+                let stem = quantity.trim_end_matches(['1', '2']);
+                let right = if fingered { stem.len() + 1 == quantity.len() } else { stem == quantity };
+                right && own.si == unit && stems.contains(&stem) && !p.is_constant()
+            })
+            .collect()
+    };
+    let mut found = Vec::new();
+    let mut judge = |members: &[(&Channel, &Profile)], least: f64, most: f64, factor: &str, what: &str| {
+        // Nine tenths of the samples: a spike is not a unit.
+        let usual = |p: &Profile| p.quantile(0.05).abs().max(p.quantile(0.95).abs());
+        let Some((channel, profile)) = members.iter().max_by(|a, b| usual(a.1).total_cmp(&usual(b.1))) else { return };
+        let size = usual(profile);
+        let how = if size > most {
+            "more"
+        } else if size < least && profile.reach() < least {
+            "less"
+        } else {
+            return;
+        };
+        let text = format!(
+            "{} goes up to {size:.4} {}, {how} than {what}: its unit looks wrong by {factor}; correct it in the column's name, or give \"scale\" in the sidecar",
+            channel.name, channel.unit
+        );
+        found.push(doubt(recording, &channel.name, text));
+    };
+    let tips = group(&["x", "y"], "m", true);
+    judge(&tips, NEAREST_REACHES * reach_m, FARTHEST_REACHES * reach_m, "1000", "a hand of this size does");
+    let joints: Vec<_> = [true, false].into_iter().flat_map(|f| group(&["qb", "qt"], "rad", f)).collect();
+    judge(&joints, NEAREST_JOINT_RAD, FARTHEST_JOINT_RAD, "57.3", "the joints of a hand do");
+    let mechanism: Vec<_> = ["q", "x", "y", "z"].into_iter().flat_map(|stem| group(&[stem], "m", false)).collect();
+    judge(&mechanism, 0.0, FARTHEST_MECHANISM_M, "1000", "a mechanism or a tool does");
+    let fingers = group(&["fx", "fy"], "N", true);
+    judge(&fingers, SMALLEST_FINGER_N, LARGEST_FINGER_N, "1000", "fingers can");
+    let known = &recording.meta.known;
+    let weight = known.get("weight_N").copied().or(known.get("mass_kg").map(|m| m * recording.meta.gravity()));
+    if let Some(weight) = weight.filter(|w| *w > 0.0) {
+        let all: Vec<_> = [true, false].into_iter().flat_map(|f| group(&["fx", "fy", "fz", "f"], "N", f)).collect();
+        judge(&all, weight / WEIGHT_FACTOR, weight * WEIGHT_FACTOR, "1000", "the stated weight lets expect");
+    }
+    found
+}

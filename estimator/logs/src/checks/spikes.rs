@@ -1,0 +1,161 @@
+//! Values that no hand reaches, and single samples far from their neighbours.
+
+use super::findings::{about, is_position, limited, place};
+use super::profile::Profile;
+use crate::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+
+/// Distance of a value from the others, in multiples of their spread, from which it is no measurement.
+const OUTLIER_SPREADS: f64 = 1e6;
+/// Size in m, rad, N, or their rates from which a value is no measurement.
+const IMPOSSIBLE: f64 = 1e9;
+/// Least leap of a spike, away and back, in multiples of the largest other step around it.
+const SPIKE_STEPS: f64 = 5.0;
+/// Number of samples on either side that are compared.
+const AROUND: usize = 32;
+/// Number of other steps that may be as large, for another spike or two.
+const FORGIVEN: usize = 4;
+/// Steps of less than this many times the mean of the steps around need no closer look.
+const WORTH_A_LOOK: f64 = 2.5;
+/// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
+const FELT_STEPS: f64 = 2.0;
+/// Largest distance to which a spike comes back, as a share of its height.
+const RETURN_SHARE: f64 = 0.3;
+/// Least height of a spike, as a share of the channel's usual range.
+const SPIKE_SHARE: f64 = 0.01;
+
+/// Values that no hand and no mechanism reach, in SI units, or too far beyond the channel's own spread.
+pub fn impossible(channel: &Channel, profile: &Profile) -> Option<Warning> {
+    let middle = profile.quantile(0.5);
+    // Nine tenths of the samples: a force that is zero most of the time still has a spread.
+    let spread = profile.spread();
+    let reach = if spread > 0.0 { (OUTLIER_SPREADS * spread).min(IMPOSSIBLE) } else { IMPOSSIBLE };
+    let beyond = |v: f64| (v - middle).abs() > reach || v.abs() > IMPOSSIBLE;
+    if !beyond(profile.low) && !beyond(profile.high) {
+        return None;
+    }
+    let places: Vec<usize> = (0..channel.values.len()).filter(|&i| beyond(channel.values[i])).collect();
+    let &first = places.first()?;
+    let spans = places.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
+    let text = format!(
+        "{} is {:e} in row {} and {} in all lie(s) impossibly far from the rest: every result that uses it is spoilt; correct or remove the row(s)",
+        channel.name,
+        channel.values[first],
+        first + 1,
+        places.len()
+    );
+    Some(about("outlier", channel, limited(spans), text))
+}
+
+/// Single samples that leap away from a signal that continues as if nothing had happened.
+pub fn warning(
+    recording: &Recording,
+    channel: &Channel,
+    profile: &Profile,
+    impossible: Option<&Warning>,
+) -> Option<Warning> {
+    let least = SPIKE_SHARE * profile.spread();
+    let mut found = spikes(&channel.values, is_position(channel), least);
+    // Impossible values have been reported already; a leap that other channels feel too is a blow, and no fault of a
+    // sensor.
+    found.retain(|&i| {
+        impossible.is_none_or(|w| w.spans.iter().all(|s| s.first != i)) && !felt_elsewhere(recording, channel, i)
+    });
+    let &first = found.first()?;
+    let leap = |i: usize| {
+        let (before, after) = (channel.values[i - 1], channel.values[i + 1]);
+        channel.values[i] - 0.5 * (before + after)
+    };
+    let largest = found.iter().map(|&i| leap(i).abs()).fold(0.0, f64::max);
+    let text = format!(
+        "{} has {} spike(s) of one sample, the first at {}, up to {largest:.4} {} away from its neighbours; leave them out or repair the channel",
+        channel.name,
+        found.len(),
+        place(recording, first),
+        channel.unit
+    );
+    let spans = found.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
+    Some(about("outlier", channel, limited(spans), text))
+}
+
+/// Indices of spikes of at least `least`.
+fn spikes(values: &[f64], position: bool, least: f64) -> Vec<usize> {
+    if values.len() < 2 * AROUND {
+        return Vec::new();
+    }
+    let steps = values.len() - 1;
+    let mut found = Vec::new();
+    for first in (0..steps).step_by(AROUND) {
+        let block = &values[first..(first + AROUND + 1).min(values.len())];
+        let (sum, largest) = match block.first_chunk() {
+            Some(whole) => steps_of(whole),
+            None => block
+                .windows(2)
+                .map(|w| (w[1] - w[0]).abs())
+                .fold((0.0, 0.0), |(s, m): (f64, f64), v| (s + v, m.max(v))),
+        };
+        let mean = sum / (block.len() - 1) as f64;
+        // A spike and those that are forgiven beside it, among steps a fifth its size, stay above this.
+        let floor = least.max(WORTH_A_LOOK * mean);
+        if largest < floor {
+            continue;
+        }
+        for (k, size) in block.windows(2).map(|w| (w[1] - w[0]).abs()).enumerate() {
+            let at = first + k + 1;
+            if size >= floor && size > 0.0 && at < steps && is_spike(values, at, position, floor) {
+                found.push(at);
+            }
+        }
+    }
+    found
+}
+
+/// Sum and largest of the steps in a block: in lanes, so that the compiler can use wide registers.
+fn steps_of(block: &[f64; AROUND + 1]) -> (f64, f64) {
+    const LANES: usize = 8;
+    let (mut sums, mut largest) = ([0.0; LANES], [0.0; LANES]);
+    for first in (0..AROUND).step_by(LANES) {
+        for k in 0..LANES {
+            let step = (block[first + k + 1] - block[first + k]).abs();
+            sums[k] += step;
+            largest[k] = if step > largest[k] { step } else { largest[k] };
+        }
+    }
+    (sums.iter().sum(), largest.into_iter().fold(0.0, f64::max))
+}
+
+fn is_spike(values: &[f64], at: usize, position: bool, least: f64) -> bool {
+    let (there, back) = (values[at] - values[at - 1], values[at + 1] - values[at]);
+    let height = there.abs().min(back.abs());
+    if there * back >= 0.0 || height < least || (values[at + 1] - values[at - 1]).abs() > RETURN_SHARE * height {
+        return false;
+    }
+    let usual = usual_step(values, at);
+    // A force out of nothing may be a touch; a position that stands still does not leap.
+    let rest = usual > 0.0 || position || values[at - 1] != 0.0;
+    rest && height > SPIKE_STEPS * usual
+}
+
+/// Largest step around a sample, without the two steps at the sample itself and `FORGIVEN` others.
+fn usual_step(values: &[f64], at: usize) -> f64 {
+    let mut others = [0.0; FORGIVEN + 1];
+    let (first, end) = (at.saturating_sub(AROUND), (at + AROUND).min(values.len() - 1));
+    for i in (first..end).filter(|&i| i + 1 != at && i != at) {
+        let mut step = (values[i + 1] - values[i]).abs();
+        for slot in &mut others {
+            if step > *slot {
+                std::mem::swap(slot, &mut step);
+            }
+        }
+    }
+    others[FORGIVEN]
+}
+
+/// True when another channel leaps at the same sample too.
+fn felt_elsewhere(recording: &Recording, channel: &Channel, at: usize) -> bool {
+    recording.channels.iter().filter(|c| c.name != channel.name && units::is_program_name(&c.name)).any(|other| {
+        let values = &other.values;
+        let leap = (values[at] - values[at - 1]).abs().max((values[at + 1] - values[at]).abs());
+        leap > FELT_STEPS * usual_step(values, at)
+    })
+}

@@ -1,0 +1,176 @@
+//! Parts of a table put together in the order of the file.
+
+use super::dialect::Dialect;
+use super::part::{Fault, Part};
+use crate::errors::LogError;
+use crate::pages;
+use crate::plan::{Plan, Use};
+use crate::preview::Preview;
+use crate::table::{Group, Table};
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+/// Number of values of a selected column that a sentence lists.
+const SHOWN_VALUES: usize = 6;
+
+/// Takes parts in any order and keeps those that are early.
+#[derive(Debug)]
+pub struct Join<'a> {
+    /// The joined table.
+    pub table: Table,
+    /// Bytes joined.
+    pub bytes: usize,
+    plan: &'a Plan,
+    dialect: &'a Dialect,
+    path: &'a Path,
+    size: u64,
+    preview: Option<&'a Preview>,
+    early: BTreeMap<usize, Part>,
+    next: usize,
+    rows: usize,
+    lines: u64,
+    /// Trial → its group.
+    index: HashMap<Vec<u8>, usize>,
+    seen: Vec<Vec<String>>,
+}
+
+impl<'a> Join<'a> {
+    /// Nothing joined yet; `size` of the file in bytes, to reserve room.
+    pub fn new(plan: &'a Plan, dialect: &'a Dialect, path: &'a Path, size: u64, preview: Option<&'a Preview>) -> Self {
+        Self {
+            table: Table::default(),
+            bytes: 0,
+            plan,
+            dialect,
+            path,
+            size,
+            preview,
+            early: BTreeMap::new(),
+            next: 0,
+            rows: 0,
+            lines: 0,
+            index: HashMap::new(),
+            seen: vec![Vec::new(); plan.select.len()],
+        }
+    }
+
+    /// Takes the part of block `index`, and joins all parts whose turn has come; an error for the first row that is
+    /// wrong. Returns the columns of the joined parts, emptied.
+    pub fn take(&mut self, index: usize, part: Part) -> Result<Vec<Vec<Vec<f64>>>, LogError> {
+        self.early.insert(index, part);
+        let mut spare = Vec::new();
+        while let Some(part) = self.early.remove(&self.next) {
+            self.next += 1;
+            spare.push(self.join(part)?);
+        }
+        Ok(spare)
+    }
+
+    fn join(&mut self, mut part: Part) -> Result<Vec<Vec<f64>>, LogError> {
+        self.table.text_columns.extend_from_slice(&part.text_columns);
+        self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
+        for (all, seen) in self.seen.iter_mut().zip(&part.seen) {
+            for text in seen {
+                if all.len() < SHOWN_VALUES && !all.contains(text) {
+                    all.push(text.clone());
+                }
+            }
+        }
+        for (i, run) in part.runs.iter().enumerate() {
+            let end = part.runs.get(i + 1).map_or(part.kept, |next| next.first);
+            let at = self.group(run.trial.as_deref(), part.kept, part.bytes);
+            let group = &mut self.table.groups[at].1;
+            let (row, line) = (self.rows + run.place.0 + 1, self.dialect.line + self.lines + run.place.1);
+            group.note_place(group.rows(), row, line);
+            for (target, source) in group.columns.iter_mut().zip(&part.columns) {
+                if !source.is_empty() {
+                    target.extend_from_slice(&source[run.first..end]);
+                }
+            }
+            if self.plan.label.is_some() {
+                group.labels.extend_from(&part.labels, run.first..end);
+            }
+        }
+        self.show();
+        if let Some((row, line, fault)) = part.fault {
+            return Err(self.sentence(self.rows + row + 1, self.dialect.line + self.lines + line, fault));
+        }
+        self.rows += part.rows;
+        self.lines += part.lines;
+        self.bytes += part.bytes;
+        part.columns.iter_mut().for_each(Vec::clear);
+        Ok(part.columns)
+    }
+
+    /// Shows the joined rows, of tables with one recording.
+    fn show(&self) {
+        let (Some(preview), [(_, group)], None) = (self.preview, self.table.groups.as_slice(), self.plan.trial) else {
+            return;
+        };
+        let time = self.plan.time.and_then(|c| group.columns.get(c)).map_or(&[][..], Vec::as_slice);
+        let shown = self.plan.targets.iter().filter(|t| Some(t.column) != self.plan.time);
+        preview.grow("", 0, time, shown.map(|t| (t.name.as_str(), group.columns[t.column].as_slice())));
+    }
+
+    fn group(&mut self, trial: Option<&[u8]>, rows: usize, bytes: usize) -> usize {
+        let key = trial.unwrap_or_default();
+        if let Some(&found) = self.index.get(key) {
+            return found;
+        }
+        let mut group = Group::default();
+        group.columns = vec![Vec::new(); self.plan.uses.len()];
+        if self.plan.trial.is_none() && self.plan.select.is_empty() {
+            // One table: as many rows as the first block promises, and no more than the file can hold.
+            let widths = self.dialect.headers.len().max(1) as u64;
+            let expected = self.size * rows as u64 / bytes.max(1) as u64 * 101 / 100 + 16;
+            let room = expected.min(self.size / (2 * widths) + 16) as usize;
+            for (target, wanted) in group.columns.iter_mut().zip(&self.plan.uses) {
+                if matches!(wanted, Use::Number { .. }) {
+                    pages::reserve_exact(target, room);
+                }
+            }
+        }
+        self.index.insert(key.to_vec(), self.table.groups.len());
+        self.table.groups.push((trial.map(|t| String::from_utf8_lossy(t).into_owned()), group));
+        self.table.groups.len() - 1
+    }
+
+    fn sentence(&self, row: usize, line: u64, fault: Fault) -> LogError {
+        let path = self.path.to_path_buf();
+        match fault {
+            Fault::Unequal(found) => {
+                LogError::UnequalRow { row, line, found, expected: self.dialect.headers.len(), path }
+            }
+            Fault::Cell(column, what) => {
+                LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, path }
+            }
+        }
+    }
+
+    /// The whole table, when every block has been taken.
+    pub fn finish(mut self) -> Result<Table, LogError> {
+        if self.rows == 0 {
+            return Err(LogError::HeaderOnly { path: self.path.to_path_buf() });
+        }
+        if self.table.groups.is_empty() {
+            return Err(self.nothing_selected());
+        }
+        for (_, group) in &mut self.table.groups {
+            group.columns.iter_mut().for_each(Vec::shrink_to_fit);
+            group.labels.shrink_to_fit();
+        }
+        Ok(self.table)
+    }
+
+    fn nothing_selected(&self) -> LogError {
+        let at = self.seen.iter().position(|s| !s.is_empty()).unwrap_or(0);
+        let (wanted, seen) = (&self.plan.select[at], &self.seen[at]);
+        let more = if seen.len() < SHOWN_VALUES { "" } else { ", …" };
+        LogError::NothingSelected {
+            column: self.dialect.headers[wanted.column].clone(),
+            wanted: wanted.text.clone(),
+            present: if seen.is_empty() { "no rows".to_owned() } else { seen.join(", ") + more },
+            path: self.path.to_path_buf(),
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! One block of a table, parsed by itself: places count from its own start.
+
+use super::cells::{Cells, number, record_end};
+use super::plain::{self, Plain};
+use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
+use crate::plan::{Plan, Use};
+use haptics::recording::Labels;
+use memchr::memchr;
+
+/// Number of values of a selected column that are remembered for the sentence that nothing was selected.
+const SEEN_VALUES: usize = 6;
+
+/// Information for every block.
+#[derive(Clone, Debug)]
+pub struct Layout<'a> {
+    /// Between cells.
+    pub delimiter: u8,
+    /// Cells in a row.
+    pub width: usize,
+    /// Use of each column.
+    pub plan: &'a Plan,
+    /// The plan's uses, less the columns that turned out to hold text.
+    pub uses: Vec<Use>,
+    /// True until the first selected row has shown which columns hold text.
+    pub undecided: bool,
+    /// In the block before; 0 before the first.
+    pub bytes_a_row: usize,
+    /// Ends of the cells of the block, if they are known beforehand.
+    pub ends: Vec<u32>,
+}
+
+/// Fault of a record.
+#[derive(Debug, PartialEq)]
+pub enum Fault {
+    /// Number of cells.
+    Unequal(usize),
+    /// Column, and the text of the cell.
+    Cell(usize, String),
+}
+
+/// Rows one after the other that belong to one trial and follow each other line by line.
+#[derive(Debug)]
+pub struct Run {
+    /// First of the block's kept rows.
+    pub first: usize,
+    /// The trial, when there is a column for it.
+    pub trial: Option<Vec<u8>>,
+    /// Row and line, counted from 0 at the start of the block.
+    pub place: (usize, u64),
+}
+
+/// Content of a block.
+#[derive(Debug)]
+pub struct Part {
+    /// One vector a column of the file; empty where it is not read.
+    pub columns: Vec<Vec<f64>>,
+    /// Labels of the kept rows.
+    pub labels: Labels,
+    /// Kept rows.
+    pub kept: usize,
+    /// All rows.
+    pub rows: usize,
+    /// Line ends.
+    pub lines: u64,
+    /// Bytes.
+    pub bytes: usize,
+    /// The kept rows, in runs.
+    pub runs: Vec<Run>,
+    /// For the fingerprints of all rows.
+    pub marks: Marks,
+    /// Values that `select` refused.
+    pub seen: Vec<Vec<String>>,
+    /// Columns found to hold text while undecided.
+    pub text_columns: Vec<usize>,
+    /// The first thing wrong, with its row and line counted from 0 here; the rows before it are complete.
+    pub fault: Option<(usize, u64, Fault)>,
+}
+
+/// Parses a block into `columns`, which are empty.
+pub fn parse(layout: &mut Layout<'_>, bytes: &[u8], columns: Vec<Vec<f64>>) -> Part {
+    let mut reader = Reader::new(layout, bytes.len(), columns);
+    reader.reserve();
+    reader.find_ends(bytes);
+    let mut at = 0;
+    while at < bytes.len() && reader.part.fault.is_none() {
+        at = reader.record(bytes, at);
+    }
+    reader.layout.bytes_a_row = bytes.len() / reader.part.rows.max(1);
+    reader.part
+}
+
+struct Reader<'a, 'p> {
+    layout: &'a mut Layout<'p>,
+    part: Part,
+    cells: Cells,
+    /// No trial, selection or label: rows are read straight off the bytes.
+    plain: bool,
+    /// Numbers of the row being read.
+    row: Vec<f64>,
+}
+
+impl<'a, 'p> Reader<'a, 'p> {
+    fn new(layout: &'a mut Layout<'p>, bytes: usize, columns: Vec<Vec<f64>>) -> Self {
+        let plan = layout.plan;
+        let part = Part {
+            columns,
+            labels: Labels::default(),
+            kept: 0,
+            rows: 0,
+            lines: 0,
+            bytes,
+            runs: Vec::new(),
+            marks: Marks::default(),
+            seen: vec![Vec::new(); plan.select.len()],
+            text_columns: Vec::new(),
+            fault: None,
+        };
+        let plain = plan.trial.is_none() && plan.select.is_empty() && plan.label.is_none() && plan.watched.is_empty();
+        Self { layout, part, cells: Cells::default(), plain, row: Vec::new() }
+    }
+
+    /// Room for as many rows as the last block promises.
+    fn reserve(&mut self) {
+        if self.layout.bytes_a_row == 0 {
+            return;
+        }
+        let rows = self.part.bytes / self.layout.bytes_a_row + 8;
+        for (wanted, target) in self.layout.uses.iter().zip(&mut self.part.columns) {
+            if self.plain && matches!(wanted, Use::Number { .. }) {
+                target.reserve_exact(rows.min(self.part.bytes));
+            }
+        }
+    }
+
+    /// Reads the plain rows at `at`, if any, and the record behind them; returns where the next one starts.
+    fn record(&mut self, bytes: &[u8], at: usize) -> usize {
+        let mut at = at;
+        if self.plain && !self.layout.undecided {
+            at = self.plain_rows(bytes, at);
+            if at >= bytes.len() {
+                return at;
+            }
+        }
+        let end = record_end(bytes, at, self.layout.delimiter).unwrap_or(bytes.len());
+        let mut record = &bytes[at..end];
+        let lines = if memchr(b'"', record).is_some() { memchr::memchr_iter(b'\n', record).count() as u64 } else { 0 };
+        while let Some(shorter) = record.strip_suffix(b"\r") {
+            record = shorter;
+        }
+        let delimiter = self.layout.delimiter;
+        let blank = record.iter().all(|&b| b.is_ascii_whitespace() && b != delimiter);
+        if !blank && record.first() != Some(&b'#') {
+            self.careful_row(record);
+        }
+        self.part.lines += lines + u64::from(end < bytes.len());
+        end + 1
+    }
+
+    fn find_ends(&mut self, bytes: &[u8]) {
+        self.layout.ends.clear();
+        if self.plain {
+            plain::find_ends(bytes, self.layout.delimiter, &mut self.layout.ends);
+        }
+    }
+
+    /// Reads the plain rows from `at` on; returns where the next one starts that is none.
+    fn plain_rows(&mut self, bytes: &[u8], at: usize) -> usize {
+        let (delimiter, uses, ends) = (self.layout.delimiter, &self.layout.uses, &self.layout.ends);
+        let (rows, next) = Plain::new(delimiter, uses, &mut self.part.columns, ends).rows(bytes, at);
+        if rows > 0 {
+            self.keep(None);
+            self.part.kept += rows;
+            self.part.rows += rows;
+            self.part.lines += rows as u64;
+        }
+        next
+    }
+
+    /// Starts a run where the row about to be kept does not simply follow the last one.
+    fn keep(&mut self, trial: Option<&[u8]>) {
+        let (row, line, kept) = (self.part.rows, self.part.lines, self.part.kept);
+        let follows = self.part.runs.last().is_some_and(|run| {
+            let behind = kept - run.first;
+            run.place == (row.wrapping_sub(behind), line.wrapping_sub(behind as u64)) && run.trial.as_deref() == trial
+        });
+        if !follows {
+            self.part.runs.push(Run { first: kept, trial: trial.map(<[u8]>::to_vec), place: (row, line) });
+        }
+    }
+
+    fn careful_row(&mut self, record: &[u8]) {
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.split(record, self.layout.delimiter);
+        if let Err(fault) = self.take(record, &cells) {
+            self.part.fault = Some((self.part.rows, self.part.lines, fault));
+        }
+        self.part.rows += 1;
+        self.cells = cells;
+    }
+
+    fn take(&mut self, record: &[u8], cells: &Cells) -> Result<(), Fault> {
+        if cells.len() != self.layout.width {
+            return Err(Fault::Unequal(cells.len()));
+        }
+        self.mark(record, cells);
+        if !self.selected(record, cells) {
+            return Ok(());
+        }
+        self.row.clear();
+        for column in 0..self.layout.width {
+            if let Use::Number { required, factor } = self.layout.uses[column] {
+                self.cell(column, cells.get(record, column), required, factor)?;
+            }
+        }
+        self.layout.undecided = false;
+        self.keep(self.layout.plan.trial.map(|column| cells.get(record, column)));
+        let mut values = self.row.iter();
+        for (wanted, target) in self.layout.uses.iter().zip(&mut self.part.columns) {
+            if matches!(wanted, Use::Number { .. })
+                && let Some(&value) = values.next()
+            {
+                target.push(value);
+            }
+        }
+        if let Some(label) = self.layout.plan.label {
+            self.part.labels.push(&String::from_utf8_lossy(cells.get(record, label)));
+        }
+        self.part.kept += 1;
+        Ok(())
+    }
+
+    fn cell(&mut self, column: usize, cell: &[u8], required: bool, factor: f64) -> Result<(), Fault> {
+        let value = number(cell, self.layout.delimiter);
+        if let Some(value) = value.filter(|v| v.is_finite()) {
+            self.row.push(value * factor);
+            return Ok(());
+        }
+        if !required && self.layout.undecided && value.is_none() {
+            // The first cell is text: a text column without a use.
+            self.layout.uses[column] = Use::Ignore;
+            self.part.text_columns.push(column);
+            return Ok(());
+        }
+        let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
+        let what = match value {
+            Some(_) => format!("`{shown}` is not a finite number"),
+            None if shown.is_empty() => "the cell is empty".to_owned(),
+            None => format!("`{shown}` is not a number"),
+        };
+        Err(Fault::Cell(column, what))
+    }
+
+    /// Leaves the marks for the comparison of trials.
+    fn mark(&mut self, record: &[u8], cells: &Cells) {
+        let plan = self.layout.plan;
+        if plan.watched.is_empty() {
+            return;
+        }
+        let key = plan.trial_keys.iter().map(|&k| cells.get(record, k)).collect::<Vec<_>>().join(SEPARATOR);
+        match self.part.marks.keys.last_mut() {
+            Some((last, rows)) if *last == key => *rows += 1,
+            _ => self.part.marks.keys.push((key, 1)),
+        }
+        self.part.marks.hashes.extend(plan.watched.iter().map(|&c| cell_hash(cells.get(record, c))));
+    }
+
+    fn selected(&mut self, record: &[u8], cells: &Cells) -> bool {
+        for (wanted, seen) in self.layout.plan.select.iter().zip(&mut self.part.seen) {
+            let cell = cells.get(record, wanted.column);
+            if !wanted.matches(cell) {
+                if seen.len() < SEEN_VALUES {
+                    let text = String::from_utf8_lossy(cell).into_owned();
+                    if !seen.contains(&text) {
+                        seen.push(text);
+                    }
+                }
+                return false;
+            }
+        }
+        true
+    }
+}

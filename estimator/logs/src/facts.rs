@@ -1,0 +1,357 @@
+//! Facts that a sidecar may state: refusals in plain words, and doubts that become warnings.
+
+use super::units;
+use haptics::recording::{Meta, Recording, Task, Warning};
+use serde_json::Value;
+
+/// Keys with a meaning. Others are kept, with a warning.
+const KEYS: [&str; 13] = [
+    "task",
+    "rate_hz",
+    "gravity_m_s2",
+    "up",
+    "hand",
+    "columns",
+    "scale",
+    "select",
+    "sign",
+    "known",
+    "prior",
+    "bounds",
+    "simulated_object",
+];
+/// Axes that may point up.
+const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
+/// Known parameters that are above zero.
+const POSITIVE: [&str; 14] = [
+    "mass_kg",
+    "inertia_kg_m2",
+    "com_m",
+    "radius_m",
+    "width_m",
+    "height_m",
+    "stiffness_N_m",
+    "shear_stiffness_N_m",
+    "constraint_stiffness_N_m",
+    "pad_stiffness_N_m",
+    "empty_mass_kg",
+    "added_weight_N",
+    "added_lever_m",
+    "half_width_m",
+];
+/// Known parameters that are not below zero.
+const NOT_NEGATIVE: [&str; 9] = [
+    "weight_N",
+    "friction_mu",
+    "friction",
+    "friction_lower_bound",
+    "viscous_N_s_m",
+    "viscous_Nm_s",
+    "coulomb_N",
+    "coulomb_Nm",
+    "puncture_force_N",
+];
+/// Known parameters of either sign.
+const SIGNED: [&str; 8] = [
+    "offset_N",
+    "offset_Nm",
+    "gravity_moment_Nm",
+    "gravity_phase_rad",
+    "center_x_m",
+    "center_y_m",
+    "surface_position_m",
+    "added_level_rad",
+];
+/// `rate_hz` and the time column may differ by this share.
+const RATE_TOLERANCE: f64 = 0.05;
+
+/// The first value in the sidecar of a kind that cannot be meant, in words; `None` when every one can be read.
+pub fn wrong_type(sidecar: &Value) -> Option<String> {
+    let Value::Object(entries) = sidecar else {
+        return Some(format!("it holds {} and must hold an object in braces", kind(sidecar)));
+    };
+    entries.iter().find_map(|(key, value)| entry(key, value))
+}
+
+fn entry(key: &str, value: &Value) -> Option<String> {
+    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "hand") {
+        return None;
+    }
+    match key {
+        "task" => task(value),
+        "rate_hz" | "gravity_m_s2" => must(key, value, value.is_number(), "a number"),
+        "up" => must(key, value, value.is_string(), "a text like \"y\""),
+        "hand" => members(key, value, &hand_member),
+        "columns" => members(key, value, &|k, v| must(k, v, v.is_string(), "a column's name in quotes")),
+        "scale" | "sign" | "known" => members(key, value, &|k, v| must(k, v, v.is_number(), "a number")),
+        "prior" => members(key, value, &|k, v| {
+            let number = |part: &str| v.get(part).is_some_and(Value::is_number);
+            must(k, v, number("mean") && number("std"), "an object with two numbers, \"mean\" and \"std\"")
+        }),
+        "bounds" => members(key, value, &|k, v| {
+            let side = |v: &Value| v.is_null() || v.is_number();
+            let pair = v.as_array().is_some_and(|a| a.len() == 2 && a.iter().all(side));
+            must(k, v, pair, "two numbers in brackets, or null for a side that is open")
+        }),
+        "select" => {
+            let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
+            members(key, value, &|k, v| must(k, v, simple(v), "a text or a number"))
+        }
+        _ => None,
+    }
+}
+
+fn task(value: &Value) -> Option<String> {
+    let known = serde_json::from_value::<Task>(value.clone()).is_ok();
+    let folder = foundation::tasks::library::folder();
+    let own = folder.map_or_else(String::new, |folder| format!(", or a task of yours in {}", folder.display()));
+    must("task", value, known, &format!("one of block-stack, crank, needle, mechanism, barrel and switch{own}"))
+}
+
+fn hand_member(key: &str, value: &Value) -> Option<String> {
+    let name = key.rsplit(' ').next().unwrap_or(key);
+    let pair = || value.as_array().is_some_and(|a| a.len() == 2 && a.iter().all(Value::is_number));
+    match name {
+        _ if value.is_null() => None,
+        "link_m" => must(key, value, value.is_number(), "a number"),
+        "base_m" | "base1_m" | "base2_m" => must(key, value, pair(), "two numbers in brackets"),
+        _ => None,
+    }
+}
+
+fn members(key: &str, value: &Value, check: &dyn Fn(&str, &Value) -> Option<String>) -> Option<String> {
+    let Value::Object(entries) = value else { return must(key, value, false, "an object in braces") };
+    entries.iter().find_map(|(name, value)| check(&format!("{key} of {name}"), value))
+}
+
+fn must(key: &str, value: &Value, fine: bool, wanted: &str) -> Option<String> {
+    (!fine).then(|| format!("{key} is {} and must be {wanted}", kind(value)))
+}
+
+/// A JSON value for people.
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".to_owned(),
+        Value::Bool(flag) => flag.to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::String(text) => format!("the text {text:?}"),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Object(_) => "an object".to_owned(),
+    }
+}
+
+/// The first fact in the sidecar that cannot be.
+pub fn complaint(meta: &Meta) -> Option<String> {
+    if let Some(rate) = meta.rate_hz.filter(|r| !(r.is_finite() && *r > 0.0)) {
+        return Some(format!("rate_hz is {rate} and must be positive"));
+    }
+    if let Some(g) = meta.gravity_m_s2.filter(|g| !(g.is_finite() && *g > 0.0)) {
+        return Some(format!(
+            "gravity_m_s2 is {g} and must be positive; say \"up\": \"none\" where gravity does not act, \"up\": \"-y\" where y points down"
+        ));
+    }
+    if let Some(up) = meta.up.as_deref().filter(|up| !UP.contains(up)) {
+        return Some(format!("up is {up:?} and must be one of {}", UP.join(", ")));
+    }
+    if let Some((name, value)) = meta.sign.iter().find(|(_, v)| v.abs() != 1.0) {
+        return Some(format!("sign of {name} is {value} and must be 1 or -1"));
+    }
+    if let Some((name, value)) = meta.scale.iter().find(|(_, v)| !v.is_finite() || **v == 0.0) {
+        return Some(format!("scale of {name} is {value} and must be a number other than 0"));
+    }
+    if let Some(link) = meta.hand.as_ref().and_then(|h| h.link_m).filter(|l| !(l.is_finite() && *l > 0.0)) {
+        return Some(format!("link_m of hand is {link} and must be positive"));
+    }
+    if let Some((name, prior)) =
+        meta.prior.iter().find(|(_, p)| !(p.mean.is_finite() && p.std.is_finite() && p.std > 0.0))
+    {
+        return Some(format!(
+            "the prior of {name} is {} ± {} and must be a number with a standard deviation above 0; a value that is certain belongs in \"known\"",
+            prior.mean, prior.std
+        ));
+    }
+    if let Some((name, [low, high])) = meta.bounds.iter().find(|(_, b)| matches!(b, [Some(l), Some(h)] if l >= h)) {
+        let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
+        return Some(format!("the bounds of {name} are {low} and {high}; the first must be the smaller one"));
+    }
+    meta.known.iter().find_map(|(name, value)| impossible(last_part(name), *value))
+}
+
+/// The parameter's name without the object's.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn impossible(name: &str, value: f64) -> Option<String> {
+    let wanted = match name {
+        _ if !value.is_finite() => "a finite number",
+        _ if POSITIVE.contains(&name) && value <= 0.0 => "above 0",
+        _ if NOT_NEGATIVE.contains(&name) && value < 0.0 => "0 or more",
+        _ => return None,
+    };
+    Some(format!("known {name} is {value} and must be {wanted}"))
+}
+
+/// An axis that points up but that recordings of this form are not read with: better refused than ignored.
+pub fn up_not_honoured(recording: &Recording) -> Option<String> {
+    let up = recording.meta.up.as_deref().unwrap_or("y");
+    let fingers = ["x1_m", "x2_m", "qb1_rad", "qb2_rad", "qb_rad"].iter().any(|c| recording.channel(c).is_some());
+    let task = recording.meta.task;
+    let (what, fine) = match task {
+        Some(Task::Crank) => ("cranks are read with y up or -y up", matches!(up, "y" | "-y")),
+        Some(Task::BlockStack) => ("blocks are read with y up", up == "y"),
+        Some(Task::Barrel) => ("barrels are read with y up", up == "y"),
+        None if fingers => ("fingertips are read with y up", matches!(up, "y" | "-y")),
+        _ => return None,
+    };
+    let flat = if up == "none" && task == Some(Task::Crank) {
+        "; where gravity does not act, state \"known\": {\"weight_N\": 0}"
+    } else {
+        "; name the vertical column y in \"columns\""
+    };
+    (!fine).then(|| format!("up is {up:?}, but {what}{flat}"))
+}
+
+/// Doubtful statements of the sidecar about this recording.
+pub fn doubts(recording: &Recording) -> Vec<Warning> {
+    let meta = &recording.meta;
+    let warning = |text: String| Warning { kind: "sidecar".to_owned(), column: None, spans: Vec::new(), text };
+    let mut found = Vec::new();
+    for key in meta.other.keys().filter(|k| !KEYS.contains(&k.as_str())) {
+        found.push(warning(format!("the sidecar's key `{key}` means nothing to the program; it is kept as it is")));
+    }
+    let named = |n: &str| {
+        let n = last_part(n);
+        POSITIVE.contains(&n) || NOT_NEGATIVE.contains(&n) || SIGNED.contains(&n)
+    };
+    for name in meta.known.keys().filter(|n| !named(n)) {
+        found.push(warning(format!(
+            "known `{name}` is no parameter of the program and is not used; check its spelling"
+        )));
+    }
+    found.extend(rate_doubt(recording).map(warning));
+    found.extend(hand_doubt(recording).map(warning));
+    found
+}
+
+fn rate_doubt(recording: &Recording) -> Option<String> {
+    let (rate, time) = (recording.meta.rate_hz?, recording.time_s.as_ref()?);
+    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let measured = 1.0 / *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    ((rate / measured - 1.0).abs() > RATE_TOLERANCE).then(|| {
+        format!(
+            "rate_hz is {rate} but the time column runs at {measured:.4} Hz; the time column is used: check its unit"
+        )
+    })
+}
+
+fn hand_doubt(recording: &Recording) -> Option<String> {
+    let joints = recording.channels.iter().any(|c| {
+        let quantity = units::split(&c.name).map_or("", |(q, _)| q);
+        matches!(quantity.trim_end_matches(['1', '2']), "qb" | "qt")
+    });
+    let stated = recording.meta.hand.as_ref();
+    if !joints || stated.is_some_and(|h| h.link_m.is_some() && (h.base_m.is_some() || h.base1_m.is_some())) {
+        return None;
+    }
+    let hand = recording.meta.hand();
+    let [one, two] = &hand.fingers;
+    let millimetres = |v: f64| 1e3 * v;
+    Some(format!(
+        "the sidecar does not state the hand that the joint angles belong to: links of {:.0} mm and bases at ({:.0}, {:.0}) and ({:.0}, {:.0}) mm are assumed; give \"hand\" with link_m and base_m or base1_m, base2_m",
+        millimetres(one.link_m),
+        millimetres(one.base_m.x),
+        millimetres(one.base_m.y),
+        millimetres(two.base_m.x),
+        millimetres(two.base_m.y),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    fn meta(json: &str) -> Meta {
+        serde_json::from_str(json).expect("a sidecar")
+    }
+
+    fn recording(columns: &[&str], json: &str) -> Recording {
+        let channel = |name: &&str| {
+            let unit = units::split(name).map_or(String::new(), |(_, u)| u.si.to_owned());
+            Channel { name: (*name).to_owned(), unit, values: vec![0.0, 1.0, 2.0] }
+        };
+        Recording {
+            time_s: Some(vec![0.0, 0.01, 0.02]),
+            channels: columns.iter().map(channel).collect(),
+            meta: meta(json),
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_by_name() {
+        for (json, words) in [
+            (r#"{"gravity_m_s2": 0}"#, "gravity_m_s2 is 0"),
+            (r#"{"gravity_m_s2": -9.81}"#, "\"up\": \"none\""),
+            (r#"{"up": "sideways"}"#, "up is \"sideways\""),
+            (r#"{"known": {"mass_kg": -2}}"#, "known mass_kg is -2"),
+            (r#"{"known": {"coulomb_N": -1}}"#, "0 or more"),
+            (r#"{"hand": {"link_m": 0}}"#, "link_m of hand is 0"),
+        ] {
+            let text = complaint(&meta(json)).unwrap_or_else(|| panic!("{json} must be refused"));
+            assert!(text.contains(words), "{text}");
+        }
+        let fine = r#"{"gravity_m_s2": 1.62, "up": "-z", "known": {"offset_N": -3, "weight_N": 0, "com_m": 0.2}}"#;
+        assert_eq!(complaint(&meta(fine)), None);
+    }
+
+    #[test]
+    fn a_wrong_type_is_told_in_plain_words() {
+        for (json, words) in [
+            (r#"{"rate_hz": "fast"}"#, "rate_hz is the text \"fast\" and must be a number"),
+            (r#"{"known": {"mass_kg": [1]}}"#, "known of mass_kg is a list and must be a number"),
+            (r#"{"hand": {"base1_m": 3}}"#, "hand of base1_m is 3 and must be two numbers in brackets"),
+            (r#"{"columns": ["t_s"]}"#, "columns is a list and must be an object in braces"),
+            (r#"{"task": "juggling"}"#, "task is the text \"juggling\" and must be one of block-stack"),
+            (r"[1, 2]", "it holds a list"),
+        ] {
+            let value: Value = serde_json::from_str(json).expect("JSON");
+            let text = wrong_type(&value).unwrap_or_else(|| panic!("{json} must be refused"));
+            assert!(text.contains(words), "{text}");
+        }
+        let fine = r#"{"rate_hz": null, "select": {"trial": 1, "who": "K"}, "operator": [1], "up": "y"}"#;
+        assert_eq!(wrong_type(&serde_json::from_str(fine).expect("JSON")), None);
+    }
+
+    #[test]
+    fn an_axis_that_would_be_ignored_is_refused() {
+        let up = |columns: &[&str], json: &str| up_not_honoured(&recording(columns, json));
+        assert!(up(&["x1_m"], r#"{"up": "x"}"#).is_some_and(|t| t.contains("y up")));
+        assert!(up(&["x1_m"], r#"{"task": "block-stack", "up": "none"}"#).is_some());
+        assert!(up(&["x1_m"], r#"{"task": "barrel", "up": "-x"}"#).is_some_and(|t| t.contains("barrels")));
+        assert!(up(&["x1_m"], r#"{"task": "crank", "up": "none"}"#).is_some_and(|t| t.contains("weight_N")));
+        assert_eq!(up(&["x1_m"], r#"{"task": "crank", "up": "-y"}"#), None);
+        assert_eq!(up(&["q_rad"], r#"{"up": "none"}"#), None);
+        assert_eq!(up(&["x_m", "y_m", "z_m"], r#"{"up": "z"}"#), None);
+    }
+
+    #[test]
+    fn doubts_name_what_they_are_about() {
+        let said = |columns: &[&str], json: &str| -> Vec<String> {
+            doubts(&recording(columns, json)).into_iter().map(|w| w.text).collect()
+        };
+        assert!(said(&["q_m"], r#"{"rate_hz": 100, "known": {"mass_kg": 1}}"#).is_empty());
+        let found = said(&["q_m"], r#"{"rate_hz": 5000, "foo": 1, "known": {"masss_kg": 1}}"#);
+        assert!(found.len() == 3 && found[0].contains("`foo`") && found[1].contains("`masss_kg`"), "{found:?}");
+        assert!(found[2].contains("rate_hz is 5000") && found[2].contains("100.0000 Hz"), "{found:?}");
+        let found = said(&["qb1_rad", "qt1_rad"], "{}");
+        assert!(found.len() == 1 && found[0].contains("80 mm") && found[0].contains("-40"), "{found:?}");
+        let hand = r#"{"hand": {"link_m": 0.1, "base_m": [0, 0]}}"#;
+        assert!(said(&["qb_rad", "qt_rad"], hand).is_empty());
+    }
+}

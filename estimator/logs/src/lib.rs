@@ -1,0 +1,206 @@
+//! Reading and writing logs: tables of samples with a sidecar of facts (`spec/logs.md`).
+//!
+//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that names the fault and its place.
+//! The format is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every
+//! format.
+
+mod assemble;
+mod checks;
+mod columnar;
+mod csv;
+mod errors;
+mod facts;
+mod fingerprint;
+mod format;
+mod mcap;
+mod pages;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod plan;
+pub mod preview;
+pub mod pyramid;
+mod raw;
+mod rows;
+mod sidecar;
+mod table;
+pub mod units;
+mod watch;
+mod write;
+
+pub use self::mcap::attached::attached;
+pub use self::mcap::stream::McapStream;
+pub use checks::warnings as quality;
+pub use errors::LogError;
+pub use format::Format;
+pub use plan::PAIRS;
+pub use rows::Attachment;
+pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
+pub use watch::Watch;
+pub use write::{write, write_csv};
+
+/// The kind of the warning that a log has no clock.
+pub const NO_CLOCK: &str = "no-clock";
+
+use haptics::recording::{Meta, Recording, Warning};
+use raw::Raw;
+use std::path::Path;
+
+/// Largest file that is read, bytes (4 GiB): the table needs about as much memory again.
+pub const MAX_BYTES: u64 = 4 << 30;
+
+/// Reads a log and its sidecar (`meta`, or the one that a file of ours carries, or `<stem>.meta.json` beside it): one
+/// recording for every value of the `trial` column, in the order of the file, else one.
+pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
+    load_watched(path, meta, &Watch::none())
+}
+
+/// Faults in the samples of a recording, with their places: [`load`] adds them to its warnings.
+pub fn check(recording: &Recording) -> Vec<Warning> {
+    checks::warnings(recording)
+}
+
+/// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
+pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    let size = admissible_size(path)?;
+    let facts = Facts::Found { beside: Box::new(sidecar::load(path, meta)), named: meta.is_some() };
+    read(path, format::of(path)?, size, facts, watch)
+}
+
+/// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
+pub fn load_with_meta(path: &Path, meta: &Meta) -> Result<Vec<Recording>, LogError> {
+    load_with(path, meta, &Watch::none())
+}
+
+/// [`load_with_meta`] that tells how far it has come and that can be ended from outside.
+pub fn load_with(path: &Path, meta: &Meta, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    load_sized(path, meta, admissible_size(path)?, watch)
+}
+
+fn load_sized(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    if let Some(why) = facts::complaint(meta) {
+        return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
+    }
+    read(path, format::of(path)?, size, Facts::Given(meta), watch)
+}
+
+/// The column names of a table, for a mapping dialog.
+pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
+    let size = admissible_size(path)?;
+    let nothing = Meta::default();
+    match format::of(path)? {
+        Format::Csv => Ok(csv::sniff(path)?.headers),
+        Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
+        Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
+    }
+}
+
+/// Source of the facts about a log.
+enum Facts<'a> {
+    /// The caller.
+    Given(&'a Meta),
+    /// The sidecar beside the log (or why it cannot be read), which the caller may have named.
+    Found { beside: Box<Result<Meta, LogError>>, named: bool },
+}
+
+impl Facts<'_> {
+    /// The facts that hold, with a note when a sidecar beside is not used.
+    fn settle(self, carried: Option<&str>, path: &Path) -> Result<(Meta, Option<Warning>), LogError> {
+        match (self, carried) {
+            (Self::Given(meta), _) => Ok((meta.clone(), None)),
+            (Self::Found { beside, named: false }, Some(text)) => {
+                let meta = sidecar::parse(text, path)?;
+                // The columns of a file of ours are in SI units already: another file's mapping would spoil them.
+                let file = sidecar::path_for(path);
+                let stray = !beside.is_ok_and(|beside| beside == Meta::default() || beside == meta);
+                let text =
+                    format!("the log carries its own sidecar; {} is not used unless it is named", file.display());
+                Ok((meta, stray.then(|| note("sidecar", text))))
+            }
+            (Self::Found { beside, .. }, _) => Ok(((*beside)?, None)),
+        }
+    }
+}
+
+fn note(kind: &str, text: String) -> Warning {
+    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
+}
+
+fn read(
+    path: &Path,
+    format: Format,
+    size: u64,
+    facts: Facts<'_>,
+    watch: &Watch<'_>,
+) -> Result<Vec<Recording>, LogError> {
+    let done = match format {
+        Format::Csv => facts.settle(None, path).and_then(|(meta, _)| read_csv(path, &meta, size, watch)),
+        Format::Mcap => mcap::read(path, size, watch).and_then(|log| {
+            let (meta, stray) = facts.settle(log.sidecar.as_deref(), path)?;
+            let (raw, mut said) = log.columns(&meta)?;
+            said.extend(stray);
+            finish(raw, &meta, path, &said)
+        }),
+        Format::Parquet => read_parquet(path, size, watch).and_then(|(raw, carried, mut said)| {
+            let (meta, stray) = facts.settle(carried.as_deref(), path)?;
+            said.extend(stray);
+            finish(raw, &meta, path, &said)
+        }),
+    };
+    // A file that grows is reported as such, also when its end was half written.
+    let after = std::fs::metadata(path).map_or(size, |m| m.len());
+    if after != size {
+        return Err(LogError::Grew { before: size, after, path: path.to_path_buf() });
+    }
+    done
+}
+
+fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    let dialect = csv::sniff(path)?;
+    let plan = plan::plan(&dialect.headers, meta, path)?;
+    let table = csv::read(path, &dialect, &plan, size, watch)?;
+    assemble::recordings(table, &plan, meta, path, &dialect.headers, &[])
+}
+
+/// From the columns of a container to recordings.
+fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
+    let headers = raw.headers.clone();
+    let plan = plan::plan(&headers, &raw.resolved(meta), path)?;
+    let table = columnar::table(raw, &plan, path)?;
+    assemble::recordings(table, &plan, meta, path, &headers, said)
+}
+
+#[cfg(feature = "parquet")]
+fn read_parquet(path: &Path, size: u64, watch: &Watch<'_>) -> Result<parquet::Columns, LogError> {
+    parquet::read(path, size, watch)
+}
+
+#[cfg(not(feature = "parquet"))]
+fn read_parquet(path: &Path, _size: u64, _watch: &Watch<'_>) -> Result<(Raw, Option<String>, Vec<Warning>), LogError> {
+    let why = "Parquet was left out when this program was built".to_owned();
+    Err(LogError::NoColumns { format: "Parquet", why, path: path.to_path_buf() })
+}
+
+/// Size of a file that can be read.
+fn admissible_size(path: &Path) -> Result<u64, LogError> {
+    let owned = || path.to_path_buf();
+    let facts = std::fs::metadata(path).map_err(|e| LogError::Io { reason: e.to_string(), path: owned() })?;
+    if facts.is_dir() {
+        return Err(LogError::Directory { path: owned() });
+    }
+    if !facts.is_file() {
+        return Err(LogError::NotAFile { path: owned() });
+    }
+    if facts.len() > MAX_BYTES {
+        let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+        return Err(LogError::TooLarge { size_gib: gib(facts.len()), limit_gib: gib(MAX_BYTES), path: owned() });
+    }
+    if facts.len() == 0 {
+        return Err(LogError::Empty { path: owned() });
+    }
+    Ok(facts.len())
+}
+
+#[cfg(test)]
+mod formats_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,229 @@
+//! The messages of one topic as columns: one row a message, one column a field.
+
+use crate::raw::{Cells, MISSING, is_missing};
+use haptics::recording::Labels;
+use std::collections::HashMap;
+
+/// More fields than this in one topic are no recording.
+pub const MAX_FIELDS: usize = 2000;
+/// Longer lists of numbers (images, point clouds, maps) are passed over.
+pub const MAX_ITEMS: usize = 64;
+/// Messages nest no deeper than this.
+pub const MAX_DEPTH: usize = 24;
+
+/// Columns that grow row by row.
+#[derive(Debug, Default)]
+pub struct Topic {
+    /// Paths of the fields, e.g. `wrench.force.x`, `position[0]`; empty when the message is a bare value.
+    pub fields: Vec<String>,
+    /// One column a field.
+    pub columns: Vec<Cells>,
+    /// Log time of every row, ns.
+    pub log_ns: Vec<u64>,
+    /// True once a list was too long to be kept.
+    pub long_lists: bool,
+    /// Parts of the schema seen so far, for the limit on wild nesting.
+    pub nodes: usize,
+    lookup: HashMap<String, usize>,
+    /// Column where the next field is expected: messages repeat their order.
+    next: usize,
+    /// Cells appended so far, for the limit on memory.
+    cells: usize,
+}
+
+impl Topic {
+    /// Starts the row of a message.
+    pub fn begin(&mut self, log_ns: u64) {
+        self.log_ns.push(log_ns);
+        self.next = 0;
+    }
+
+    /// Fills the fields that the message did not mention.
+    pub fn end(&mut self) {
+        let rows = self.log_ns.len();
+        for column in &mut self.columns {
+            if column.len() < rows {
+                pad(column, rows);
+            }
+        }
+        self.cells += self.columns.len() + 1;
+    }
+
+    /// Bytes held, about.
+    pub fn bytes(&self) -> usize {
+        8 * self.cells
+    }
+
+    /// Bytes of the texts that are held; not cheap, therefore not asked at every message.
+    pub fn text_bytes(&self) -> usize {
+        self.columns.iter().filter(|c| matches!(c, Cells::Text(_))).map(Cells::bytes).sum()
+    }
+
+    /// The column of a field, made when it is new.
+    pub fn column(&mut self, field: &str, text: bool) -> Result<usize, String> {
+        if self.fields.get(self.next).is_some_and(|f| f == field) {
+            self.next += 1;
+            return Ok(self.next - 1);
+        }
+        if let Some(&column) = self.lookup.get(field) {
+            self.next = column + 1;
+            return Ok(column);
+        }
+        if self.fields.len() == MAX_FIELDS {
+            return Err(format!("it has more than {MAX_FIELDS} different fields"));
+        }
+        let mut cells = if text { Cells::Text(Labels::default()) } else { Cells::Numbers(Vec::new()) };
+        pad(&mut cells, self.log_ns.len().saturating_sub(1));
+        self.cells += self.log_ns.len();
+        self.fields.push(field.to_owned());
+        self.columns.push(cells);
+        self.lookup.insert(field.to_owned(), self.fields.len() - 1);
+        self.next = self.fields.len();
+        Ok(self.fields.len() - 1)
+    }
+
+    /// Puts a number into the current row.
+    pub fn number(&mut self, column: usize, value: f64) {
+        let rows = self.log_ns.len();
+        match &mut self.columns[column] {
+            Cells::Numbers(values) if values.len() < rows => values.push(value),
+            Cells::Text(texts) if texts.len() < rows => texts.push(&value.to_string()),
+            // A field that comes twice in a message: the first one counts.
+            _ => {}
+        }
+    }
+
+    /// Puts a text into the current row. A column of numbers becomes one of text.
+    pub fn text(&mut self, column: usize, value: &str) {
+        let rows = self.log_ns.len();
+        if let Cells::Numbers(values) = &self.columns[column] {
+            let mut texts = Labels::default();
+            for &v in values {
+                texts.push(&if is_missing(v) { String::new() } else { v.to_string() });
+            }
+            self.columns[column] = Cells::Text(texts);
+        }
+        if let Cells::Text(texts) = &mut self.columns[column]
+            && texts.len() < rows
+        {
+            texts.push(value);
+        }
+    }
+
+    /// Puts the rows in the order of their log time (a recorder may write its buffers one after the other).
+    pub fn sort(&mut self) {
+        if self.log_ns.is_sorted() {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.log_ns.len()).collect();
+        order.sort_by_key(|&i| self.log_ns[i]);
+        self.log_ns = order.iter().map(|&i| self.log_ns[i]).collect();
+        self.columns = self.columns.iter().map(|c| c.gathered(&order)).collect();
+    }
+
+    /// Names the elements of lists beside a list `name` of constant texts after them: `position[0]` of a `JointState` becomes
+    /// `position[shoulder]`.
+    pub fn name_items(&mut self) {
+        let mut names: HashMap<(String, String), String> = HashMap::new();
+        for (field, cells) in self.fields.iter().zip(&self.columns) {
+            if let (Some((list, item)), Cells::Text(texts)) = (split_item(field), cells)
+                && let Some(prefix) = list.strip_suffix("name")
+                && (prefix.is_empty() || prefix.ends_with('.'))
+                && let Some(name) = texts.constant().filter(|n| !n.is_empty())
+            {
+                names.insert((prefix.to_owned(), item.to_owned()), name.to_owned());
+            }
+        }
+        if names.is_empty() {
+            return;
+        }
+        for field in &mut self.fields {
+            let Some((list, item)) = split_item(field) else { continue };
+            let prefix = list.rfind('.').map_or("", |dot| &list[..=dot]);
+            if let Some(name) = names.get(&(prefix.to_owned(), item.to_owned())).filter(|_| !list.ends_with("name")) {
+                *field = format!("{list}[{name}]");
+            }
+        }
+        self.forget(|field| {
+            split_item(field).is_some_and(|(list, item)| {
+                list.strip_suffix("name").is_some_and(|p| names.contains_key(&(p.to_owned(), item.to_owned())))
+            })
+        });
+    }
+
+    /// Drops the columns whose field `unwanted` names.
+    pub fn forget(&mut self, unwanted: impl Fn(&str) -> bool) {
+        let keep: Vec<bool> = self.fields.iter().map(|f| !unwanted(f)).collect();
+        let mut kept = keep.iter();
+        self.fields.retain(|_| *kept.next().unwrap_or(&true));
+        let mut kept = keep.iter();
+        self.columns.retain(|_| *kept.next().unwrap_or(&true));
+        self.lookup.clear();
+    }
+
+    /// The column of a field.
+    pub fn find(&self, field: &str) -> Option<&Cells> {
+        self.fields.iter().position(|f| f == field).map(|at| &self.columns[at])
+    }
+}
+
+/// `a.b[3]` → (`a.b`, `3`).
+fn split_item(field: &str) -> Option<(&str, &str)> {
+    field.strip_suffix(']')?.rsplit_once('[')
+}
+
+fn pad(cells: &mut Cells, rows: usize) {
+    match cells {
+        Cells::Numbers(values) => values.resize(rows.max(values.len()), MISSING),
+        Cells::Text(texts) => {
+            for _ in texts.len()..rows {
+                texts.push("");
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn topic(rows: &[&[(&str, &str)]]) -> Topic {
+        let mut topic = Topic::default();
+        for (i, row) in rows.iter().enumerate() {
+            topic.begin(i as u64);
+            for (field, value) in *row {
+                if let Ok(number) = value.parse() {
+                    let column = topic.column(field, false).expect("few");
+                    topic.number(column, number);
+                } else {
+                    let column = topic.column(field, true).expect("few");
+                    topic.text(column, value);
+                }
+            }
+            topic.end();
+        }
+        topic
+    }
+
+    #[test]
+    fn fields_may_come_late_or_not_at_all() {
+        let topic = topic(&[&[("a", "1")], &[("b", "2"), ("a", "3")], &[("b", "x")]]);
+        let Some(Cells::Numbers(a)) = topic.find("a") else { panic!("a holds numbers") };
+        assert!(a[0] == 1.0 && a[1] == 3.0 && is_missing(a[2]));
+        let b = topic.find("b").expect("there");
+        assert_eq!([b.text(0), b.text(1), b.text(2)], ["", "2", "x"]);
+    }
+
+    #[test]
+    fn lists_beside_constant_names_are_named_after_them() {
+        let row: &[(&str, &str)] =
+            &[("name[0]", "hip"), ("name[1]", "knee"), ("position[0]", "1"), ("position[1]", "2")];
+        let mut one = topic(&[row, row]);
+        one.name_items();
+        assert_eq!(one.fields, ["position[hip]", "position[knee]"]);
+        let swapped: &[(&str, &str)] = &[("name[0]", "knee"), ("name[1]", "hip"), ("position[0]", "1")];
+        let mut two = topic(&[row, swapped]);
+        two.name_items();
+        assert!(two.fields.contains(&"position[0]".to_owned()), "names that change name nothing: {:?}", two.fields);
+    }
+}
