@@ -1,9 +1,9 @@
 //! A wall or a cable as a hypothesis: its place, or the direction of its anchor and its length, are searched.
 
 use super::candidate::{Candidate, Searched};
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{AddedConstraint, Cable, Effect, Kind};
 use std::f64::consts::TAU;

@@ -1,9 +1,9 @@
 //! A change of friction as a hypothesis, in proportion to the model's own: slow, sudden, or with a recorded channel.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use crate::diagnose::data::regression_data::Place;

@@ -1,9 +1,9 @@
 //! A local resistance in both directions, or a push at a place, as a hypothesis: place and width are searched.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, Law, LocalPush, LocalResistance};
 use std::f64::consts::TAU;

@@ -1,9 +1,9 @@
 //! Stribeck friction as a hypothesis: the speed at which static friction decays is searched, for two exponents.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use crate::diagnose::contract::CauseParameter;
