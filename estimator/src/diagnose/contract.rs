@@ -1,6 +1,6 @@
 //! Published answer of a diagnosis. These types *are* the JSON of `touchstone diagnose --json`.
 
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

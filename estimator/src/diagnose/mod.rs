@@ -19,21 +19,21 @@ pub(crate) mod tasks;
 pub(crate) mod validation;
 pub(crate) mod worlds;
 
-use crate::estimate::EstimateError;
-use crate::log::NO_CLOCK;
-use crate::segment::task_of;
 pub use answer::atlas;
 pub use answer::time_series::{Course, Instant};
 pub use contract::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
     PassedOver, Residual, Rollout, RolloutOf, Settled, Validation, Verdict,
 };
+use estimation::segment::task_of;
 pub use experiment::strokes::{Stroke, Strokes};
 pub use experiment::waypoints::{Insertions, Throw, Throws};
 pub use findings::Findings;
+use foundation::estimate::EstimateError;
 use haptics::recording::{Recording, Task};
 pub use hypotheses::sensor_fault::SensorFault;
 pub use hypotheses::variable::Variable;
+use logs::NO_CLOCK;
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::baseline_models::named;

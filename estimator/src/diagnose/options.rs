@@ -1,5 +1,5 @@
 use super::progress::Progress;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::recording::Task;
 use haptics::world::World;
 

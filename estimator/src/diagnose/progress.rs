@@ -1,6 +1,6 @@
 //! Share of a diagnosis that is done, and the wish to end it.
 
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use std::fmt;
 use std::sync::Arc;
 

@@ -6,8 +6,8 @@ use super::options::Options;
 use crate::diagnose::extension::hypothetical_worlds::{Hypothesis, Inside};
 use crate::diagnose::extension::world::with_laws;
 use crate::diagnose::hypotheses::sensor_fault::SensorFault;
-use crate::estimate::EstimateError;
-use crate::pipeline;
+use estimation::pipeline;
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 use haptics::world::World;
 

@@ -10,7 +10,7 @@ use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use crate::diagnose::selection::profile_likelihood::parameters;
 use crate::diagnose::selection::stepwise::{SelectedTerm, is_curve};
-use crate::words::amount;
+use foundation::words::amount;
 use haptics::law::entries;
 
 /// A chosen cause, as its evidence sentence sees it.

@@ -10,7 +10,7 @@ use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 use haptics::law::entries;
 use std::collections::BTreeSet;
 

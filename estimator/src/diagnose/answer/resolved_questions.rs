@@ -3,7 +3,7 @@
 use crate::diagnose::contract::{Diagnosis, Settled};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::selection::rules::OPEN;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Number of recordings above which they are repetitions, not answers to each other.

@@ -2,8 +2,8 @@
 //! theirs, too.
 
 use super::regression_data::Track;
-use crate::estimate::EstimateError;
-use crate::identify::mechanism::path::{keeps_to, spare_m};
+use estimation::identify::mechanism::path::{keeps_to, spare_m};
+use foundation::estimate::EstimateError;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;

@@ -1,8 +1,8 @@
 //! Covariates: slowly changing channels beside motion and force (a temperature, a voltage) that may affect friction or
 //! the force sensor.
 
-use crate::log::units::{is_program_name, split};
 use haptics::recording::Recording;
+use logs::units::{is_program_name, split};
 
 /// Time over which the changes of a slow channel are measured, s.
 const SLOW_S: f64 = 1.0;

@@ -1,8 +1,8 @@
 //! Motion between the rows: slightly smoothed, thinned out or interpolated.
 
 use super::regression_data::Fine;
-use crate::signal::derive::savitzky_golay;
-use crate::signal::noise::white_noise;
+use foundation::signal::derive::savitzky_golay;
+use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 
 /// Approximate rate of the points, Hz: a hand's motion is nearly linear between them.

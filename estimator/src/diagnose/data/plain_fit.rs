@@ -2,8 +2,8 @@
 
 use super::regression_data::{Model, Place, Row, Track};
 use super::row_means::column;
-use crate::estimate::EstimateError;
-use crate::identify::linear::{LinearFit, Values, least_squares, least_squares_values};
+use estimation::regression::linear::{LinearFit, Values, least_squares, least_squares_values};
+use foundation::estimate::EstimateError;
 use haptics::law::Effect;
 
 /// Rows for plain fits, with the measured forces less the known ones.

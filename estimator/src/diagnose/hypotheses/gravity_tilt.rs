@@ -6,7 +6,7 @@ use super::hypothesis::{About, Found, Hypothesis};
 use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
 use haptics::law::{Coordinate, Effect, GravityTilt, Kind};
 
 pub(crate) const ID: &str = "gravity-tilt";

@@ -7,7 +7,7 @@ use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, fingers};
 use super::variable::Variable;
 use crate::diagnose::data::regression_data::{Row, Track};
-use crate::signal::derive::savitzky_golay;
+use foundation::signal::derive::savitzky_golay;
 use haptics::law::Kind;
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
 //! step.
 
-use crate::identify::linear::least_squares_values;
+use estimation::regression::linear::least_squares_values;
 
 /// Step of the tried delays, s, or one sample if that is longer.
 const STEP_S: f64 = 2e-3;

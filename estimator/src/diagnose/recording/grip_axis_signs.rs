@@ -6,9 +6,9 @@
 use super::rate_signs::{mirrored, with_rates_of_motion};
 use super::sample_faults;
 use crate::diagnose::contract::Cause;
-use crate::segment::threshold::percentile;
-use crate::signal::noise::white_noise;
-use crate::signal::task::{Tip, is_two_fingered};
+use estimation::segment::threshold::percentile;
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{Tip, is_two_fingered};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;

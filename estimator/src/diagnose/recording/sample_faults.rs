@@ -3,10 +3,10 @@
 
 use crate::diagnose::contract::{Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::hypotheses::{axis_sign, channel_fault, force_saturation, length_scale};
-use crate::log;
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
+use logs;
 
 /// Faults found in the samples.
 pub struct Faults {

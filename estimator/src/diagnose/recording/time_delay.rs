@@ -14,7 +14,7 @@ use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::gram::gram;
 use crate::diagnose::selection::normal_equations::solve;
 use crate::diagnose::selection::profile_likelihood::parameters;
-use crate::signal::derive::{interpolate, interpolate_cubic};
+use foundation::signal::derive::{interpolate, interpolate_cubic};
 use haptics::law::{CoulombFriction, Effect, Inertia, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;

@@ -17,7 +17,7 @@ use super::stepwise::Stepwise;
 use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 
 /// Part of a cause beyond the model below which it counts as none.
 const LEAST_OWN_PART: f64 = 1e-4;

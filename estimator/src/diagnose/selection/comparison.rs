@@ -4,7 +4,7 @@ use super::rules::Rules;
 use super::stepwise::{SelectedTerm, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
 pub struct Compared {

@@ -1,7 +1,7 @@
 //! Baseline models by name, and the terms of them that a recording or its sidecar states.
 
 use crate::diagnose::data::regression_data::Model;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::Recording;
 

@@ -21,8 +21,8 @@ use crate::diagnose::recording::time_delay::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::selection::profile_likelihood::of_hardening_spring;
-use crate::segment::SystemState;
-use crate::signal::noise::white_noise;
+use foundation::signal::noise::white_noise;
+use foundation::tasks::SystemState;
 
 /// Comparison of a path, and the same with generic terms if its residual needs some.
 pub struct PathFit {

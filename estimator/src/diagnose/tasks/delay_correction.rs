@@ -6,7 +6,7 @@ use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
 use crate::diagnose::recording::time_delay::put_back;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
 

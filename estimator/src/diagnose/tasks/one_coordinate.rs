@@ -23,8 +23,8 @@ use crate::diagnose::selection::noise_model::Noise;
 use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares_values;
+use estimation::regression::linear::least_squares_values;
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
 

@@ -1,7 +1,6 @@
 //! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told;
 //! what depends on the place can, and so can two estimates of one force that do not agree.
 
-use crate::constraint::detect_in;
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::{Part, Told};
@@ -21,11 +20,12 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::{ConstraintKind, EstimateError};
-use crate::identify::mechanism::path;
-use crate::identify::mechanism::path::{from_constraint, project};
-use crate::segment::SystemState;
-use crate::signal::noise::white_noise;
+use estimation::constraint::detect_in;
+use estimation::identify::mechanism::path;
+use estimation::identify::mechanism::path::{from_constraint, project};
+use foundation::estimate::{ConstraintKind, EstimateError};
+use foundation::signal::noise::white_noise;
+use foundation::tasks::SystemState;
 use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
 

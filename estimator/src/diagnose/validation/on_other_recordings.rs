@@ -12,8 +12,8 @@ use crate::diagnose::hypotheses::law_forces::needed;
 use crate::diagnose::options;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::held_out_gain::{DRAWS, bootstrap};
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
+use foundation::estimate::EstimateError;
 use haptics::law::{Effect, Kind};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.

@@ -17,7 +17,7 @@ use crate::diagnose::selection::held_out_gain::{gain, holds_out};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::normal_equations::Use;
 use crate::diagnose::selection::rules::Rules;
-use crate::segment::SystemState;
+use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use rand::{RngExt as _, SeedableRng as _};
 use std::f64::consts::TAU;

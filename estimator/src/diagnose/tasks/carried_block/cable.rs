@@ -4,7 +4,7 @@ use super::rows::{Place, Rows};
 use crate::diagnose::hypotheses::added_constraint;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::{AddedConstraint, Kind};
 use haptics::world::Cable;

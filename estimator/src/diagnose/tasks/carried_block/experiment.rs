@@ -6,7 +6,7 @@ use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
 use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
 
 /// The library: id, words, and duration without touch before and after, s.

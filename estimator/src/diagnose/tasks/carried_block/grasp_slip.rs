@@ -4,7 +4,7 @@ use super::standing_height::{Rows, Stand};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use estimation::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 
 /// Number of tried starts in every rest, besides its beginning.

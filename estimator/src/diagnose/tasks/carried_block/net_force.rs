@@ -25,9 +25,9 @@ use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
-use crate::estimate::EstimateError;
-use crate::identify::block::signals::object;
-use crate::segment::SystemState;
+use estimation::identify::block::signals::object;
+use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::world::{Cable, World};
 use std::collections::BTreeSet;
 

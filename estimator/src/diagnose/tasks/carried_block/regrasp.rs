@@ -7,8 +7,8 @@ use crate::diagnose::contract::{Cause, Gain, parameter};
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
-use crate::identify::block::signals::object;
-use crate::identify::block::slip_detection::LEAST_M;
+use estimation::identify::block::signals::object;
+use estimation::identify::block::slip_detection::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 

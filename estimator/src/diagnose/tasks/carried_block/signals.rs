@@ -5,12 +5,12 @@
 pub(crate) mod tests;
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::estimate::EstimateError;
-use crate::identify::block::placement_time::{stands_from, usual_lift};
-use crate::identify::block::signals::{Blocks, MAIN, object};
-use crate::segment::{Method, SystemState};
-use crate::signal::noise::white_noise;
-use crate::signal::task::{half_width, smooth};
+use estimation::identify::block::placement_time::{stands_from, usual_lift};
+use estimation::identify::block::signals::{Blocks, MAIN, object};
+use estimation::segment::{Method, SystemState};
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{half_width, smooth};
 use haptics::recording::Recording;
 
 /// Least duration of free motion, s.

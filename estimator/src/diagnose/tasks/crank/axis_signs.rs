@@ -11,7 +11,7 @@ use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::baseline_models::plain_crank;
 use crate::diagnose::tasks::one_coordinate;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
 use std::borrow::Cow;

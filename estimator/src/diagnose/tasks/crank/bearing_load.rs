@@ -12,8 +12,8 @@ use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, 
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::tasks::one_coordinate;
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares_values;
+use estimation::regression::linear::least_squares_values;
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 

@@ -1,8 +1,8 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::estimate::EstimateError;
-use crate::segment::{SystemState, segment};
+use estimation::segment::{SystemState, segment};
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 

@@ -20,7 +20,7 @@ use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
 use crate::diagnose::validation::on_other_recordings;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
 

@@ -10,9 +10,9 @@ use crate::diagnose::selection::channel::leave_out_what_is_unsure;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
-use crate::signal::noise::white_noise;
+use estimation::regression::linear::least_squares;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
 

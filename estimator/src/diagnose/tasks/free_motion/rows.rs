@@ -8,12 +8,12 @@
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
 use crate::diagnose::data::regression_data::{Fine, Freely, Row, Span, Track, Weighing};
 use crate::diagnose::tasks::mechanism::rows::{LEAST_BLOCKS, SHORTEST_S};
-use crate::estimate::EstimateError;
-use crate::identify::mechanism;
-use crate::identify::mechanism::Raw;
-use crate::signal::derive::{Derivatives, even_period, interpolate_cubic, savitzky_golay};
-use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
-use crate::signal::pieces::pieces as uninterrupted;
+use estimation::identify::mechanism;
+use estimation::identify::mechanism::Raw;
+use foundation::estimate::EstimateError;
+use foundation::signal::derive::{Derivatives, even_period, interpolate_cubic, savitzky_golay};
+use foundation::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
+use foundation::signal::pieces::pieces as uninterrupted;
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;

@@ -17,12 +17,12 @@ use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults, time_delay};
 use crate::diagnose::validation::on_other_recordings;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
 pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
+    if let Some(chain) = recordings.iter().find(|r| estimation::identify::mechanism::is_chain(r)) {
         return Err(EstimateError::Other(format!(
             "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
             chain.name
@@ -70,7 +70,7 @@ const OF_SKEW: f64 = 0.7;
 fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Findings, Option<f64>), EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
-    let paths = crate::identify::mechanism::paths(recordings);
+    let paths = estimation::identify::mechanism::paths(recordings);
     if free_motion::is_free(recordings, &paths)? {
         return Ok((free_motion::diagnose(recordings, &paths, options)?, None));
     }
@@ -134,7 +134,7 @@ fn track_of(
     diagnosis: &Findings,
 ) -> Result<Track, EstimateError> {
     let bad = sample_faults::faults(recording).bad;
-    if crate::identify::mechanism::raw(recording, path)?.force.is_some() {
+    if estimation::identify::mechanism::raw(recording, path)?.force.is_some() {
         if diagnosis.per_inertia {
             return Err(EstimateError::Other(format!(
                 "{} has a force column, and what was diagnosed is known per unit of inertia only: state the inertia, or what tells it, \

@@ -6,12 +6,12 @@
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between, calmed_line};
 use crate::diagnose::data::regression_data::{Fine, Row, Span, Track, Weighing};
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
-use crate::identify::mechanism;
-use crate::identify::mechanism::Raw;
-use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
-use crate::signal::pieces::pieces;
+use estimation::identify::mechanism;
+use estimation::identify::mechanism::Raw;
+use estimation::regression::linear::least_squares;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
+use foundation::signal::pieces::pieces;
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;

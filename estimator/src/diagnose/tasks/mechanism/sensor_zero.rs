@@ -11,7 +11,7 @@ use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{force_bias, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::signal::noise::{quantum, white_noise};
+use foundation::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 

@@ -9,7 +9,7 @@ use crate::diagnose::data::regression_data::Span;
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.

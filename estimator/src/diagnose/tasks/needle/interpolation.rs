@@ -2,7 +2,7 @@
 
 use crate::diagnose::data::interpolation::{FINE_HZ, mean_step_s};
 use crate::diagnose::data::regression_data::{Fine, Span, Weighing};
-use crate::signal::task::Smoothed;
+use foundation::signal::task::Smoothed;
 use std::ops::Range;
 
 /// Points in the holes of a recording.

@@ -31,7 +31,7 @@ use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::Kind;
 use haptics::recording::Recording;

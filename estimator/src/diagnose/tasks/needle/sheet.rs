@@ -15,9 +15,9 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::identify::linear::{least_squares, least_squares_values};
-use crate::signal::noise::white_noise;
+use estimation::regression::linear::{least_squares, least_squares_values};
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 

@@ -20,8 +20,8 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
+use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
 /// Least size of a named cause, in standard errors of the world.

@@ -11,7 +11,7 @@ use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::waypoints;
 use crate::diagnose::experiment::waypoints::{THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;
-use crate::segment::threshold::percentile;
+use estimation::segment::threshold::percentile;
 use haptics::Vec2;
 
 /// Numbers of throws. The least that is likely to suffice is proposed.

@@ -27,7 +27,7 @@ use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 use model::Known;
 use throw::Push;

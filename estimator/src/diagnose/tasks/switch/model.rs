@@ -1,7 +1,7 @@
 //! Switch of a world as the model of a recording: position of the knob under a fingertip, and its predicted force.
 
 use super::rows::{Row, direction};
-use crate::identify::switch::OBJECT;
+use estimation::identify::switch::OBJECT;
 use haptics::Vec2;
 use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;

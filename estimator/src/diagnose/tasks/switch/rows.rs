@@ -3,11 +3,11 @@
 
 use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::selection::layout::segments;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
-use crate::segment::threshold::percentile;
-use crate::signal::noise::white_noise;
-use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
+use estimation::segment::threshold::percentile;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{TipSeries, is_two_fingered, tip_series};
+use foundation::tasks::SystemState;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;

@@ -14,9 +14,9 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
+use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
 const LEAST_STOP_ROWS: usize = 40;

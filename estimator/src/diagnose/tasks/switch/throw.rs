@@ -15,8 +15,8 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
+use estimation::regression::linear::least_squares;
+use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 
 /// Spacing of the nodes of the estimated curve, m, and their largest number.

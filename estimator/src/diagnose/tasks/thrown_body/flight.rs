@@ -6,9 +6,9 @@ use crate::diagnose::hypotheses::{channel_fault, length_scale};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::selection::rules::THRESHOLD;
 use crate::diagnose::tasks::thrown_body::powers;
-use crate::identify::tossed::Tossed;
-use crate::identify::tossed::flight::{Fall, end, least};
-use crate::identify::tossed::pose::Track;
+use estimation::identify::tossed::Tossed;
+use estimation::identify::tossed::flight::{Fall, end, least};
+use estimation::identify::tossed::pose::Track;
 use haptics::law::Kind;
 use nalgebra::DVector;
 

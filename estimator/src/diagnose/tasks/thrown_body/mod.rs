@@ -14,9 +14,9 @@ use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::{channel_fault, coulomb_friction, length_scale, load_friction, velocity_loss};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
-use crate::estimate::EstimateError;
-use crate::identify::tossed::slide::unknown_of_foot;
-use crate::identify::tossed::{Tossed, tossed};
+use estimation::identify::tossed::slide::unknown_of_foot;
+use estimation::identify::tossed::{Tossed, tossed};
+use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
 /// Diagnoses recordings of one thrown body; `None` for other recordings.

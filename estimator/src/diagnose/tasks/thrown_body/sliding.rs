@@ -14,12 +14,12 @@ use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
-use crate::estimate::EstimateError;
-use crate::identify::tossed::Tossed;
-use crate::identify::tossed::pose::Track;
-use crate::identify::tossed::slide::Slide;
-use crate::segment::SystemState;
-use crate::signal::derive::polynomial;
+use estimation::identify::tossed::Tossed;
+use estimation::identify::tossed::pose::Track;
+use estimation::identify::tossed::slide::Slide;
+use foundation::estimate::EstimateError;
+use foundation::signal::derive::polynomial;
+use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use nalgebra::{DVector, Vector3};
 

@@ -1,8 +1,8 @@
 //! Regressors of laws with memory or a jump, computed at the recording's own rate and then passed through the filter of
 //! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
-use crate::signal::noise::white_noise;
-use crate::signal::task::{half_width, smooth, smooth_value};
+use foundation::signal::noise::white_noise;
+use foundation::signal::task::{half_width, smooth, smooth_value};
 
 /// Speed below which its sign is uncertain, in multiples of its noise and as a share of the largest speed.
 const SPEED_NOISES: f64 = 2.0;

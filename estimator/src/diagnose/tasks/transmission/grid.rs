@@ -2,7 +2,7 @@
 
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::profile_likelihood::known;
-use crate::estimate::EstimateError;
+use foundation::estimate::EstimateError;
 
 /// Tried half gaps, as shares of the input's range.
 const GAPS: [f64; 14] =

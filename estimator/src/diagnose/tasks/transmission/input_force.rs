@@ -22,8 +22,8 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::normal_equations::{Use, solve};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
-use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction, Motion, QuadraticDrag, ReturnSpring,
     ViscousFriction,

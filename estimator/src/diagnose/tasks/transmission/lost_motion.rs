@@ -12,8 +12,8 @@ use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_del
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
-use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 
 /// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.

@@ -25,8 +25,8 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
-use crate::estimate::EstimateError;
-use crate::segment::SystemState;
+use foundation::estimate::EstimateError;
+use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 use rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, columns, stretches_of};
 

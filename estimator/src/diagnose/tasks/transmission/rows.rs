@@ -2,8 +2,8 @@
 
 use super::filtered_columns::Fine;
 use crate::diagnose::selection::layout::segments;
-use crate::signal::noise::quantum;
-use crate::signal::task::smooth;
+use foundation::signal::noise::quantum;
+use foundation::signal::task::smooth;
 use haptics::recording::Recording;
 
 /// One row.
