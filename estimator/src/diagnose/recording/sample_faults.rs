@@ -6,6 +6,7 @@ use crate::diagnose::hypotheses::{axis_sign, channel_fault, force_saturation, le
 use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
+use logs;
 
 /// Faults found in the samples.
 pub struct Faults {

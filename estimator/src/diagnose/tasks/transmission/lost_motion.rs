@@ -2,10 +2,11 @@
 
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
-use super::rows::{Columns, Row, Seen, constants, ratio, spread};
+use super::rows::{Columns, Row, Seen, constants, ratio};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::data::row_means::spread;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
@@ -46,9 +47,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let least = |column: &[f64]| {
-        (OUTPUT_NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE)
-    };
+    let smallest = (OUTPUT_NOISES * noise).max(STEPS_OF_SENSOR * seen.step);
+    let least = |column: &[f64]| smallest / spread(column).max(f64::MIN_POSITIVE);
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
@@ -65,11 +65,10 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let late = of(&|r| -r.rate);
     let least_late = least(&late).max(CLOCKS_DIFFER_S * lever.abs());
     let rate_noise = seen.fine.iter().map(Fine::rate_noise).fold(0.0, f64::max);
-    plain.push(
-        Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late).at_least(least_late).noisy(rate_noise),
-    );
+    let delay = Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late);
+    plain.push(delay.at_least(least_late).noisy(rate_noise));
     plain.extend(generic(rows, low, high).into_iter().map(|term| {
-        let least = least(&term.columns[0]);
+        let least = least(&term.regressors[0]);
         term.at_least(least)
     }));
     let once = |tried: &[Tried]| {
