@@ -23,6 +23,8 @@ const CRATES: [&str; 8] = [
 const MOST_IN_A_CIRCLE: usize = 5;
 /// Most files of the diagnosis outside its rooms.
 const MOST_FLAT_FILES: usize = 8;
+/// Files of the window outside its folders: its root and its session.
+const FLAT_FILES_OF_THE_WINDOW: usize = 2;
 /// Most lines of a function, arms of a table (one match, one line an arm) not counted.
 const LONGEST_FUNCTION: usize = 60;
 /// Most literals of cause ids in the diagnosis outside the files of the hypotheses.
@@ -212,6 +214,13 @@ fn files_of_the_diagnosis_stand_in_rooms() {
     let root = workspace().join("estimator/src/diagnose");
     let flat = sources("estimator/src/diagnose").into_iter().filter(|path| path.parent() == Some(&root)).count();
     assert!((1..=MOST_FLAT_FILES).contains(&flat), "{flat} files lie flat in estimator/src/diagnose");
+}
+
+#[test]
+fn files_of_the_window_stand_in_folders() {
+    let root = workspace().join("app/src/ui");
+    let flat = sources("app/src/ui").into_iter().filter(|path| path.parent() == Some(&root)).count();
+    assert_eq!(flat, FLAT_FILES_OF_THE_WINDOW, "files lie flat in app/src/ui");
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn build(source: &Path, copy: &Path) -> anyhow::Result<(Vec<Constant>, usize)> {
             return Ok((constants, sources.fixed()));
         }
         let messages = String::from_utf8_lossy(&built.stdout);
-        if !sources.keep_fixed(copy, &messages)? {
+        if !sources.keep_fixed(copy, &messages) {
             let rendered = messages.lines().filter_map(|l| serde_json::from_str::<Value>(l).ok());
             let errors = rendered.filter(|m| m["message"]["level"] == "error");
             let first: Vec<String> =

@@ -3,8 +3,7 @@
 
 use crate::ui::calibrate::panels::{log, parameters, results, scene, segments};
 use crate::ui::calibrate::refits;
-use crate::ui::diagnose::state::{Answer, StartFrom};
-use crate::ui::diagnose::state::{ask, extend};
+use crate::ui::diagnose::state::{Answer, StartFrom, ask, extend};
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::headless::screenshot;

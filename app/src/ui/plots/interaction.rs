@@ -2,8 +2,9 @@
 
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
+use crate::ui::plots::plot_cache::PlotCache;
+use crate::ui::plots::plot_input::{RowInput, RowOutcome};
 use crate::ui::plots::shift::{Grasp, under};
-use crate::ui::plots::time_plot::{PlotCache, RowInput, RowOutcome};
 use egui::{Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use egui_plot::PlotTransform;
 

@@ -5,7 +5,7 @@ use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::plots::choices::GroupChoice;
 use crate::ui::plots::curves::{Curve, Layer, NOISE_SWITCH};
-use crate::ui::plots::time_plot::{RowInput, RowKind, curve_color};
+use crate::ui::plots::plot_input::{RowInput, RowKind, curve_color};
 use crate::ui::plots::title_menu::title_menu;
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 

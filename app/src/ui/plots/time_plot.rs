@@ -1,174 +1,26 @@
 //! One plot over time: its curves, those of the models, the noise band, the states behind them, and the cursor.
 
-use crate::ui::document::prepared::{Group, Prepared};
 use crate::ui::kit::theme;
-use crate::ui::kit::theme::{Palette, palette};
+use crate::ui::kit::theme::palette;
 use crate::ui::plots::axes::{AXIS_WIDTH, still_plot, time_axis};
 use crate::ui::plots::choices::GroupChoice;
-use crate::ui::plots::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
+use crate::ui::plots::curves::{Curve, Layer, NOISE_SWITCH};
 use crate::ui::plots::data_warnings::shade;
-use crate::ui::plots::decimate::{Columns, decimate_in};
 use crate::ui::plots::interaction::react;
 use crate::ui::plots::line::ThinnedLine;
+use crate::ui::plots::plot_cache::PlotCache;
 use crate::ui::plots::plot_header::gutter;
+use crate::ui::plots::plot_input::{RowInput, RowKind, RowOutcome, curve_color};
 use crate::ui::plots::residual_plot::{BAND_SIGMAS, inks};
-use crate::ui::plots::shift::Grasp;
-use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui::{Color32, Pos2, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span};
-use estimator::segment::Segmentation;
-use std::collections::HashMap;
-use std::sync::Arc;
 
 /// Width of the column left of the plots.
 pub const GUTTER: f32 = 196.0;
 /// Height of the labels of the time axis.
 const AXIS_HEIGHT: f32 = 20.0;
-/// Opacity of other recordings' curves.
-const DIMMED: f32 = 0.75;
-
 /// Additional width of curves under the pointer, points.
 const GRASPED: f32 = 1.2;
-
-/// Content of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RowKind {
-    /// Curves of a quantity.
-    Curves,
-    /// Residuals of the models.
-    LeftOver,
-}
-
-/// Input of a row.
-pub struct RowInput<'a> {
-    /// Index of the row.
-    pub index: usize,
-    /// Content of the row.
-    pub kind: RowKind,
-    /// Quantity of the row.
-    pub group: &'a Group,
-    /// The shown recording.
-    pub prepared: &'a Arc<Prepared>,
-    /// The curves.
-    pub drawn: &'a Drawn,
-    /// True if the fitted world predicts a curve, shown or hidden.
-    pub has_simulated: bool,
-    /// True if the extended world predicts a curve, shown or hidden.
-    pub has_extended: bool,
-    /// States, as a faint tint.
-    pub segmentation: Option<&'a Segmentation>,
-    /// Visible time range, s.
-    pub view_s: (f64, f64),
-    /// Time of the cursor, s.
-    pub cursor_s: f64,
-    /// True if the time axis is labelled here.
-    pub time_axis: bool,
-    /// Height, points.
-    pub height: f32,
-    /// Shift of the recording that is dragged by its curve, as text, and whether it has snapped.
-    pub held: Option<(String, bool)>,
-    /// Index of the overlaid recording under the pointer, or dragged by it; its curves are emphasised.
-    pub grasped: Option<usize>,
-}
-
-/// Result of the user's actions in a row.
-pub struct RowOutcome {
-    /// New time of the cursor, s.
-    pub seek: Option<f64>,
-    /// New visible time range, s.
-    pub view_s: Option<(f64, f64)>,
-    /// Horizontal extent of the plot area, points.
-    pub area: Rangef,
-    /// Interaction with the curve of another recording.
-    pub grasp: Option<Grasp>,
-}
-
-/// Thinned curves, kept while the view is unchanged.
-#[derive(Default)]
-pub struct PlotCache {
-    curves: HashMap<(usize, usize), Cached>,
-    /// Columns of the last view, by recording and offset: all curves of a recording share them.
-    columns: HashMap<ColumnsKey, (Arc<Prepared>, Columns)>,
-}
-
-/// Recording, visible time range in its own time, number of columns.
-type ColumnsKey = (usize, [u64; 2], usize);
-/// Limit of the cache, above the number of recordings that are ever overlaid.
-const MOST_COLUMNS: usize = 32;
-
-struct Cached {
-    key: CacheKey,
-    /// Keeps the targets of the key alive.
-    _curve: Curve,
-    points: Vec<PlotPoint>,
-    band: Option<Band>,
-}
-
-/// Identity of thinned points: recording, curve, visible time range and offset, columns.
-type CacheKey = (usize, usize, [u64; 3], usize, Option<u64>);
-
-/// Noise band: times, lower and upper edge.
-struct Band {
-    times: Vec<f64>,
-    low: Vec<f64>,
-    high: Vec<f64>,
-}
-
-impl PlotCache {
-    fn update(&mut self, input: &RowInput<'_>, columns: usize) {
-        for (place, curve) in input.drawn.curves.iter().enumerate() {
-            self.thin((input.index, place), curve, input.view_s, columns);
-        }
-        let count = input.drawn.curves.len();
-        self.curves.retain(|(row, place), _| *row != input.index || *place < count);
-    }
-
-    fn thin(&mut self, slot: (usize, usize), curve: &Curve, (from, to): (f64, f64), columns: usize) {
-        let key = (
-            Arc::as_ptr(&curve.prepared) as usize,
-            Arc::as_ptr(&curve.levels) as usize,
-            [from, to, curve.offset_s].map(f64::to_bits),
-            columns,
-            curve.sigma.map(f64::to_bits),
-        );
-        if self.curves.get(&slot).is_some_and(|cached| cached.key == key) {
-            return;
-        }
-        let (samples, offset) = (curve.levels.samples(&curve.prepared.recording), curve.offset_s);
-        let (from, to) = (from - offset, to - offset);
-        if self.columns.len() > MOST_COLUMNS {
-            self.columns.clear();
-        }
-        let times = &curve.prepared.times;
-        let shared = self.columns.entry((key.0, [from.to_bits(), to.to_bits()], columns));
-        let make = || (Arc::clone(&curve.prepared), Columns::new(times, from, to, columns));
-        let (_, shared) = shared.or_insert_with(make);
-        let mut points = decimate_in(times, samples, shared);
-        for point in &mut points {
-            point.x += offset;
-        }
-        let is_model = matches!(curve.layer, Layer::Simulated | Layer::Extended);
-        let band = curve.sigma.filter(|_| is_model).map(|sigma| Band::around(&points, BAND_SIGMAS * sigma));
-        self.curves.insert(slot, Cached { key, _curve: curve.clone(), points, band });
-    }
-
-    pub(super) fn points(&self, input: &RowInput<'_>, place: usize) -> &[PlotPoint] {
-        self.curves.get(&(input.index, place)).map_or(&[], |cached| &cached.points)
-    }
-}
-
-impl Band {
-    /// Band of half-width `reach` around a curve that has one or two points per time.
-    fn around(points: &[PlotPoint], reach: f64) -> Self {
-        let mut band = Self { times: Vec::new(), low: Vec::new(), high: Vec::new() };
-        for at in points.chunk_by(|a, b| a.x == b.x) {
-            let (low, high) = at.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
-            band.times.push(at[0].x);
-            band.low.push(low - reach);
-            band.high.push(high + reach);
-        }
-        band
-    }
-}
 
 /// Draws the row.
 pub fn row(ui: &mut Ui, cache: &mut PlotCache, choice: &mut GroupChoice, input: &RowInput<'_>) -> RowOutcome {
@@ -182,23 +34,6 @@ pub fn row(ui: &mut Ui, cache: &mut PlotCache, choice: &mut GroupChoice, input: 
         draw_plot(ui, cache, input, show_noise)
     })
     .inner
-}
-
-/// Colour of a curve: its own, or that of the model.
-pub fn curve_color(input: &RowInput<'_>, curve: &Curve, dark: bool, p: &Palette) -> Color32 {
-    let trace = &input.group.traces[curve.trace];
-    let own = theme::curve(dark, trace.role, trace.second);
-    let alone = input.group.traces.len() == 1;
-    match curve.layer {
-        Layer::Other(place) => theme::recording(dark, place).gamma_multiply(DIMMED),
-        Layer::Simulated => theme::role(dark, render::ColorRole::Simulated).gamma_multiply(0.75),
-        Layer::Extended => p.good,
-        Layer::LeftSimulated if alone => theme::role(dark, render::ColorRole::Simulated),
-        Layer::LeftExtended if alone => p.good,
-        // Several traces are distinguished by their own colours, the models by opacity.
-        Layer::LeftSimulated if input.drawn.has(Layer::LeftExtended) => own.gamma_multiply(0.45),
-        Layer::Measured | Layer::LeftSimulated | Layer::LeftExtended => own,
-    }
 }
 
 fn width(layer: Layer) -> f32 {
@@ -258,7 +93,7 @@ fn bands<'a>(plot: &mut PlotUi<'a>, cache: &'a PlotCache, input: &RowInput<'_>, 
     }
     let of_model = if input.drawn.has(Layer::Extended) { Layer::Extended } else { Layer::Simulated };
     for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| c.layer == of_model) {
-        if let Some(band) = cache.curves.get(&(input.index, place)).and_then(|c| c.band.as_ref()) {
+        if let Some(band) = cache.band(input, place) {
             plot.add(FilledArea::new("", &band.times, &band.low, &band.high).fill_color(ink).allow_hover(false));
         }
     }

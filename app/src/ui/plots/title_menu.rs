@@ -3,7 +3,7 @@
 use super::choices::{GroupChoice, name};
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
-use crate::ui::plots::time_plot::RowInput;
+use crate::ui::plots::plot_input::RowInput;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Sense, Stroke, Ui, vec2};
 use estimator::signal::transform::Transform;

@@ -2,7 +2,8 @@
 
 use super::layers::SceneLayers;
 use super::markers::{self, Marked, error_of};
-use super::overlay::{follows_fingers, force_scale};
+use super::overlay::follows_fingers;
+use super::path_extent::force_scale;
 use crate::text::format::{number, significant};
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;

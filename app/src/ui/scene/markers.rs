@@ -1,6 +1,6 @@
 //! Detected constraints as marks in the picture.
 
-use super::overlay::bounds;
+use super::path_extent::bounds;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;

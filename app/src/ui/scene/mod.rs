@@ -7,6 +7,7 @@ pub mod legend;
 pub mod markers;
 pub mod mechanism;
 pub mod overlay;
+pub mod path_extent;
 pub mod similarity;
 pub mod vectors;
 pub mod view;

@@ -1,7 +1,7 @@
 //! Force vectors along the path: the force of the hand (thesis, figure 5.10), and the part of it that only a constraint
 //! explains (figure 5.12).
 
-use super::overlay::window;
+use super::path_extent::window;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::document::state::Document;

@@ -79,7 +79,7 @@ pub const SAVE_REPORT: Dialog = Dialog {
     filters: &[],
     saves_as: Some("report.html"),
     then: |session, ctx, path| {
-        files::save_report(ctx, &session.document, &session.calibration, &mut session.jobs, path)
+        files::save_report(ctx, &session.document, &session.calibration, &mut session.jobs, path);
     },
 };
 /// The place of the recording.
@@ -97,7 +97,7 @@ pub const SAVE_WORLD: Dialog = Dialog {
     filters: &[],
     saves_as: Some("world.json"),
     then: |session, ctx, path| {
-        files::save_world(ctx, &session.calibration, &mut session.jobs, &path.display().to_string())
+        files::save_world(ctx, &session.calibration, &mut session.jobs, &path.display().to_string());
     },
 };
 /// The place of the calibrated world in the format of another simulator.

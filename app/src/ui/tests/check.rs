@@ -2,7 +2,8 @@
 
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
-use crate::ui::diagnose::checked::{CHECK, Checked, Holds, On, check_now, holds};
+use crate::ui::diagnose::checked::{Checked, Holds, On, holds};
+use crate::ui::diagnose::validation::{CHECK, check_now};
 use crate::ui::document::prepared::Prepared;
 use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;

@@ -2,9 +2,7 @@
 
 use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::diagnose::actions;
-use crate::ui::diagnose::state::StartFrom;
-use crate::ui::diagnose::state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED};
-use crate::ui::diagnose::state::{ask, extend};
+use crate::ui::diagnose::state::{DIAGNOSE, EXTEND, SIMULATE_EXTENDED, StartFrom, ask, extend};
 use crate::ui::headless::screenshot;
 use crate::ui::kit::theme;
 use crate::ui::session::Session;

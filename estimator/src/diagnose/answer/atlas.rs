@@ -1,13 +1,11 @@
 //! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
-use super::part::Part;
 use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::hypotheses::all::best_seen_against;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::law::cause;
-use std::collections::BTreeSet;
 
 /// One candidate cause of the atlas.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,44 +72,9 @@ pub struct Against {
     pub taken: Vec<f64>,
 }
 
-impl Part<'_> {
-    /// This channel's part of the atlas. If the variable that best shows a cause is missing in the view, the first one
-    /// is shown.
-    pub(crate) fn atlas(&self) -> Option<Channel> {
-        let view = self.view?;
-        let left = self.study.residual(&[]);
-        let against = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
-            let acts = |i: usize| candidate.columns.iter().any(|column| column[i] != 0.0);
-            let sensors: BTreeSet<usize> = (0..left.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
-            let rows: Vec<usize> = (0..left.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
-            let best = (view.best)(candidate.id);
-            let (variable, values) = view.over.iter().find(|(v, _)| *v == best).or(view.over.first())?;
-            Some(Against {
-                id: candidate.id.to_owned(),
-                score,
-                variable: *variable,
-                over: rows.iter().map(|i| values[*i]).collect(),
-                taken: rows.iter().map(|i| taken[*i]).collect(),
-                rows,
-            })
-        };
-        let suspects = strongest(self.study, &left).into_iter().filter_map(against).collect();
-        Some(Channel {
-            name: self.channel,
-            unit: self.unit,
-            is_angular: view.is_angular,
-            noise: self.floor,
-            recording: view.recording.clone(),
-            way: view.way.clone(),
-            left,
-            suspects,
-        })
-    }
-}
-
 /// Strongest candidate of every cause that the rows can show, with its evidence and the part of the base model's
 /// residual `left` that it explains; the strongest cause first.
-fn strongest<'a>(study: &'a ChannelFit, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec<f64>)> {
+pub(super) fn strongest<'a>(study: &'a ChannelFit, left: &[f64]) -> Vec<(&'a Candidate, f64, Vec<f64>)> {
     let ChannelFit { system, candidates, .. } = study;
     let selection = study.of_each();
     let mut best: Vec<(&str, usize, f64)> = Vec::new();

@@ -181,9 +181,9 @@ fn size_of_term(study: &ChannelFit, term: usize) -> (Vec<CauseParameter>, f64) {
     let with = |c: usize| study.system.solve(&[picks.as_slice(), &[c]].concat());
     let Some(solved) = with(term) else { return (Vec::new(), 1.0) };
     let candidate = &study.candidates[term];
-    let first = solved.values.len() - candidate.columns.len();
+    let first = solved.values.len() - candidate.regressors.len();
     let variance = solved.variance(study.system.rows);
-    let names: &[&str] = if candidate.columns.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
+    let names: &[&str] = if candidate.regressors.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
     let parameters = names.iter().zip(first..).map(|(name, i)| {
         parameter(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), candidate.linear[i - first].1)
     });

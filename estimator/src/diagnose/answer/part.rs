@@ -1,5 +1,6 @@
 //! One compared channel as a part of an answer.
 
+use super::atlas::{Against, Channel, strongest};
 use super::cause::Found;
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, NotExcited, Residual};
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
@@ -11,6 +12,7 @@ use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
 use foundation::tasks::SystemState;
 use haptics::law::entries;
+use std::collections::BTreeSet;
 
 /// Role of a channel in the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +103,39 @@ impl<'a> Part<'a> {
     /// Adds the translation into effects of a world.
     pub fn in_world(self, simulated: &'a dyn Simulated) -> Self {
         Self { in_world: Some(simulated), ..self }
+    }
+
+    /// This channel's part of the atlas. If the variable that best shows a cause is missing in the view, the first one
+    /// is shown.
+    pub(crate) fn atlas(&self) -> Option<Channel> {
+        let view = self.view?;
+        let left = self.study.residual(&[]);
+        let against = |(candidate, score, taken): (&Candidate, f64, Vec<f64>)| {
+            let acts = |i: usize| candidate.regressors.iter().any(|column| column[i] != 0.0);
+            let sensors: BTreeSet<usize> = (0..left.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
+            let rows: Vec<usize> = (0..left.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
+            let best = (view.best)(candidate.id);
+            let (variable, values) = view.over.iter().find(|(v, _)| *v == best).or(view.over.first())?;
+            Some(Against {
+                id: candidate.id.to_owned(),
+                score,
+                variable: *variable,
+                over: rows.iter().map(|i| values[*i]).collect(),
+                taken: rows.iter().map(|i| taken[*i]).collect(),
+                rows,
+            })
+        };
+        let suspects = strongest(self.study, &left).into_iter().filter_map(against).collect();
+        Some(Channel {
+            name: self.channel,
+            unit: self.unit,
+            is_angular: view.is_angular,
+            noise: self.floor,
+            recording: view.recording.clone(),
+            way: view.way.clone(),
+            left,
+            suspects,
+        })
     }
 
     /// Evidence of the strongest chosen cause.

@@ -100,7 +100,7 @@ pub(crate) fn course(track: &Track, study: &ChannelFit) -> Course {
         velocity: row.motion.velocity,
         normal_force_n: row.motion.normal_force_n,
         // A free motion has no measured force: the target is the force that its inertia needs.
-        measured: if track.freely.is_some() { study.y[i] } else { row.y },
+        measured: if track.freely.is_some() { study.target[i] } else { row.target },
         left_before: before[i],
         left_after: after[i],
         weight: study.layout.weight[i],

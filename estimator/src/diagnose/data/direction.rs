@@ -31,8 +31,8 @@ pub fn blur(track: &mut Track) {
     let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
     for k in 0..track.fine.len() {
         let next =
-            if k + 1 < track.fine.len() && track.fine[k + 1].stretch == track.fine[k].stretch { k + 1 } else { k };
-        let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
+            if k + 1 < track.fine.len() && track.fine[k + 1].segment == track.fine[k].segment { k + 1 } else { k };
+        let before = if k > 0 && track.fine[k - 1].segment == track.fine[k].segment { k - 1 } else { k };
         let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
         let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
         let share = track.fine[k].velocity / width(clocks_s * acceleration);

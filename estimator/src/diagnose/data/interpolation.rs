@@ -16,6 +16,14 @@ const CALM_S: f64 = 0.012;
 const FINER: [(usize, usize, f64); 3] = [(2, 4, 0.903), (3, 4, 0.263), (4, 4, 0.114)];
 const NOISE_OF_ACCELERATION: f64 = 0.02;
 
+/// Mean time between samples, s.
+pub fn mean_step_s(time_s: &[f64]) -> f64 {
+    match time_s {
+        [first, .., last] => (last - first) / (time_s.len() - 1) as f64,
+        _ => 1.0,
+    }
+}
+
 /// Weights of the smoothing, from the middle outwards; their sum over both sides is one.
 fn weights(period_s: f64) -> Vec<f64> {
     let half = (0.5 * CALM_S / period_s).floor() as usize;
@@ -54,7 +62,7 @@ pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
     let bend = p * q * step_s * (q * a.velocity - p * b.velocity);
     let ease = p * p * (3.0 - 2.0 * p);
     Fine {
-        stretch: b.stretch,
+        segment: b.segment,
         time_s: a.time_s + p * step_s,
         position: a.position + ease * (b.position - a.position) + bend,
         velocity: q * a.velocity + p * b.velocity,

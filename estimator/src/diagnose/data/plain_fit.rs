@@ -17,7 +17,8 @@ impl<'a> PlainFit<'a> {
     /// `fixed`: laws that are completely known.
     pub fn of(track: &'a Track, fixed: &Model) -> Self {
         let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
-        let y = track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
+        let y =
+            track.rows.iter().enumerate().map(|(i, r)| r.target - known.iter().map(|k| k[i]).sum::<f64>()).collect();
         Self { track, y, weight: weights(track) }
     }
 

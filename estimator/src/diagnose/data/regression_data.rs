@@ -35,7 +35,7 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fine {
     /// Segment of the point.
-    pub stretch: usize,
+    pub segment: usize,
     pub time_s: f64,
     pub position: f64,
     pub velocity: f64,
@@ -113,7 +113,7 @@ pub struct Row {
     /// Index of the recording.
     pub recording: usize,
     /// Segment of the row.
-    pub stretch: usize,
+    pub segment: usize,
     /// Source of the force.
     pub place: Place,
     /// Motion along the coordinate (its time runs from the start of the recording).
@@ -127,7 +127,7 @@ pub struct Row {
     /// Its rate, N/s.
     pub force_rate: Vec2,
     /// The force to be explained, N or N m.
-    pub y: f64,
+    pub target: f64,
     /// Finer points over which it is averaged; empty if only the rows are known.
     pub span: Span,
     /// Uncertain share of the direction, 0 … 1 (as a share of the squared friction).
@@ -314,7 +314,7 @@ impl Track {
 
     /// True if row `i` follows the row before it without a gap.
     pub fn follows(&self, i: usize) -> bool {
-        i > 0 && self.rows[i].stretch == self.rows[i - 1].stretch && self.rows[i].place == self.rows[i - 1].place
+        i > 0 && self.rows[i].segment == self.rows[i - 1].segment && self.rows[i].place == self.rows[i - 1].place
     }
 }
 
@@ -324,16 +324,16 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
     let mut joined = all.next()?;
     for track in all {
         let (recordings, stretches) =
-            joined.rows.iter().fold((0, 0), |(r, s), row| (r.max(row.recording + 1), s.max(row.stretch + 1)));
+            joined.rows.iter().fold((0, 0), |(r, s), row| (r.max(row.recording + 1), s.max(row.segment + 1)));
         let before = joined.fine.len();
-        let fine_stretches = joined.fine.last().map_or(0, |f| f.stretch + 1);
+        let fine_stretches = joined.fine.last().map_or(0, |f| f.segment + 1);
         let shift = |row: Row| Row {
             recording: row.recording + recordings,
-            stretch: row.stretch + stretches,
+            segment: row.segment + stretches,
             span: Span { start: row.span.start + before, ..row.span },
             ..row
         };
-        joined.fine.extend(track.fine.iter().map(|f| Fine { stretch: f.stretch + fine_stretches, ..*f }));
+        joined.fine.extend(track.fine.iter().map(|f| Fine { segment: f.segment + fine_stretches, ..*f }));
         let weight = joined.rows.len() as f64;
         let more = track.rows.len() as f64;
         let mean = |a: f64, b: f64| ((weight * a * a + more * b * b) / (weight + more).max(1.0)).sqrt();

@@ -85,6 +85,13 @@ fn by_rows(track: &Track, effect: &Effect) -> Vec<f64> {
     track.rows.iter().map(mean).collect()
 }
 
+/// Standard deviation.
+pub fn spread(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -53,7 +53,7 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
         let places = track.rows[range].iter().map(|r| r.motion.position);
         places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min) < largest
     };
-    let mut number = track.rows.iter().map(|r| r.stretch + 1).max().unwrap_or(0);
+    let mut number = track.rows.iter().map(|r| r.segment + 1).max().unwrap_or(0);
     let mut made: Vec<Vec<Row>> = Vec::new();
     let mut first = 0;
     for i in 0..=track.rows.len() {
@@ -86,7 +86,7 @@ fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
         let mean = rows.iter().map(share).sum::<f64>() / rows.len() as f64;
         for row in rows {
             let Place::Stuck { scale, .. } = row.place else { continue };
-            across += (share(row) - mean) * row.y / scale;
+            across += (share(row) - mean) * row.target / scale;
             square += (share(row) - mean).powi(2);
         }
         (across / square.max(1e-12), noise / square.max(1e-12).sqrt())
@@ -105,7 +105,7 @@ fn trusted(mut rows: Vec<Row>, slope: f64, noise_m: f64) -> Vec<Row> {
     let load = rows.iter().map(of_load).sum::<f64>() / rows.len().max(1) as f64;
     let share = noise_m / noise_m.hypot(slope * load);
     for row in &mut rows {
-        row.y *= share;
+        row.target *= share;
         if let Place::Stuck { scale, .. } = &mut row.place {
             *scale *= share;
         }
@@ -143,12 +143,12 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
         let whole = mean(&|l| l.whole);
         let side = if whole.abs() > SIGNIFICANT * noise { whole.signum() } else { 0.0 };
         Some(Row {
-            stretch: number,
+            segment: number,
             place: Place::Stuck { share: mean(&|l| l.share), side, noise: SIGNIFICANT * noise, scale },
             along: Vec2::zeros(),
             force: Vec2::zeros(),
             force_rate: Vec2::zeros(),
-            y: scale * (rows[k].motion.position - middle),
+            target: scale * (rows[k].motion.position - middle),
             open: 0.0,
             ..rows[k]
         })
@@ -159,7 +159,7 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
 /// Fills a regressor with the displacement `way` in the rows of each stick phase, less its mean.
 fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
     let mut first = 0;
-    for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
+    for stretch in rows.chunk_by(|a, b| a.segment == b.segment) {
         let here = first..first + stretch.len();
         first = here.end;
         let Place::Stuck { scale, .. } = stretch[0].place else { continue };
@@ -291,7 +291,7 @@ fn side(row: &Row, all: bool) -> f64 {
 
 /// Displacement of a row from the middle of its stick phase.
 fn place_m(row: &Row) -> f64 {
-    if let Place::Stuck { scale, .. } = row.place { row.y / scale } else { 0.0 }
+    if let Place::Stuck { scale, .. } = row.place { row.target / scale } else { 0.0 }
 }
 
 /// Mean of the neighbours of a position, without its own noise.
@@ -307,7 +307,7 @@ mod tests {
 
     fn row(stretch: usize, share: f64, way_um: f64) -> Row {
         let place = Place::Stuck { share, side: share.signum(), noise: 0.02, scale: 1e3 };
-        Row { stretch, place, y: 1e-3 * way_um, ..Row::default() }
+        Row { segment: stretch, place, target: 1e-3 * way_um, ..Row::default() }
     }
 
     #[test]
@@ -316,7 +316,7 @@ mod tests {
         let still = |k: usize| (0..6).map(|i| row(k, 0.1 * f64::from(i), 2.0 * f64::from(i) - 5.0)).collect::<Vec<_>>();
         let slides: Vec<Row> = (0..6).map(|i| row(9, -0.1 * f64::from(i), 60.0 * f64::from(i) - 150.0)).collect();
         let kept = alike(vec![still(1), slides, still(2), still(3)], 1e-6);
-        assert_eq!(kept.iter().map(|rows| rows[0].stretch).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(kept.iter().map(|rows| rows[0].segment).collect::<Vec<_>>(), [1, 2, 3]);
     }
 
     #[test]

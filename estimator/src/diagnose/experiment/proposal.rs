@@ -39,7 +39,7 @@ pub fn propose(track: &Track, model: &Model, study: &ChannelFit, open: &[Alterna
     let solved = study.solved.as_ref()?;
     let pairs: Vec<(&str, &str)> = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str())).collect();
     pairs.first()?;
-    let values = &solved.values[..study.base.len()];
+    let values = &solved.values[..study.baseline.len()];
     if let Some(pair) = pairs.iter().find(|p| matches!(p, (eccentric_mass::ID, gravity_tilt::ID))) {
         return hang(track, model, study, *pair);
     }
@@ -136,7 +136,7 @@ fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) ->
         return Some(hung_proposal(&asked, &[pair], power(lambda), "the handle"));
     }
     let before = study.chosen.iter().take_while(|c| c.candidate != chosen.candidate);
-    let first = study.base.len() + before.map(|c| study.candidates[c.candidate].columns.len()).sum::<usize>();
+    let first = study.baseline.len() + before.map(|c| study.candidates[c.candidate].regressors.len()).sum::<usize>();
     let moment = solved.values[first..first + 2].iter().map(|v| v * v).sum::<f64>().sqrt();
     asked.added_lever_m = LEVER_M;
     asked.added_weight_n = in_steps(HUNG_MULTIPLE * moment / LEVER_M);
@@ -220,7 +220,7 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
         let y: f64 = base.iter().zip(values).map(|(c, v)| c[i] * v).sum();
         let row = &mut imagined.rows[i];
         let outward = Vec2::new(row.along.y, -row.along.x);
-        row.y = y;
+        row.target = y;
         row.force = if track.planar { row.along * y + outward * row.motion.normal_force_n } else { Vec2::new(y, 0.0) };
     }
     for i in 1..imagined.rows.len().saturating_sub(1) {
@@ -241,7 +241,7 @@ fn add_free(track: &mut Track, free_s: f64) {
             let period_s = track.period_s;
             track.rows.extend((0..count).map(|i| {
                 let motion = Motion { time_s: start_s + i as f64 * period_s, ..Motion::default() };
-                Row { stretch: 1 + 2 * k + end, place, motion, along: axis, ..Row::default() }
+                Row { segment: 1 + 2 * k + end, place, motion, along: axis, ..Row::default() }
             }));
         }
     }

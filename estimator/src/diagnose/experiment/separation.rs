@@ -11,10 +11,10 @@ use nalgebra::{DMatrix, DVector};
 /// Predicted rows of a motion that has not been made yet.
 pub struct Imagined {
     /// Regressors of the base model, and all candidates.
-    pub base: Vec<Vec<f64>>,
+    pub baseline: Vec<Vec<f64>>,
     pub candidates: Vec<Candidate>,
     /// Segment of each row.
-    pub stretch: Vec<usize>,
+    pub segment: Vec<usize>,
     /// Weight of each row: inverse of its relative noise.
     pub weight: Vec<f64>,
 }
@@ -23,16 +23,16 @@ impl Imagined {
     /// Predicted effects of the causes along one coordinate.
     pub fn along(track: &Track, model: &Model, study: &ChannelFit) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
-        let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+        let predicted: Vec<f64> = track.rows.iter().map(|r| r.target).collect();
         let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
         let candidates = coarse_candidates(track, &predicted, &[], &taken);
         let variance = variance(study).unwrap_or(1.0);
         Self {
-            base,
+            baseline: base,
             candidates,
-            stretch: track.rows.iter().map(|r| r.stretch).collect(),
+            segment: track.rows.iter().map(|r| r.segment).collect(),
             // An uncertain direction makes all of the friction uncertain.
-            weight: track.rows.iter().map(|r| (1.0 + r.y * r.y * r.open / variance).powf(-0.5)).collect(),
+            weight: track.rows.iter().map(|r| (1.0 + r.target * r.target * r.open / variance).powf(-0.5)).collect(),
         }
     }
 }
@@ -68,10 +68,10 @@ struct Eye<'a> {
 
 impl<'a> Eye<'a> {
     fn new(on: &'a Imagined, study: &'a ChannelFit) -> Option<Self> {
-        let white = Whitening::new(&on.stretch, &on.weight, &study.system.coefficients);
+        let white = Whitening::new(&on.segment, &on.weight, &study.system.coefficients);
         Some(Self {
             on,
-            base: on.base.iter().map(|column| white.of(column)).collect(),
+            base: on.baseline.iter().map(|column| white.of(column)).collect(),
             white,
             variance: variance(study)?,
         })
@@ -81,9 +81,9 @@ impl<'a> Eye<'a> {
     fn lambda(&self, study: &ChannelFit, picks: &[usize], k: usize, other: &str) -> Option<f64> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
-        let at = study.base.len() + picks[..k].iter().map(|c| study.candidates[*c].columns.len()).sum::<usize>();
+        let at = study.baseline.len() + picks[..k].iter().map(|c| study.candidates[*c].regressors.len()).sum::<usize>();
         let like = nearest(&self.on.candidates, own)?;
-        let parts = like.columns.iter().zip(&solved.values[at..at + own.columns.len()]);
+        let parts = like.regressors.iter().zip(&solved.values[at..at + own.regressors.len()]);
         let effect = parts.fold(vec![0.0; self.on.weight.len()], |mut sum, (c, v)| {
             sum.iter_mut().zip(c.iter()).for_each(|(s, x)| *s += v * x);
             sum
@@ -91,7 +91,7 @@ impl<'a> Eye<'a> {
         let effect = self.white.of(&effect);
         let rivals = self.on.candidates.iter().filter(|c| c.id == other);
         let left = rivals.map(|rival| {
-            let rival: Vec<Vec<f64>> = rival.columns.iter().map(|c| self.white.of(c)).collect();
+            let rival: Vec<Vec<f64>> = rival.regressors.iter().map(|c| self.white.of(c)).collect();
             unexplained(&effect, self.base.iter().chain(&rival)) / self.variance
         });
         left.min_by(f64::total_cmp)

@@ -115,7 +115,7 @@ fn of_picks(
     let (mut acts, mut sum) = (Some(Vec::new()), Some(SensorFault::default()));
     for ((study, channel), picks) in channels.iter().zip(picks) {
         let solved = study.system.solve(picks)?;
-        let mut own = channel.base(&solved.values[..study.base.len()]);
+        let mut own = channel.base(&solved.values[..study.baseline.len()]);
         for (candidate, values) in study.with_values(picks, &solved.values) {
             match channel.act(candidate, values) {
                 _ if candidate.kind != Kind::Plant => {}

@@ -49,7 +49,7 @@ fn made(
     searched: &[Vec<f64>],
 ) -> (Vec<Effect>, bool) {
     let found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
-    let of_causes = causes.iter().map(|c| c.columns.len()).sum::<usize>();
+    let of_causes = causes.iter().map(|c| c.regressors.len()).sum::<usize>();
     let dry = DryFriction::of(&found);
     beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
 }
@@ -82,14 +82,14 @@ fn beside_model(
     let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
     let (mut at, mut is_whole) = (0, true);
     for (candidate, searched) in causes.iter().zip(searched) {
-        let values = &values[at..at + candidate.columns.len()];
+        let values = &values[at..at + candidate.regressors.len()];
         if relations(candidate.id).contains(&Relation::TakesDryFriction) {
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
         let laws = laws_of(&Found { candidate, values, searched, track, weight_n, dry });
         is_whole &= !laws.is_empty() || candidate.kind == Kind::Instrument;
         found.extend(laws);
-        at += candidate.columns.len();
+        at += candidate.regressors.len();
     }
     (free_motion::whole(track, found), is_whole)
 }

@@ -53,9 +53,9 @@ fn side(track: &Track, model: &Model, study: &ChannelFit, picks: &[usize]) -> Op
     let effects = effects_of(track, model, study, picks, &solved)?;
     let left = study.residual_of(picks, &solved);
     // No force drives a free motion, and its inertial force is the target.
-    let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
+    let mut drive = if track.freely.is_some() { vec![0.0; study.target.len()] } else { study.target.clone() };
     for (candidate, values) in study.with_values(picks, &solved.values).filter(|(c, _)| c.kind == Kind::Instrument) {
-        for (column, value) in candidate.columns.iter().zip(values) {
+        for (column, value) in candidate.regressors.iter().zip(values) {
             drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
         }
     }

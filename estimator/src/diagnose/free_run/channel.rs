@@ -39,13 +39,13 @@ impl<'a> Fit<'a> {
     /// Regressors of the model and of the candidates, with their values.
     pub fn columns(&self) -> impl Iterator<Item = (&'a [f64], f64)> {
         let Self { study, picks, values } = *self;
-        let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|column| column.as_slice());
-        study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
+        let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].regressors).map(|column| column.as_slice());
+        study.baseline.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
     }
 
     /// Measured quantity less the contribution of these regressors in a row.
     pub fn less(&self, row: usize, columns: &[(&[f64], f64)]) -> f64 {
-        self.study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
+        self.study.target[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
     }
 }
 
@@ -67,7 +67,7 @@ pub fn consecutive(
 pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
-    let own = &study.candidates[picks[k]].columns;
+    let own = &study.candidates[picks[k]].regressors;
     let acts = |row: &&usize| own.iter().any(|column| column[**row] != 0.0);
     let mut windows = channel.windows();
     windows.retain(|w| w.iter().filter(acts).count() as f64 >= HALF * w.len() as f64);
@@ -86,17 +86,11 @@ pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Ro
 /// Compliant pads under a measured force, whose damping delays the displacement after the force: a channel of positions,
 /// with the rate of the position among the regressors of its model.
 pub struct Pads {
-    time_s: Vec<f64>,
-    stretch: Vec<usize>,
-    period_s: f64,
+    pub time_s: Vec<f64>,
+    pub stretch: Vec<usize>,
+    pub period_s: f64,
     /// Index of the rate among the model's regressors.
-    rate: usize,
-}
-
-impl Pads {
-    pub fn new(time_s: &[f64], stretch: &[usize], period_s: f64, rate: usize) -> Self {
-        Self { time_s: time_s.to_vec(), stretch: stretch.to_vec(), period_s, rate }
-    }
+    pub rate: usize,
 }
 
 impl Forward for Pads {
@@ -115,7 +109,7 @@ impl Forward for Pads {
         let lag_s = (-fit.values[self.rate]).max(0.0);
         let beside = fit.columns().enumerate().filter(|(k, _)| *k != self.rate);
         let given: Vec<(&[f64], f64)> = beside.map(|(_, column)| column).collect();
-        let measured = &fit.study.y;
+        let measured = &fit.study.target;
         let mut place = measured[window[0]];
         let (mut sum, mut count) = (0.0, 0.0);
         for pair in window.windows(2) {

@@ -3,6 +3,7 @@
 use super::axis_sign::AXIS_SIGN;
 use super::candidate::Candidate;
 use super::channel_fault::CHANNEL_FAULT;
+use super::dictionary::Dictionary;
 use super::fingertip_slip::FINGERTIP_SLIP;
 use super::force_cross_axis::ForceCrossAxis;
 use super::force_gain::ForceGain;
@@ -11,7 +12,6 @@ use super::grid::{Grid, Near, Ranges};
 use super::hypothesis::Hypothesis;
 use super::joint_offset::JOINT_OFFSET;
 use super::length_scale::LENGTH_SCALE;
-use super::library::Dictionary;
 use super::pad_compliance::PAD_COMPLIANCE;
 use super::regressor_cache::Columns;
 use super::relations::{Form, Relation};
@@ -172,7 +172,7 @@ impl Dictionary<'_> {
             let both_ways = !self.track.goes_one_way();
             all.retain(|c| can_show(c.id, both_ways));
         }
-        all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
+        all.retain(|c| c.regressors.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
         all
     }
 

@@ -48,9 +48,8 @@ impl Axis {
     /// The coarse values.
     pub(crate) fn values(self) -> impl Iterator<Item = f64> + Clone {
         let spacing = self.spacing();
-        (0..self.count).map(move |k| match self.is_geometric {
-            true => self.low * spacing.powf(k as f64),
-            false => self.low + spacing * k as f64,
+        (0..self.count).map(move |k| {
+            if self.is_geometric { self.low * spacing.powf(k as f64) } else { self.low + spacing * k as f64 }
         })
     }
 
@@ -58,9 +57,8 @@ impl Axis {
     /// the first round and smaller in later ones.
     pub(crate) fn around(self, value: f64, scale: f64, step: f64) -> [f64; 5] {
         let spacing = self.spacing();
-        THIRDS.map(|third| match self.is_geometric {
-            true => value * spacing.powf(third * step),
-            false => value + third * step * spacing * scale,
+        THIRDS.map(|third| {
+            if self.is_geometric { value * spacing.powf(third * step) } else { value + third * step * spacing * scale }
         })
     }
 

@@ -94,7 +94,7 @@ pub struct Candidate {
     pub id: &'static str,
     pub kind: Kind,
     /// One regressor per linear parameter, one entry per row.
-    pub columns: Vec<Column>,
+    pub regressors: Vec<Column>,
     /// Name and unit of the linear parameters.
     pub linear: Vec<(&'static str, &'static str)>,
     pub searched: Vec<Searched>,
@@ -140,7 +140,7 @@ impl Candidate {
         Self {
             id,
             kind,
-            columns,
+            regressors: columns,
             linear,
             searched: Vec::new(),
             cost,

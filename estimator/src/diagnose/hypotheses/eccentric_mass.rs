@@ -1,9 +1,9 @@
 //! An eccentric mass as a hypothesis: gravity that the model does not have.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::gravity_tilt;
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use haptics::law::{EccentricMass, Effect, Kind};
 

@@ -1,8 +1,8 @@
 //! Cross-talk of the force axes as a hypothesis, if the force has two.
 
 use super::candidate::{Candidate, HARDLY};
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Hypothesis};
-use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, fingers};
 use super::variable::Variable;

@@ -1,9 +1,9 @@
 //! A drift of the force channel as a hypothesis: it goes on, or settles with a searched time constant.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::sensor_fault::{SensorFault, add_each, add_halved};
 use super::variable::Variable;

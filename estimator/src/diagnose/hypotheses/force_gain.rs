@@ -1,8 +1,8 @@
 //! A wrong gain of the force channel as a hypothesis, if a force is completely known.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Hypothesis};
-use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each};
 use super::variable::Variable;

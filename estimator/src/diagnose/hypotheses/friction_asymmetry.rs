@@ -1,8 +1,8 @@
 //! Friction that differs by direction, as a hypothesis: dry, viscous, or in proportion to the load.
 
 use super::candidate::{Candidate, Column, HARDLY};
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use crate::diagnose::data::regression_data::Zero;
@@ -57,5 +57,5 @@ fn dry(data: &Dictionary<'_>) -> Candidate {
     }
     let columns = vec![Column::new(data.column(&|_| 1.0))];
     // The sensor bias takes precedence.
-    Candidate { columns, cost: by_direction.cost + HARDLY, ..by_direction }
+    Candidate { regressors: columns, cost: by_direction.cost + HARDLY, ..by_direction }
 }

@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use crate::diagnose::data::regression_data::Place;

@@ -2,8 +2,8 @@
 
 use super::axis::Axis;
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::Relation;
 use crate::diagnose::data::known_weight::{column, level, of};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
@@ -70,7 +70,7 @@ impl Plain {
         }
         Self {
             columns,
-            y: track.rows.iter().zip(known).map(|(r, k)| r.y - k).collect(),
+            y: track.rows.iter().zip(known).map(|(r, k)| r.target - k).collect(),
             // An uncertain direction makes the friction uncertain, too.
             used: column(&|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }),
         }

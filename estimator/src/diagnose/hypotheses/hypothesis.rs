@@ -1,9 +1,9 @@
 //! A physical law or a sensor fault as a hypothesis: everything that a diagnosis knows of one cause.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::dry_share::DryFriction;
 use super::grid::{Near, Point, Ranges};
-use super::library::Dictionary;
 use super::relations::{Form, Relation};
 use super::sensor_fault::SensorFault;
 use super::variable::Variable;

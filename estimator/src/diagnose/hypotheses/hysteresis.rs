@@ -1,9 +1,9 @@
 //! Presliding as a hypothesis: friction bends over a searched distance before it slides.
 
 use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use crate::diagnose::data::stick_phases;
 use haptics::law::{Effect, Hysteresis, Kind, LoadHysteresis};

@@ -1,8 +1,8 @@
 //! Friction in proportion to the load as a hypothesis, if the recording has a load.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use haptics::law::LoadFriction;

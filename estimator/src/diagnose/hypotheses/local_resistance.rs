@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over};
 use haptics::law::{Effect, Kind, Law, LocalPush, LocalResistance};
 use std::f64::consts::TAU;

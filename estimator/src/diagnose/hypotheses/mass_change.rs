@@ -1,9 +1,9 @@
 //! A change of mass as a hypothesis, if the recording has a load: a leak that may settle, or a step.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
 use haptics::law::{Effect, Kind, Law as _, MassChange, Weight};

@@ -3,9 +3,9 @@
 use super::added_constraint;
 use super::axis::Axis;
 use super::candidate::{Candidate, Shape, about_its_zero};
+use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
-use super::library::Dictionary;
 use super::relations::{Form, Over};
 use crate::diagnose::data::regression_data::Track;
 use haptics::law::{Effect, Kind, ReturnSpring};
@@ -30,7 +30,7 @@ impl Hypothesis for ReturnSpring {
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
-        let hardens = |found: &&Candidate| found.columns.len() > 2 || !found.searched.is_empty();
+        let hardens = |found: &&Candidate| found.regressors.len() > 2 || !found.searched.is_empty();
         // A wall and a hardening spring are similar.
         let is_similar = near.of(added_constraint::ID).next().is_some() || near.of(ID).any(|found| hardens(&found));
         let finer = is_similar.then(|| rests(RESTS.halved(), &near.ranges)).into_iter().flatten();

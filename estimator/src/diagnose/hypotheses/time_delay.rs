@@ -1,8 +1,8 @@
 //! A delay of the force after the motion as a hypothesis.
 
 use super::candidate::Candidate;
+use super::dictionary::Dictionary;
 use super::hypothesis::{About, Hypothesis};
-use super::library::Dictionary;
 use super::relations::Relation;
 use super::sensor_fault::{SensorFault, add_each, fingers};
 use super::variable::Variable;

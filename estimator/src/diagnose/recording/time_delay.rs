@@ -52,7 +52,7 @@ impl<'a> Moved<'a> {
         let mut motion: Vec<Vec<f64>> = others.iter().map(|effect| column(track, effect)).collect();
         let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
         let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
-        motion.extend(terms.flat_map(|c| c.columns).map(Arc::unwrap_or_clone));
+        motion.extend(terms.flat_map(|c| c.regressors).map(Arc::unwrap_or_clone));
         motion.push(vec![1.0; track.rows.len()]);
         Self { track, rows: track.along().collect(), loads, motion }
     }
@@ -61,7 +61,7 @@ impl<'a> Moved<'a> {
     fn later(&self, by: isize) -> (Vec<Row>, Vec<usize>) {
         let of = |i: &usize| &self.track.rows[*i];
         let (mut moved, mut picked) = (Vec::new(), Vec::new());
-        let together = |a: &usize, b: &usize| of(a).stretch == of(b).stretch && of(a).recording == of(b).recording;
+        let together = |a: &usize, b: &usize| of(a).segment == of(b).segment && of(a).recording == of(b).recording;
         for stretch in self.rows.chunk_by(together) {
             for (k, i) in stretch.iter().enumerate() {
                 let Some(later) = k.checked_add_signed(by).and_then(|k| stretch.get(k)).map(of) else { continue };
@@ -69,9 +69,9 @@ impl<'a> Moved<'a> {
                 if self.track.planar {
                     let outward = haptics::Vec2::new(row.along.y, -row.along.x);
                     row.motion.normal_force_n += (later.force - row.force).dot(&outward);
-                    row.y = later.force.dot(&row.along);
+                    row.target = later.force.dot(&row.along);
                 } else {
-                    row.y = later.y;
+                    row.target = later.target;
                 }
                 moved.push(row);
                 picked.push(*i);
@@ -95,7 +95,7 @@ impl<'a> Moved<'a> {
             columns.push(weighted(&mut moved.iter().map(|row| weights.mean(self.track, row, |m| law.force(m)))));
         }
         let target = columns.len();
-        columns.push(weighted(&mut moved.iter().map(|row| row.y)));
+        columns.push(weighted(&mut moved.iter().map(|row| row.target)));
         let all: Vec<usize> = (0..moved.len()).collect();
         let fit = solve(&gram(&columns, &all), &(0..target).collect::<Vec<_>>(), target)?;
         let weight: f64 = root.iter().map(|root| root * root).sum();

@@ -26,9 +26,9 @@ const LEAST_OWN_PART: f64 = 1e-4;
 #[derive(Clone)]
 pub struct Channel {
     /// The target.
-    pub y: Vec<f64>,
+    pub target: Vec<f64>,
     /// Regressors of the model.
-    pub base: Vec<Vec<f64>>,
+    pub baseline: Vec<Vec<f64>>,
     /// Indices of those among them that can only resist: a negative coefficient is no explanation.
     pub resisting: Vec<usize>,
     /// Causes and generic terms.
@@ -41,25 +41,25 @@ pub struct Channel {
 
 impl Channel {
     pub fn new(y: Vec<f64>, base: Vec<Vec<f64>>, candidates: Vec<Candidate>, layout: Layout, rules: Rules) -> Self {
-        Self { y, base, resisting: Vec::new(), candidates, layout, rules }
+        Self { target: y, baseline: base, resisting: Vec::new(), candidates, layout, rules }
     }
 
     /// Selects among the candidates that differ from zero, and removes what the held-out rows do not confirm.
     pub fn fit(mut self) -> Result<ChannelFit, EstimateError> {
         let seen = |c: &Candidate| {
-            c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
+            c.regressors.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
         };
         self.candidates.retain(seen);
-        if self.base.is_empty() {
+        if self.baseline.is_empty() {
             // A model that predicts nothing.
-            self.base.push(vec![0.0; self.y.len()]);
+            self.baseline.push(vec![0.0; self.target.len()]);
         }
         let mut made = self.select(None)?;
         leave_out_what_is_unsure(&mut made);
         if !made.rules.has_dry_friction && lifts_nothing(&made) {
             // The dry friction beside which the change was found was removed: a change of friction without friction is
             // not possible.
-            let ChannelFit { y, base, mut candidates, layout, rules, .. } = made;
+            let ChannelFit { target: y, baseline: base, mut candidates, layout, rules, .. } = made;
             candidates.retain(|c| !relations(c.id).contains(&Relation::OfDryFriction));
             return Self::new(y, base, candidates, layout, rules).fit();
         }
@@ -69,7 +69,7 @@ impl Channel {
     /// Selects among the candidates, without a final check. `before`: an earlier round, whose whitening stays as long
     /// as the weights do (the same terms together have the same residual), and from whose choice the search starts, too.
     pub fn select(self, before: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
-        let Self { y, base, resisting, candidates, layout, rules } = self;
+        let Self { target: y, baseline: base, resisting, candidates, layout, rules } = self;
         let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
         let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
         let start: Vec<usize> = found.filter_map(place).collect();
@@ -88,7 +88,17 @@ impl Channel {
         let chosen = Stepwise::new(&system, &candidates, &rules).run(&start);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
-        Ok(ChannelFit { candidates, chosen, system, solved, y, base, layout, rules, shares_of: [1.0, 0.0] })
+        Ok(ChannelFit {
+            candidates,
+            chosen,
+            system,
+            solved,
+            target: y,
+            baseline: base,
+            layout,
+            rules,
+            shares_of: [1.0, 0.0],
+        })
     }
 }
 
@@ -118,7 +128,7 @@ fn whitening(
         rough.distinct(*k, &others).max(LEAST_OWN_PART)
     };
     let mut kept_out: Vec<f64> =
-        causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].columns.len()]).collect();
+        causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].regressors.len()]).collect();
     let columns = rough.columns(&used);
     let target = rough.train.ncols() - 1;
     let mut ridged = rough.train.clone();
@@ -172,7 +182,7 @@ fn is_steady(study: &ChannelFit, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
     let first = firsts(study, &picks)[k];
-    let own = first..first + study.candidates[picks[k]].columns.len();
+    let own = first..first + study.candidates[picks[k]].regressors.len();
     study.system.steadiness(solved, &own) > study.rules.steady
 }
 

@@ -56,8 +56,8 @@ pub struct ChannelFit {
     /// Solution of all chosen causes on the training rows.
     pub solved: Option<Solved>,
     /// The target.
-    pub y: Vec<f64>,
-    pub base: Vec<Vec<f64>>,
+    pub target: Vec<f64>,
+    pub baseline: Vec<Vec<f64>>,
     /// The rows.
     pub layout: Layout,
     /// The limits in force.
@@ -85,26 +85,26 @@ impl ChannelFit {
 
     /// Residual of a fit with these candidates, row by row; without a solution, the target.
     pub fn residual(&self, picks: &[usize]) -> Vec<f64> {
-        self.system.solve(picks).map_or_else(|| self.y.clone(), |solved| self.residual_of(picks, &solved))
+        self.system.solve(picks).map_or_else(|| self.target.clone(), |solved| self.residual_of(picks, &solved))
     }
 
     /// Residual of a solution with these candidates, row by row.
     pub fn residual_of(&self, picks: &[usize], solved: &Solved) -> Vec<f64> {
-        residual(&self.y, &self.base, &self.candidates, picks, solved)
+        residual(&self.target, &self.baseline, &self.candidates, picks, solved)
     }
 
     /// The same comparison with these generic terms beside the found causes, whitened as before.
     pub fn beside(&self, terms: Vec<Candidate>) -> Self {
         let found = self.chosen.iter().map(|c| self.candidates[c.candidate].clone());
         let candidates: Vec<Candidate> = found.chain(terms).collect();
-        let Self { y, base, layout, rules, .. } = self;
+        let Self { target: y, baseline: base, layout, rules, .. } = self;
         let system = System::new(base, &candidates, y, layout, self.system.coefficients.clone());
         let as_before =
             |(candidate, c): (usize, &SelectedTerm)| SelectedTerm { candidate, rivals: Vec::new(), ..c.clone() };
         let chosen: Vec<SelectedTerm> = self.chosen.iter().enumerate().map(as_before).collect();
         let solved = system.solve(&(0..chosen.len()).collect::<Vec<usize>>());
         let (y, base, layout, shares_of) = (y.clone(), base.clone(), layout.clone(), self.shares_of);
-        Self { candidates, chosen, system, solved, y, base, layout, rules: *rules, shares_of }
+        Self { candidates, chosen, system, solved, target: y, baseline: base, layout, rules: *rules, shares_of }
     }
 
     /// Each of these candidates with its coefficients. `values`: of the model's regressors, then of the candidates' ones.
@@ -113,10 +113,10 @@ impl ChannelFit {
         picks: &[usize],
         values: &'a [f64],
     ) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
-        let mut at = self.base.len();
+        let mut at = self.baseline.len();
         picks.iter().map(move |p| {
             let candidate = &self.candidates[*p];
-            let own = at..at + candidate.columns.len();
+            let own = at..at + candidate.regressors.len();
             at = own.end;
             (candidate, &values[own])
         })
@@ -131,6 +131,6 @@ impl ChannelFit {
 /// Residual of `y`.
 pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
     let columns: Vec<&Vec<f64>> =
-        base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns).map(|c| &**c)).collect();
+        base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].regressors).map(|c| &**c)).collect();
     (0..y.len()).map(|i| y[i] - columns.iter().zip(&solved.values).map(|(c, v)| c[i] * v).sum::<f64>()).collect()
 }

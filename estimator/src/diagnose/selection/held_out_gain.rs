@@ -30,7 +30,7 @@ struct Parts {
 
 /// Weighted residuals of a subset of the chosen causes, all rows.
 fn left(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
-    let Some(solved) = study.system.solve(picks) else { return study.y.clone() };
+    let Some(solved) = study.system.solve(picks) else { return study.target.clone() };
     weighted(study, &study.residual_of(picks, &solved))
 }
 
@@ -159,7 +159,7 @@ fn whitened(study: &ChannelFit, picks: &[usize]) -> Vec<Option<f64>> {
 pub fn shows_beside(study: &ChannelFit, picks: &[usize]) -> bool {
     let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
     let shows = |column: &Column| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
-    picks.iter().any(|p| study.candidates[*p].columns.iter().any(shows))
+    picks.iter().any(|p| study.candidates[*p].regressors.iter().any(shows))
 }
 
 /// 95 % confidence interval of a figure by a bootstrap over blocks, with the same random draws every time.

@@ -120,7 +120,7 @@ struct Known {
 
 /// All regressors in the order of a system, the target last.
 pub(crate) fn columns_of<'a>(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64]) -> Vec<&'a [f64]> {
-    let of_candidates = candidates.iter().flat_map(|c| &c.columns);
+    let of_candidates = candidates.iter().flat_map(|c| &c.regressors);
     base.iter().chain(of_candidates.map(|column| &**column)).map(Vec::as_slice).chain([y]).collect()
 }
 
@@ -143,7 +143,7 @@ pub(crate) fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>>
     let mut end = base;
     let place = |candidate: &Candidate| {
         let start = end;
-        end += candidate.columns.len();
+        end += candidate.regressors.len();
         start..end
     };
     candidates.iter().map(place).collect()
@@ -196,7 +196,7 @@ impl System {
     /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
     pub fn after(before: ChannelFit, base: &[Vec<f64>], candidates: &[Candidate], y: &[f64], layout: &Layout) -> Self {
         let columns = columns_of(base, candidates, y);
-        let ChannelFit { system, candidates: had, base: had_base, y: had_y, layout: had_layout, .. } = before;
+        let ChannelFit { system, candidates: had, baseline: had_base, target: had_y, layout: had_layout, .. } = before;
         let coefficients = system.coefficients.clone();
         let known = (had_layout.weight == layout.weight && system.uses == uses(layout))
             .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });

@@ -52,7 +52,7 @@ pub fn settled(study: &ChannelFit) -> Option<Settled> {
                 values.iter_mut().zip(moved.into_iter().flatten()).for_each(|(v, by)| *v += by);
             }
         }
-        let own_values = first..first + own.columns.len();
+        let own_values = first..first + own.regressors.len();
         if !own.admits(&values[own_values.clone()]) {
             values[own_values.clone()].copy_from_slice(&solved.values[own_values]);
         }
@@ -70,7 +70,7 @@ pub fn settled(study: &ChannelFit) -> Option<Settled> {
 
 /// First index of the values of each of these causes.
 pub fn firsts(study: &ChannelFit, picks: &[usize]) -> Vec<usize> {
-    let counts = picks.iter().map(|p| study.candidates[*p].columns.len());
+    let counts = picks.iter().map(|p| study.candidates[*p].regressors.len());
     counts.scan(study.system.base, |at, count| Some(std::mem::replace(at, *at + count))).collect()
 }
 
@@ -256,7 +256,7 @@ pub(crate) fn of_channel(candidate: &Candidate, name: &str, value: f64, std_erro
 /// cubics. Errors are to first order.
 pub(crate) fn of_hardening_spring(track: &Track, study: &ChannelFit, k: usize) -> Option<Vec<CauseParameter>> {
     let candidate = &study.candidates[study.chosen[k].candidate];
-    if candidate.id != return_spring::ID || candidate.columns.len() != 4 {
+    if candidate.id != return_spring::ID || candidate.regressors.len() != 4 {
         return None;
     }
     let solved = study.solved.as_ref()?;

@@ -93,7 +93,7 @@ impl Stepwise<'_> {
         let (mut at, mut doubt) = (self.system.base, 0.0);
         for c in chosen {
             let candidate = &self.candidates[*c];
-            let end = at + candidate.columns.len();
+            let end = at + candidate.regressors.len();
             if !candidate.admits(&values[at..end]) {
                 return f64::INFINITY;
             }
@@ -297,7 +297,7 @@ impl Stepwise<'_> {
     /// True if the k-th cause and a better one are nearly collinear in this recording: large coefficients cancel, and
     /// only their difference matters. Causes that differ may cancel as well.
     fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
-        let count = |k: usize| self.candidates[chosen[k]].columns.len();
+        let count = |k: usize| self.candidates[chosen[k]].regressors.len();
         let Some(solved) = self.system.solve(chosen) else { return false };
         let own = |k: usize| {
             let first = self.system.base + (0..k).map(count).sum::<usize>();
@@ -355,10 +355,10 @@ impl Stepwise<'_> {
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {
         let Some(solved) = self.system.solve(chosen) else { return false };
-        let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum();
+        let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].regressors.len()).sum();
         let first = self.system.base + before;
         let variance = solved.variance(self.system.rows);
-        (first..first + self.candidates[chosen[k]].columns.len())
+        (first..first + self.candidates[chosen[k]].regressors.len())
             .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
     }
 
@@ -402,8 +402,8 @@ impl Stepwise<'_> {
         const LARGEST_NOISE_SHARE: f64 = 0.9;
         let noise = self.candidates[c].noise;
         let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
-        let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>()
-            - self.candidates[c].columns.len();
+        let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].regressors.len()).sum::<usize>()
+            - self.candidates[c].regressors.len();
         let whitened = 1.0 + self.system.coefficients.iter().map(|a| a * a).sum::<f64>();
         let share = (solved.values[own] * noise).powi(2) * whitened * self.system.rows / solved.rss;
         -self.system.rows * (1.0 - share.min(LARGEST_NOISE_SHARE)).ln()

@@ -1,6 +1,7 @@
 //! Correction of a time delay: the forces are shifted back and the diagnosis is repeated.
 
 use crate::diagnose::contract::{Baseline, Cause, Gain, Verdict, parameter};
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, MOST_ROUNDS};
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
@@ -62,8 +63,7 @@ pub(crate) fn told(found: &Findings) -> Figures {
 
 /// Usual time between two samples, s.
 pub(crate) fn period_s(recording: &Recording) -> Option<f64> {
-    let time_s = recording.time_s.as_ref().filter(|t| t.len() > 2)?;
-    Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
+    recording.time_s.as_ref().filter(|t| t.len() > 2).map(|time_s| mean_step_s(time_s))
 }
 
 /// The same ratio if the delay was not named.

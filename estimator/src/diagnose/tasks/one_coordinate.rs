@@ -9,8 +9,8 @@ use crate::diagnose::data::stick_phases::Load;
 use crate::diagnose::data::{known_weight, stick_phases};
 use crate::diagnose::hypotheses::basis_functions::generic;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
-use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
     backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
@@ -166,7 +166,7 @@ fn compare(
     let Look { mut predicted, mut resisting, weight, slides: mut dry } =
         first_look(track, model, (&base, &y), made.noise)?;
     // Coefficients of the model's laws, estimated together with the causes of the last round.
-    let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.base.len()]));
+    let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.baseline.len()]));
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
         dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
@@ -181,7 +181,7 @@ fn compare(
     let mut candidates = dictionary(coarse).candidates();
     candidates.extend(dictionary(fine).searched());
     let losses = candidates.iter().filter(|c| [hysteresis::ID, backlash::ID].contains(&c.id));
-    let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
+    let losses: Vec<&[f64]> = losses.map(|c| c.regressors[0].as_slice()).collect();
     base.extend(stick_phases::creep(track, &y, &losses));
     base.extend(made.is_sharp.then(|| blurred(track, &dry)));
     candidates.extend(made.generic.iter().cloned());
@@ -191,7 +191,7 @@ fn compare(
         Place::FreeX | Place::FreeY => Held::Never,
     };
     let layout = Layout {
-        segment: track.rows.iter().map(|r| r.stretch).collect(),
+        segment: track.rows.iter().map(|r| r.segment).collect(),
         held: track.rows.iter().map(held).collect(),
         // One recording after the other.
         time_s: track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect(),
@@ -205,7 +205,7 @@ fn compare(
         .with_friction(model.iter().any(|e| e.law().is_dry()))
         .with_noise(track.noise_is_measured);
     let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
-    let mut study = Channel { y, base, resisting, candidates, layout, rules }.select(before)?;
+    let mut study = Channel { target: y, baseline: base, resisting, candidates, layout, rules }.select(before)?;
     let solved = study.solved.as_ref();
     study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
     Ok(study)
@@ -274,7 +274,7 @@ fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
     let base = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> =
         fixed.iter().map(|effect| column(track, effect)).chain(known_weight::column(track)).collect();
-    let left = |(i, row): (usize, &Row)| row.y - known.iter().map(|k| k[i]).sum::<f64>();
+    let left = |(i, row): (usize, &Row)| row.target - known.iter().map(|k| k[i]).sum::<f64>();
     let y = track.rows.iter().enumerate().map(left).collect();
     Asked { base, known, y }
 }

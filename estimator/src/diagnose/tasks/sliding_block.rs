@@ -13,6 +13,7 @@ use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, HAND_CLOSES_S, HAND_REST_M_S, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
@@ -183,7 +184,7 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
     let net: Vec<f64> = signals.net_force_n.iter().map(|f| f.y).collect();
     let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
     let lift_n = smooth(time, &net).value.iter().map(|f| f - bias_y).collect();
-    let step_s = if n > 1 { (time[n - 1] - time[0]) / (n - 1) as f64 } else { 1.0 };
+    let step_s = mean_step_s(time);
     let calm = smooth(time, &rate).value;
     let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > HAND_REST_M_S).count() as f64 * step_s;
     let channel = |name: &str, unit: &str, values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };

@@ -301,7 +301,7 @@ fn second(rows: &[Row], units: &Units, names: Option<[String; 3]>) -> Result<Opt
             }),
         ),
     ];
-    candidates.retain(|c| c.columns.iter().all(|v| v.iter().any(|x| *x != 0.0)));
+    candidates.retain(|c| c.regressors.iter().all(|v| v.iter().any(|x| *x != 0.0)));
     let floor = white_noise(&y);
     let stretch: Vec<usize> = (0..3 * n).map(|i| 1000 * (i / n) + rows[i % n].recording).collect();
     let layout = Layout::of(stretch, &vec![true; 3 * n], 1.0);
@@ -340,6 +340,6 @@ impl Told for Second {
 
 /// The channel of a fit over all parts of the path.
 fn compared(study: ChannelFit, (channel, unit): (&'static str, &'static str), floor: f64, view: View) -> Compared {
-    let (along, state) = (vec![true; study.y.len()], vec![SystemState::Turning; study.y.len()]);
+    let (along, state) = (vec![true; study.target.len()], vec![SystemState::Turning; study.target.len()]);
     Compared { study, channel, unit, floor, along, state, view }
 }

@@ -69,7 +69,7 @@ pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &
     with.iter_mut().zip(sensed.into_iter().flatten()).for_each(|(w, s)| *w += s);
     let along = || track.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along);
     let weight: Vec<f64> = along().map(|(_, r)| r.motion.direction.powi(4)).collect();
-    let left = |model: &[f64]| -> Vec<f64> { along().map(|(i, r)| r.y - model[i]).collect() };
+    let left = |model: &[f64]| -> Vec<f64> { along().map(|(i, r)| r.target - model[i]).collect() };
     Validation { left_out, ..compared(&left(&without), &left(&with), &weight) }
 }
 
@@ -142,8 +142,8 @@ impl Kept {
         if apart(nearest) > SAME {
             return None;
         }
-        let mut sum = vec![0.0; nearest.columns.first()?.len()];
-        for (column, value) in nearest.columns.iter().zip(&self.values) {
+        let mut sum = vec![0.0; nearest.regressors.first()?.len()];
+        for (column, value) in nearest.regressors.iter().zip(&self.values) {
             sum.iter_mut().zip(column.iter()).for_each(|(s, c)| *s += value * c);
         }
         Some(sum)
@@ -171,14 +171,15 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
         if found.as_ref().is_some_and(|v| v.of.is_some()) || (found.is_some() && !is_any) {
             continue;
         }
-        let after = sum.map_or_else(|| study.y.clone(), |s| study.y.iter().zip(&s).map(|(y, s)| y - s).collect());
+        let after =
+            sum.map_or_else(|| study.target.clone(), |s| study.target.iter().zip(&s).map(|(y, s)| y - s).collect());
         // Rows that are held out in turn represent their neighbours. Other rows of the channel (empty fingers) count
         // with them.
         let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
         found = Some(Validation {
             of: is_any.then(|| channel.channel.to_owned()),
             unit: is_any.then(|| channel.unit.to_owned()),
-            ..compared(&open(study, &study.y)?, &open(study, &after)?, &squares)
+            ..compared(&open(study, &study.target)?, &open(study, &after)?, &squares)
         });
     }
     let missing = kept.iter().filter(|k| channels.iter().all(|c| c.channel != k.channel));
@@ -190,7 +191,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
 
 /// Residual of a target after a fit of the base model, row by row.
 fn open(study: &ChannelFit, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
-    let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
+    let base: Vec<Vec<f64>> = study.baseline.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
     let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let mut left = y.to_vec();
     if !base.is_empty() {

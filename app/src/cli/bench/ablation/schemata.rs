@@ -102,7 +102,7 @@ impl Sources {
 
     /// Takes every constant that an error of the compiler points at for one that must stay as it is. False if an error
     /// points at none.
-    pub(super) fn keep_fixed(&mut self, copy: &Path, messages: &str) -> anyhow::Result<bool> {
+    pub(super) fn keep_fixed(&mut self, copy: &Path, messages: &str) -> bool {
         let known: BTreeSet<String> = self
             .files
             .iter()
@@ -122,7 +122,7 @@ impl Sources {
                 self.fixed.extend(words.filter(|word| known.contains(*word)).map(str::to_owned));
             }
         }
-        Ok(self.fixed.len() > before)
+        self.fixed.len() > before
     }
 
     /// Number of constants that stay as they are.
@@ -160,7 +160,7 @@ fn list(folder: &Path, paths: &mut Vec<PathBuf>) -> anyhow::Result<()> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() && name != "tests" {
             list(&path, paths)?;
-        } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
+        } else if path.extension().is_some_and(|e| e == "rs") && !name.ends_with("tests.rs") {
             paths.push(path);
         }
     }

@@ -1,7 +1,6 @@
 //! The editor of a task's rules: its states, their conditions, the parameters that they identify, and the subtasks that
 //! they form. A change is applied at once to the recording below.
 
-use crate::text::format;
 use crate::ui::calibrate::panels::rules_table::{states, subtasks};
 use crate::ui::calibrate::rule_editing;
 use crate::ui::calibrate::rules::Rules;
@@ -36,7 +35,6 @@ mod words {
     pub const FIRST_RULE_COUNTS: &str = "The first rule that holds names the state.";
     pub const SIGNS_MORE: &str = "+ above, 0 within, − below. The first that holds counts.";
     pub const CHANGED_THE_STATES: &str = "Changed; the states below follow. Refit for new numbers.";
-    pub const FORCE_BIAS: &str = "Force bias";
 }
 
 /// Height of the part below the tables, points: thresholds, name, and problems.
@@ -184,9 +182,4 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
         }
     });
     save
-}
-
-/// Label of a parameter in the list of a state.
-pub(crate) fn parameter(name: &str) -> String {
-    if name == "force_bias" { words::FORCE_BIAS.to_owned() } else { format::parameter(name, None).label }
 }

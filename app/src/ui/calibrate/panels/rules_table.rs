@@ -1,7 +1,7 @@
 //! The two tables of the rules: states with their signs, and subtasks with their states.
 
+use crate::text::format;
 use crate::text::states::state_name;
-use crate::ui::calibrate::panels::rules::parameter;
 use crate::ui::calibrate::rules::Rules;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
@@ -15,6 +15,7 @@ use haptics::recording::Task;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
+    pub const FORCE_BIAS: &str = "Force bias";
     pub const TOUCH: &str = "Touch";
     pub const TOUCH_MORE: &str = "Any force of a finger";
     pub const PINCH: &str = "Pinch";
@@ -231,6 +232,11 @@ fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
     } else {
         when.insert("phase".to_owned(), chosen);
     }
+}
+
+/// Label of a parameter in the list of a state.
+pub(crate) fn parameter(name: &str) -> String {
+    if name == "force_bias" { words::FORCE_BIAS.to_owned() } else { format::parameter(name, None).label }
 }
 
 /// Draws the parameters that a state identifies: a menu with checkboxes.

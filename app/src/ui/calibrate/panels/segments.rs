@@ -5,7 +5,7 @@ use crate::text::states::{state_of_task, state_short};
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::manual_states;
 use crate::ui::calibrate::panels::boundaries;
-use crate::ui::calibrate::panels::rules::parameter;
+use crate::ui::calibrate::panels::rules_table::parameter;
 use crate::ui::calibrate::refits::FIT;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::state::Document;

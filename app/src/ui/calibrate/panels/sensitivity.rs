@@ -1,8 +1,7 @@
 //! Sensitivity of the result to the parameters, and their correlations: bars, and a matrix.
 
 use crate::text::format;
-use crate::ui::calibrate::sensitivity::SENSITIVITY;
-use crate::ui::calibrate::sensitivity::{CHANGE, Correlations, Effect};
+use crate::ui::calibrate::sensitivity::{CHANGE, Correlations, Effect, SENSITIVITY};
 use crate::ui::calibrate::sensitivity_actions;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::headless::gallery::sample::Sample;

@@ -2,5 +2,6 @@
 
 pub mod device_detail;
 pub mod device_log;
+pub mod device_row;
 pub mod devices;
 pub mod remote;

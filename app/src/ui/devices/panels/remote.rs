@@ -1,6 +1,6 @@
 //! The devices page, left column: settings of a remote device.
 
-use crate::ui::devices::panels::devices::{Choice, row};
+use crate::ui::devices::panels::device_row::{Choice, row};
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::space;

@@ -4,7 +4,7 @@ use crate::text::diagnosis_words::{listed, shown_unit, title};
 use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
-use crate::ui::diagnose::checked::{CHECK, Checked, Holds, On, holds};
+use crate::ui::diagnose::checked::{Checked, Holds, On, holds};
 use crate::ui::diagnose::state::Diagnosing;
 use crate::ui::diagnose::validation;
 use crate::ui::document::state::Document;
@@ -70,7 +70,7 @@ fn ask(
 ) {
     let ctx = ui.ctx().clone();
     ui.horizontal(|ui| {
-        let busy = jobs.is_running(CHECK);
+        let busy = jobs.is_running(validation::CHECK);
         let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
         let field = TextEdit::singleline(&mut diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
         let response = ui.add(field.desired_width(width));

@@ -80,7 +80,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
             actions::diagnose(&session.document, &session.calibration, &mut session.diagnosing, &mut session.jobs, ctx);
         }
         Action::Extend => {
-            actions::extend_model(&session.document, &session.calibration, &session.diagnosing, &mut session.jobs, ctx)
+            actions::extend_model(&session.document, &session.calibration, &session.diagnosing, &mut session.jobs, ctx);
         }
         Action::Feel => actions::feel(
             &mut session.workspace,

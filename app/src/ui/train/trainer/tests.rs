@@ -1,8 +1,6 @@
 //! The trainer without a window and without a thread: a pointer path through the mouse device.
 
-use crate::ui::train::trainer::live::Clock;
-use crate::ui::train::trainer::live::Operator;
-use crate::ui::train::trainer::live::Trainer;
+use crate::ui::train::trainer::live::{Clock, Operator, Trainer};
 use crate::ui::train::trainer::world_choice::WorldChoice;
 use haptics::Vec2;
 use haptics::teleop::Delay;

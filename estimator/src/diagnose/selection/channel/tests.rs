@@ -41,8 +41,8 @@ fn to_and_fro() -> Vec<f64> {
 
 fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> ChannelFit {
     let channel = Channel {
-        y,
-        base: vec![vec![1.0; ROWS]],
+        target: y,
+        baseline: vec![vec![1.0; ROWS]],
         candidates,
         layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
         rules: Rules::of_observations(),
@@ -121,8 +121,8 @@ fn short(size: f64, seed: u64) -> ChannelFit {
     const FEW: usize = 44;
     let (noise, column) = (noise(seed), to_and_fro());
     let channel = Channel {
-        y: noise.iter().zip(&column).map(|(n, c)| n + size * c).take(FEW).collect(),
-        base: vec![vec![1.0; FEW]],
+        target: noise.iter().zip(&column).map(|(n, c)| n + size * c).take(FEW).collect(),
+        baseline: vec![vec![1.0; FEW]],
         candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", column[..FEW].to_vec())],
         layout: Layout::of(vec![0; FEW], &[true; FEW], 0.02),
         rules: Rules::of_observations(),
@@ -158,8 +158,8 @@ fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
     let lifted = |share: f64| (0..ROWS).map(|i| share * (-(speed(i) / 0.5).powi(2)).exp()).collect::<Vec<f64>>();
     let asked = |is_dry: bool| {
         let channel = Channel {
-            y: lifted(1.0).iter().zip(noise(3)).map(|(a, b)| a + b).collect(),
-            base: Vec::new(),
+            target: lifted(1.0).iter().zip(noise(3)).map(|(a, b)| a + b).collect(),
+            baseline: Vec::new(),
             candidates: vec![Candidate::one("stribeck", Kind::Plant, "dmu", "1", lifted(1.0)).positive()],
             layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
             rules: Rules::of_observations().with_friction(is_dry),
@@ -178,8 +178,8 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
     let slow = |i: usize| if i < ROWS / 2 { 0.9 } else { 1.1 };
     let load: Vec<f64> = direction.iter().enumerate().map(|(i, d)| slow(i) * d).collect();
     let channel = Channel {
-        y: load.iter().zip(&direction).zip(noise(5)).map(|((l, d), n)| 10.0 * l + 10.0 * d + n).collect(),
-        base: vec![load],
+        target: load.iter().zip(&direction).zip(noise(5)).map(|((l, d), n)| 10.0 * l + 10.0 * d + n).collect(),
+        baseline: vec![load],
         candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", direction).positive()],
         layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
         rules: Rules::of_observations(),
@@ -195,8 +195,8 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
 fn a_dozen_of_single_observations_can_be_tested() {
     let n = 16;
     let channel = Channel {
-        y: (0..n).map(|i| if i % 2 == 0 { 2.0 } else { 1.0 } + 0.1 * noise(7)[i]).collect(),
-        base: Vec::new(),
+        target: (0..n).map(|i| if i % 2 == 0 { 2.0 } else { 1.0 } + 0.1 * noise(7)[i]).collect(),
+        baseline: Vec::new(),
         candidates: vec![Candidate::one(
             "velocity-loss",
             Kind::Plant,

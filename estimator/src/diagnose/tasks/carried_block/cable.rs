@@ -178,15 +178,15 @@ pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
     let cable = &study.candidates[pick];
     let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
     let at = [value(0), value(1), value(2)];
-    let tied = rows.touched(&cable.columns[0]);
-    let stiffness = study.chosen.iter().scan(study.base.len(), |first, c| {
+    let tied = rows.touched(&cable.regressors[0]);
+    let stiffness = study.chosen.iter().scan(study.baseline.len(), |first, c| {
         let own = (*first, c.candidate);
-        *first += study.candidates[c.candidate].columns.len();
+        *first += study.candidates[c.candidate].regressors.len();
         Some(own)
     });
     let place = stiffness.into_iter().find(|(_, c)| *c == pick)?.0;
     let k = study.solved.as_ref()?.values[place];
-    let mut columns: Vec<Vec<f64>> = cable.columns.iter().map(|column| column.to_vec()).collect();
+    let mut columns: Vec<Vec<f64>> = cable.regressors.iter().map(|column| column.to_vec()).collect();
     columns.extend((0..3).map(|p| {
         let moved = |step: f64| {
             let mut to = at;
@@ -196,11 +196,11 @@ pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
         let (after, before) = (moved(STEP_M), moved(-STEP_M));
         after.iter().zip(&before).map(|(a, b)| k * (a - b) / (2.0 * STEP_M)).collect()
     }));
-    columns.extend(study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
+    columns.extend(study.baseline.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
     let others = study.picks().into_iter().filter(|p| *p != pick);
-    columns.extend(others.flat_map(|p| study.candidates[p].columns.iter().map(|column| column.to_vec())));
+    columns.extend(others.flat_map(|p| study.candidates[p].regressors.iter().map(|column| column.to_vec())));
     let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
-    let fit = least_squares(&columns, &study.y, Some(&squares)).ok()?;
+    let fit = least_squares(&columns, &study.target, Some(&squares)).ok()?;
     Some([fit.std_errors[0], fit.std_errors[2], fit.std_errors[3], fit.std_errors[4]])
 }
 

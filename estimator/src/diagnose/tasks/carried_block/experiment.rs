@@ -93,12 +93,12 @@ pub fn propose(open: &[Alternative], carry: &Carry<'_>, seen: &[Seen<'_>]) -> Op
     let study = &carry.compared.study;
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().position(|c| study.candidates[c.candidate].id == first.instead_of)?;
-    let before: usize = study.chosen[..chosen].iter().map(|c| study.candidates[c.candidate].columns.len()).sum();
+    let before: usize = study.chosen[..chosen].iter().map(|c| study.candidates[c.candidate].regressors.len()).sum();
     let own = &study.candidates[study.chosen[chosen].candidate];
-    let at = study.base.len() + before;
-    let size = solved.values[at..at + own.columns.len()].iter().map(|v| v * v).sum::<f64>().sqrt();
+    let at = study.baseline.len() + before;
+    let size = solved.values[at..at + own.regressors.len()].iter().map(|v| v * v).sum::<f64>().sqrt();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max).max(1e-3);
-    let weight_n = study.y.iter().copied().fold(0.0, f64::max);
+    let weight_n = study.target.iter().copied().fold(0.0, f64::max);
     // Noise that is correlated between rows hides slow effects more.
     let slow = 1.0 - study.system.coefficients.iter().sum::<f64>();
     let variance = solved.variance(study.system.rows);

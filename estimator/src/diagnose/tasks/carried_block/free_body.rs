@@ -72,7 +72,7 @@ impl Forward for Airborne<'_> {
         let up = if axis == 1 { 1.0 } else { 0.0 };
         // A block's swinging in the pads, if it is in the model, is no motion of the grip.
         let swings = self.open() + self.ties.len() + number - 1;
-        let swing_n = |i: usize| study.base.get(swings).map_or(0.0, |column| values[swings] * column[i]);
+        let swing_n = |i: usize| study.baseline.get(swings).map_or(0.0, |column| values[swings] * column[i]);
         let force_n = |i: usize| self.rows.force_n(&self.rows.all[i]);
         let mut drive: Vec<f64> = window.iter().map(|i| force_n(*i) - up * weight_n - swing_n(*i)).collect();
         let (mut mass_kg, mut drag) = (weight_n / self.gravity_m_s2, 0.0);
@@ -83,7 +83,7 @@ impl Forward for Airborne<'_> {
                 // One mass for all blocks, or each its own.
                 inertia::ID => mass_kg += own.get(number - 1).filter(|_| own.len() > 1).unwrap_or(&own[0]),
                 viscous_friction::ID => drag += own[0],
-                added_constraint::ID if self.rows.touched(&candidate.columns[0]) != number => {}
+                added_constraint::ID if self.rows.touched(&candidate.regressors[0]) != number => {}
                 added_constraint::ID => ties.push(Cable {
                     stiffness_n_m: own[0],
                     damping_n_s_m: own.get(1).copied().unwrap_or(0.0).max(0.0),
@@ -91,7 +91,7 @@ impl Forward for Airborne<'_> {
                     length_m: at("length"),
                 }),
                 // Effects that do not depend on the motion, and faults of the sensors.
-                _ => candidate.columns.iter().zip(own).for_each(|(column, value)| {
+                _ => candidate.regressors.iter().zip(own).for_each(|(column, value)| {
                     drive.iter_mut().zip(window).for_each(|(drive, i)| *drive -= value * column[*i]);
                 }),
             }

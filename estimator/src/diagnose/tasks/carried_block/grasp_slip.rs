@@ -53,10 +53,10 @@ pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &ChannelFi
     let way = |own: &&Candidate| {
         let value = |name: &str| own.searched.iter().find(|s| s.name == name).map(|s| s.value);
         let (start_s, length_s) = (value("t0")?, value("duration")?);
-        let rest = rests.iter().position(|r| own.columns[0][r.rows.clone()].iter().any(|share| *share > 0.0))?;
+        let rest = rests.iter().position(|r| own.regressors[0][r.rows.clone()].iter().any(|share| *share > 0.0))?;
         let others = chosen.iter().filter(is_slip).filter(|c| c.searched[0].value != start_s);
         let model =
-            [model, &others.flat_map(|c| &c.columns).map(|column| column.to_vec()).collect::<Vec<_>>()].concat();
+            [model, &others.flat_map(|c| &c.regressors).map(|column| column.to_vec()).collect::<Vec<_>>()].concat();
         let left = heights.left(&model);
         let best = heights.tried(&left, Slip { rest, start_s, length_s })?;
         let (way_m, error_m) = heights.way_m(&left, best, variance_m2);

@@ -119,7 +119,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let along = vec![true; n];
     let layout = Layout::of(rows.stretch.clone(), &along, period_s);
     let study = Channel::new(y, base, candidates, layout, rules).fit()?;
-    let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
+    let pads = Pads { time_s: rows.time_s, stretch: rows.stretch, period_s, rate };
     let (channel, state) = ("distance of the tips", rows.state);
     let over = vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
     let view = View::of(rows.recording, over, best_seen);

@@ -170,8 +170,8 @@ fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<ChannelFit, Esti
     let swing = |k: usize| {
         rows.carried(|_, row, number, axis| if number == k { curves[row.recording][axis][row.i] } else { 0.0 })
     };
-    let base = channel.base.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
-    let swinging = without_remainders(Channel { base, ..channel })?;
+    let base = channel.baseline.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
+    let swinging = without_remainders(Channel { baseline: base, ..channel })?;
     Ok(if has_mass(&swinging) { plain } else { swinging })
 }
 
@@ -216,7 +216,7 @@ impl Carry<'_> {
 
     /// The same parameters with the block of a change of weight or of a cable, and with a cable's standard errors.
     pub fn of_blocks(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
-        let column = &candidate.columns[0];
+        let column = &candidate.regressors[0];
         let rows = &self.airborne.rows;
         let number = rows.touched(column);
         // Without a block, the cause concerns all blocks.
@@ -333,7 +333,7 @@ impl Simulated for Carry<'_> {
         };
         let drifts = candidate.id == force_drift::ID && candidate.searched.is_empty();
         drifts
-            && candidate.columns.iter().any(|column| {
+            && candidate.regressors.iter().any(|column| {
                 let sensors: BTreeSet<usize> =
                     (0..column.len()).filter(|i| column[*i] != 0.0).map(|i| self.compared.view.sensor[i]).collect();
                 let silent = |i: &usize| column[*i] == 0.0 && sensors.contains(&self.compared.view.sensor[*i]);

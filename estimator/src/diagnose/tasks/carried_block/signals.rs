@@ -4,6 +4,7 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CONTACT_MARGIN_S, HAND_CLOSES_S, HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
 use estimation::identify::block::placement_time::{stands_from, usual_lift};
 use estimation::identify::block::signals::{Blocks, MAIN, object};
@@ -64,10 +65,7 @@ impl<'a> Seen<'a> {
         let place = [0, 1]
             .map(|axis| smooth(time, &blocks.signals.position.iter().map(|p| p[axis]).collect::<Vec<f64>>()).value);
         let [x, y] = moving;
-        let step_s = match time.as_slice() {
-            [first, .., last] => (last - first) / (time.len() - 1) as f64,
-            _ => 1.0,
-        };
+        let step_s = mean_step_s(time);
         let period_s = 2.0 * half_width(time) as f64 * step_s;
         let mut seen = Self {
             velocity: [x.value, y.value],

@@ -202,10 +202,10 @@ impl Ground {
         let columns: Vec<&Vec<f64>> = self
             .compared
             .study
-            .base
+            .baseline
             .iter()
             .skip(self.stands.len())
-            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns).map(|column| &**column))
+            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].regressors).map(|column| &**column))
             .collect();
         for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
             give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);

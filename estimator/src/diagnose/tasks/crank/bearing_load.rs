@@ -120,7 +120,7 @@ fn prepared(track: &Track) -> Track {
 /// Removes the sensor bias, seen in free rows, from the load. A bias across the motion looks like a weight.
 fn without_bias(track: &mut Track) {
     let mean = |place: Place| {
-        let free: Vec<f64> = track.rows.iter().filter(|r| r.place == place).map(|r| r.y).collect();
+        let free: Vec<f64> = track.rows.iter().filter(|r| r.place == place).map(|r| r.target).collect();
         free.iter().sum::<f64>() / free.len().max(1) as f64
     };
     let bias = Vec2::new(mean(Place::FreeX), mean(Place::FreeY));
@@ -178,8 +178,8 @@ fn may_be(
         let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
         let picked = study.picks();
         let kept = picked.iter().map(|c| &study.candidates[*c]).filter(|c| is_kept(c.id));
-        columns.extend(kept.flat_map(|c| c.columns.iter().map(|column| column.to_vec())));
-        least_squares_values(&columns, &study.y, Some(&weights(track))).map(|fit| fit.rms)
+        columns.extend(kept.flat_map(|c| c.regressors.iter().map(|column| column.to_vec())));
+        least_squares_values(&columns, &study.target, Some(&weights(track))).map(|fit| fit.rms)
     };
     let with_causes = left(track, &|_| true)?;
     let on_bearing = left(&other, &|id| !MISTAKEN.contains(&id))?;
@@ -199,6 +199,6 @@ fn price(track: &Track, study: &ChannelFit) -> f64 {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let (heldout, train) = rms(study, &picks, &along);
     let rows = along.iter().filter(|a| **a).count() as f64;
-    let columns: usize = picks.iter().map(|c| study.candidates[*c].columns.len()).sum();
+    let columns: usize = picks.iter().map(|c| study.candidates[*c].regressors.len()).sum();
     2.0 * rows * heldout.max(train).max(1e-300).ln() + columns as f64 * rows.ln()
 }

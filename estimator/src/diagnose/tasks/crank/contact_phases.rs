@@ -1,5 +1,6 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{FEWEST, HAND_CLOSES_S, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
 use estimation::segment::segment;
 use foundation::estimate::EstimateError;
@@ -46,7 +47,7 @@ pub fn held_and_free(
             free[range.clone()].fill(true);
         }
     }
-    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let period_s = mean_step_s(time_s);
     let samples = |s: f64| (s / period_s).ceil() as usize;
     let (margin, piece) = (samples(MARGIN_S), samples(REST_WINDOW_S).max(FEWEST));
     let mut near = vec![false; n];

@@ -241,7 +241,7 @@ fn corrections(path: &Path, study: &ChannelFit, shift_m: &mut [Vec2], center_m: 
                     joint[0] * value
                 }
                 (length_scale::ID, Some(joint)) => joint[1] * value,
-                (SLIP, _) if candidate.columns.len() == 1 => {
+                (SLIP, _) if candidate.regressors.len() == 1 => {
                     outward * (value * Course::of(candidate).gone(point.time_s))
                 }
                 (SLIP, _) => Vec2::new(value, values[1]) * Course::of(candidate).gone(point.time_s),
@@ -283,7 +283,7 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
-    if rms < MUCH * white_noise(&study.y) {
+    if rms < MUCH * white_noise(&study.target) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
@@ -302,7 +302,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], a| [l.min(a), h.max(a)]);
     let arc_rad = (high - low).min(std::f64::consts::TAU);
     let bulge_m = arm.radius_m * (1.0 - (0.5 * arc_rad).cos());
-    let noise_m = white_noise(&study.y);
+    let noise_m = white_noise(&study.target);
     let variance = solved.variance(study.system.rows);
     let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
     (error_m > UNSURE * arm.radius_m).then(|| {

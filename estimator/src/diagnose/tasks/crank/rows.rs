@@ -3,7 +3,7 @@
 use super::contact_phases::held_and_free;
 use super::path::{Arm, Path, PathPoint, unwrapped};
 use crate::diagnose::data::interpolation;
-use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, offsets};
+use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, mean_step_s, offsets};
 use crate::diagnose::data::known_weight::Hung;
 use crate::diagnose::data::limits::{FAST_ROW_S, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
@@ -100,7 +100,7 @@ impl Signals {
         for (i, bad) in bad.iter().enumerate().filter(|(_, b)| **b) {
             (held[i], free[i]) = (held[i] && !bad, free[i] && !bad);
         }
-        let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+        let period_s = mean_step_s(&time_s);
         let every = (FAST_ROW_S / period_s).round().max(1.0) as usize;
         let groups = n / every;
         let mean = |values: &[Vec2]| -> Vec<Vec2> {
@@ -249,7 +249,7 @@ impl Signals {
                 let angle = before;
                 let force = self.force[i];
                 Row {
-                    stretch,
+                    segment: stretch,
                     motion: Motion {
                         time_s: self.time_s[i],
                         position: arm.radius_m * angle,
@@ -263,7 +263,7 @@ impl Signals {
                     along,
                     force,
                     force_rate: Vec2::new(rate_x[k], rate_y[k]),
-                    y: force.dot(&along),
+                    target: force.dot(&along),
                     ..Row::default()
                 }
             })
@@ -274,7 +274,7 @@ impl Signals {
     /// Adds the motion between the rows of a segment; returns the noise of its velocity, m/s, and of one recorded
     /// position, m.
     fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> [f64; 2] {
-        let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
+        let number = fine.last().map_or(0, |f: &Fine| f.segment + 1);
         let raw = &self.raw;
         // Recorded samples are thinned out, or interpolated, to about the same rate.
         let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
@@ -286,10 +286,10 @@ impl Signals {
                 let at = raw.between(i * self.every, offset);
                 let outward = arm.arm(i, at.position).normalize();
                 let along = Vec2::new(-outward.y, outward.x);
-                let near = if fine.last().is_some_and(|f| f.stretch == number) { angle } else { row.angle_rad };
+                let near = if fine.last().is_some_and(|f| f.segment == number) { angle } else { row.angle_rad };
                 angle = unwrapped(outward, near);
                 let point = Fine {
-                    stretch: number,
+                    segment: number,
                     time_s: at.time_s,
                     position: arm.radius_m * angle,
                     velocity: at.velocity.dot(&along),
@@ -298,7 +298,7 @@ impl Signals {
                 // Recorded positions, because interpolated ones have less noise.
                 places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
                 recorded.push(raw.as_recorded[at.nearest].dot(&along));
-                if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
+                if let Some(before) = fine.last().copied().filter(|f| f.segment == number) {
                     fine.extend(
                         (1..fill).map(|part| interpolation::between(&before, &point, part as f64 / fill as f64)),
                     );
@@ -318,12 +318,12 @@ impl Signals {
         for (k, range) in stretches(&self.free).into_iter().enumerate() {
             for (a, place) in [Place::FreeX, Place::FreeY].into_iter().enumerate() {
                 rows.extend(range.clone().map(|i| Row {
-                    stretch: first_stretch + 2 * k + a,
+                    segment: first_stretch + 2 * k + a,
                     place,
                     motion: Motion { time_s: self.time_s[i], ..Motion::default() },
                     along: if a == 0 { Vec2::x() } else { Vec2::y() },
                     force: self.force[i],
-                    y: self.force[i][a],
+                    target: self.force[i][a],
                     ..Row::default()
                 }));
             }
@@ -336,13 +336,13 @@ impl Signals {
 fn force_noise(rows: &[Row]) -> (f64, bool) {
     let (mut square, mut count) = (0.0, 0_usize);
     let is_free = |row: &Row| matches!(row.place, Place::FreeX | Place::FreeY);
-    for rows in rows.chunk_by(|a, b| a.stretch == b.stretch).filter(|rows| is_free(&rows[0])) {
-        let mean = rows.iter().map(|r| r.y).sum::<f64>() / rows.len() as f64;
-        square += rows.iter().map(|r| (r.y - mean).powi(2)).sum::<f64>();
+    for rows in rows.chunk_by(|a, b| a.segment == b.segment).filter(|rows| is_free(&rows[0])) {
+        let mean = rows.iter().map(|r| r.target).sum::<f64>() / rows.len() as f64;
+        square += rows.iter().map(|r| (r.target - mean).powi(2)).sum::<f64>();
         count += rows.len();
     }
     let is_measured = count > LEAST_ROWS_OF_A_FIT;
-    let along = || rows.iter().filter(|r| r.place == Place::Along).map(|r| r.y).collect::<Vec<f64>>();
+    let along = || rows.iter().filter(|r| r.place == Place::Along).map(|r| r.target).collect::<Vec<f64>>();
     let noise = if is_measured { (square / count as f64).sqrt() } else { white_noise(&along()) };
     (noise.max(1e-9), is_measured)
 }
@@ -353,12 +353,12 @@ pub fn with_axes(as_recorded: &Track, axes: Axes) -> Track {
     for row in &mut track.rows {
         row.force = axes.of(row.force);
         match row.place {
-            Place::FreeX => row.y = row.force.x,
-            Place::FreeY => row.y = row.force.y,
+            Place::FreeX => row.target = row.force.x,
+            Place::FreeY => row.target = row.force.y,
             Place::Along | Place::Stuck { .. } => {
                 row.force_rate = axes.of(row.force_rate);
                 row.motion.normal_force_n = row.force.dot(&Vec2::new(row.along.y, -row.along.x));
-                row.y = row.force.dot(&row.along);
+                row.target = row.force.dot(&row.along);
             }
         }
     }

@@ -211,7 +211,7 @@ impl Made {
         if n < LEAST_PIECES * block + 3 {
             return;
         }
-        let stretch = self.fine.last().map_or(0, |f| f.stretch + 1);
+        let stretch = self.fine.last().map_or(0, |f| f.segment + 1);
         let smooth = savitzky_golay(&piece.time_s, &piece.position, plan.half(), ORDER);
         let rate = match piece.rate.as_ref().filter(|_| plan.by_rate) {
             Some(rate) => savitzky_golay(&piece.time_s, rate, plan.half(), ORDER).value,
@@ -224,8 +224,8 @@ impl Made {
         let first_fine = self.fine.len();
         for i in (1..n).step_by(skip) {
             let (time_s, position, velocity) = (piece.time_s[i], smooth.value[i], rate[i]);
-            let point = Fine { stretch, time_s, position, velocity, ..Fine::default() };
-            if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == stretch) {
+            let point = Fine { segment: stretch, time_s, position, velocity, ..Fine::default() };
+            if let Some(before) = self.fine.last().copied().filter(|f| f.segment == stretch) {
                 self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
             }
             self.fine.push(point);
@@ -262,7 +262,7 @@ impl Made {
             ..Motion::default()
         };
         let along = Vec2::x();
-        self.rows.push(Row { stretch, motion, angle_rad: motion.position, along, span, ..Row::default() });
+        self.rows.push(Row { segment: stretch, motion, angle_rad: motion.position, along, span, ..Row::default() });
     }
 
     fn track(self, raw: &Raw, plan: &Plan, gravity_m_s2: f64) -> Track {
@@ -299,12 +299,12 @@ fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
         row.motion.velocity.abs() < SIGNIFICANT * noise[0] && row.motion.acceleration.abs() < SIGNIFICANT * noise[1]
     };
     let (mut moving, mut number) = (Vec::with_capacity(rows.len()), 0);
-    for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
+    for stretch in rows.chunk_by(|a, b| a.segment == b.segment) {
         for part in stretch.chunk_by(|a, b| still(a) == still(b)) {
             if still(&part[0]) && part.len() >= FEWEST {
                 number += 1;
             } else {
-                moving.extend(part.iter().map(|row| Row { stretch: number, ..*row }));
+                moving.extend(part.iter().map(|row| Row { segment: number, ..*row }));
             }
         }
         number += 1;

@@ -158,7 +158,7 @@ pub fn of_mechanism(
         return Ok(rate.map(sample_faults::against_motion));
     }
     for row in &mut track.rows {
-        row.y = -row.y;
+        row.target = -row.target;
         row.force = -row.force;
         row.force_rate = -row.force_rate;
     }

@@ -108,7 +108,7 @@ impl Made {
         if range.len() < LEAST_PIECES * block + 1 {
             return;
         }
-        let number = self.fine.last().map_or(0, |f| f.stretch + 1);
+        let number = self.fine.last().map_or(0, |f| f.segment + 1);
         let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
         // Rates from differences also contain the noise of the positions.
         let position = white_noise_under_fast_motion(&raw.position[range.clone()]);
@@ -143,13 +143,13 @@ impl Made {
             };
             let y = hat(force);
             self.rows.push(Row {
-                stretch: number,
+                segment: number,
                 motion,
                 angle_rad: motion.position,
                 along: Vec2::x(),
                 force: Vec2::new(y, 0.0),
                 force_rate: Vec2::new((mean(force, middle) - mean(force, before)) / half_s, 0.0),
-                y,
+                target: y,
                 span: Span { start, len: end - start, weighing: Weighing::Hat },
                 ..Row::default()
             });
@@ -166,13 +166,13 @@ impl Made {
         let fill = self.fill();
         for (k, i) in range.enumerate().step_by(skip(self.period_s)) {
             let point = Fine {
-                stretch: number,
+                segment: number,
                 time_s: raw.time_s[i],
                 position: raw.position[i],
                 velocity: calm[k],
                 ..Fine::default()
             };
-            if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
+            if let Some(before) = self.fine.last().copied().filter(|f| f.segment == number) {
                 self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
             }
             self.fine.push(point);
@@ -184,7 +184,7 @@ impl Made {
         let column = |of: &dyn Fn(&Motion) -> f64| self.rows.iter().map(|r| of(&r.motion)).collect::<Vec<f64>>();
         let columns =
             [column(&|m| m.acceleration), column(&|m| m.velocity), column(&|m| m.velocity.signum()), column(&|_| 1.0)];
-        let y: Vec<f64> = self.rows.iter().map(|r| r.y).collect();
+        let y: Vec<f64> = self.rows.iter().map(|r| r.target).collect();
         least_squares(&columns, &y, None).map_or(0.0, |fit| fit.values[0])
     }
 

@@ -22,7 +22,7 @@ fn inertia(needle: &Needle, mass: usize, values: &[f64]) -> Vec<Effect> {
 
 /// Regressors of candidates with their coefficients.
 fn faults<'a>(of: impl Iterator<Item = (&'a Candidate, &'a [f64])>) -> impl Iterator<Item = (&'a [f64], f64)> {
-    of.flat_map(|(candidate, own)| candidate.columns.iter().map(|c| c.as_slice()).zip(own.iter().copied()))
+    of.flat_map(|(candidate, own)| candidate.regressors.iter().map(|c| c.as_slice()).zip(own.iter().copied()))
 }
 
 /// Simulation of a needle outside of a sheet, and on one that is not pierced yet.
@@ -65,7 +65,7 @@ impl Forward for Pressed<'_> {
         let elastic = |x: f64| first_push_n(needle.stiffness_n_m, law, x);
         let laws: Vec<(Law, f64)> = fit.causes().filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
         let of_motion = [Some(holds), needle.two_fingered.then_some(holds + 1)];
-        let of_model = fit.columns().take(fit.study.base.len()).enumerate();
+        let of_model = fit.columns().take(fit.study.baseline.len()).enumerate();
         let constant = of_model.filter(|(k, _)| !of_motion.contains(&Some(*k))).map(|(_, column)| column);
         let of_faults = faults(fit.causes().filter(|(c, _)| Law::of(c).is_none()));
         let beside: Vec<(&[f64], f64)> = constant.chain(of_faults).collect();

@@ -12,8 +12,8 @@ use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::basis_functions::{FEW_WAVES, generic_of};
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
-use crate::diagnose::hypotheses::library::Dictionary;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
@@ -70,9 +70,9 @@ impl Shaft<'_> {
         let rows = rows(needle);
         let track = seen(needle, &rows);
         Imagined {
-            base: base(needle, &rows, law),
+            baseline: base(needle, &rows, law),
             candidates: candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track))),
-            stretch: rows.iter().map(|r| r.stretch).collect(),
+            segment: rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; rows.len()],
         }
     }
@@ -292,7 +292,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     let along = rows
         .iter()
         .map(|r| regression_data::Row {
-            stretch: r.stretch,
+            segment: r.stretch,
             motion: Motion {
                 time_s: r.time_s - start_s,
                 position: r.depth_m,
@@ -303,7 +303,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
             angle_rad: r.depth_m,
             along: Vec2::x(),
             force: Vec2::new(r.force_n, 0.0),
-            y: r.force_n,
+            target: r.force_n,
             span: r.span,
             ..regression_data::Row::default()
         })

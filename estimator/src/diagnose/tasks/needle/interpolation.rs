@@ -1,6 +1,6 @@
 //! Motion between the rows of a hole, for reversals within a row and for laws with memory.
 
-use crate::diagnose::data::interpolation::FINE_HZ;
+use crate::diagnose::data::interpolation::{FINE_HZ, mean_step_s};
 use crate::diagnose::data::regression_data::{Fine, Span, Weighing};
 use foundation::signal::task::Smoothed;
 use std::ops::Range;
@@ -17,10 +17,7 @@ pub struct Between {
 impl Between {
     /// `half`: half width of a row's mean, in samples; rows are twice as many apart. `in_hole`: flag of each sample.
     pub fn new(time_s: &[f64], depth: &Smoothed, surface_m: f64, in_hole: &[bool], half: usize) -> Self {
-        let step_s = match time_s {
-            [first, .., last] => (last - first) / (time_s.len() - 1) as f64,
-            _ => 1.0,
-        };
+        let step_s = mean_step_s(time_s);
         // Rows coincide with points, so the points are symmetric about each row.
         let most = (1.0 / (FINE_HZ * step_s.max(1e-9))) as usize;
         let every = (1..=most.max(1)).rev().find(|every| (2 * half).is_multiple_of(*every)).unwrap_or(1);
@@ -30,7 +27,7 @@ impl Between {
             for i in run.filter(|i| i.is_multiple_of(every)) {
                 of[i / every] = Some(points.len());
                 points.push(Fine {
-                    stretch,
+                    segment: stretch,
                     time_s: time_s[i] - time_s[0],
                     position: depth.value[i] - surface_m,
                     velocity: depth.slope[i],
@@ -84,6 +81,6 @@ mod tests {
             let mean: f64 = span.weights().map(|(k, weight)| weight * found.points[k].position).sum();
             assert!(!inside || (mean - time_s[i]).abs() < 1e-12, "{i}: {mean}");
         }
-        assert_eq!(found.points.last().map(|p| p.stretch), Some(1));
+        assert_eq!(found.points.last().map(|p| p.segment), Some(1));
     }
 }

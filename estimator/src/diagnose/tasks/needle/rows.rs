@@ -4,6 +4,7 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::interpolation::Between;
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSES_S, PAUSE_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
@@ -222,14 +223,6 @@ fn demand_a_push(pushes: &[Push], recording: &Recording) -> Result<(), EstimateE
         )));
     }
     Ok(())
-}
-
-/// Mean time between samples, s.
-fn mean_step_s(time: &[f64]) -> f64 {
-    match time {
-        [first, .., last] => (last - first) / (time.len() - 1) as f64,
-        _ => 1.0,
-    }
 }
 
 /// Noise of the slope of a line through a window of `half` samples to either side, a second.

@@ -38,9 +38,9 @@ impl Columns {
     /// The same as predicted rows.
     pub fn imagined(self) -> Imagined {
         Imagined {
-            stretch: self.rows.iter().map(|r| r.stretch).collect(),
+            segment: self.rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; self.rows.len()],
-            base: self.base,
+            baseline: self.base,
             candidates: self.candidates,
         }
     }
@@ -274,7 +274,8 @@ fn said_by_a_row(
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == force_drift::ID || c.expression.is_some());
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
-    let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns).map(|c| &**c)).map(here).collect();
+    let mut columns: Vec<Vec<f64>> =
+        base.iter().chain(slow.flat_map(|c| &c.regressors).map(|c| &**c)).map(here).collect();
     columns.retain(|column| column.iter().any(|v| *v != 0.0));
     let y: Vec<f64> = free.iter().map(|i| rows[*i].force_n).collect();
     if y.len() < 2 * columns.len() {
@@ -304,7 +305,7 @@ fn said_by_a_row(
 pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
-    let mut place = study.base.len();
+    let mut place = study.baseline.len();
     for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
         let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
         level += match candidate.id {
@@ -312,7 +313,7 @@ pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
             force_drift::ID if own => solved.values[place] * at.time_s,
             _ => 0.0,
         };
-        place += candidate.columns.len();
+        place += candidate.regressors.len();
     }
     level
 }

@@ -157,7 +157,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
         }
     }
     let weight = vec![1.0; points.len()];
-    Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight }
+    Imagined { baseline: base(&points), candidates: candidates(&points, known, false), segment: stretch, weight }
 }
 
 /// Travel and speed of a smooth movement, every `period_s`.
@@ -189,7 +189,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     for place in PLACES.values().map(|share| half * (2.0 * share - 1.0)) {
         for width in CURVE_WIDTHS.values().map(|share| 2.0 * half * share) {
             let bind = one(local_resistance::ID, "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
-            if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_PHASE_SAMPLES {
+            if bind.regressors[0].iter().filter(|v| **v > 0.3).count() >= LEAST_PHASE_SAMPLES {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
             }
         }
@@ -208,7 +208,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
 
 /// A cause that must reach some force, N, where it acts.
 fn seen(candidate: Candidate, least_n: f64) -> Candidate {
-    let column = &candidate.columns[0];
+    let column = &candidate.regressors[0];
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
     let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();

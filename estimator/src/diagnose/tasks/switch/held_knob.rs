@@ -53,7 +53,7 @@ impl Travel {
 
 /// Contribution of a candidate to a row, N.
 fn added(candidate: &Candidate, own: &[f64], row: usize) -> f64 {
-    candidate.columns.iter().zip(own).map(|(column, value)| value * column[row]).sum()
+    candidate.regressors.iter().zip(own).map(|(column, value)| value * column[row]).sum()
 }
 
 /// Free-run model of a knob whose curve is estimated.
@@ -103,13 +103,13 @@ impl Forward for Thrown {
         let drag: f64 = fit.causes().filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
         let drive = |i: usize| {
             let beside = fit.causes().filter(|(c, _)| !is_drag(c));
-            fit.study.y[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
+            fit.study.target[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
         let acts = |motion: &Motion| {
             curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
         };
         // The mass is the last regressor of the model.
-        Ok(self.travel.errors(window, fit.values[fit.study.base.len() - 1], &drive, &acts))
+        Ok(self.travel.errors(window, fit.values[fit.study.baseline.len() - 1], &drive, &acts))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
 //! that touch nothing.
 
+use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
@@ -159,7 +160,7 @@ fn one(recording: &Recording, number: usize, bad: &[bool], all: &mut Seen) -> Re
         )));
     }
     let n = time_s.len();
-    let step_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let step_s = mean_step_s(time_s);
     let block = (FAST_ROW_S / step_s).round().max(1.0) as usize;
     let usable = |k: usize| !(k * block..(k + 1) * block).any(|i| bad.get(i).copied().unwrap_or(false));
     let blocks = n / block;

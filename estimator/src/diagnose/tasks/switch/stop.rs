@@ -71,7 +71,7 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
     let view = View { sensor: rows.iter().map(side).collect(), ..by_force };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
     // Pads have damping: the first regressor is the rate.
-    let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
+    let pads = Pads { time_s: of(&|r| r.time_s), stretch, period_s: seen.period_s, rate: 0 };
     Ok(Some(Pressed { compared: Compared { study, channel, unit: "m", floor, along, state, view }, pads }))
 }
 

@@ -217,8 +217,8 @@ fn view(rows: &[Row]) -> View {
 fn of_found(study: &ChannelFit, rows: usize) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     let Some(solved) = &study.solved else { return sum };
-    let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].columns);
-    for (column, value) in columns.zip(&solved.values[study.base.len()..]) {
+    let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].regressors);
+    for (column, value) in columns.zip(&solved.values[study.baseline.len()..]) {
         sum.iter_mut().zip(column.iter()).for_each(|(s, c)| *s += value * c);
     }
     sum
@@ -266,9 +266,9 @@ impl Push {
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
         Imagined {
-            base: base(&seen.rows, &self.curves),
+            baseline: base(&seen.rows, &self.curves),
             candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
-            stretch: seen.stretch.clone(),
+            segment: seen.stretch.clone(),
             weight: vec![1.0; seen.rows.len()],
         }
     }

@@ -4,6 +4,7 @@ use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
 use crate::diagnose::data::limits::FEWEST;
+use crate::diagnose::data::row_means::spread;
 use crate::diagnose::free_run::channel::{Fit, Forward};
 use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -57,7 +58,9 @@ pub fn sliding(seen: &Tossed, mu: f64, scatter: f64) -> Result<Option<Slides>, E
     let y: Vec<f64> = moved.iter().zip(&dry).map(|(m, d)| m - mu * d).collect();
     // A change of friction smaller than the scatter between slides is within the uncertainty of their common friction.
     let differ = differ(&ways, fall);
-    let least = |of: &dyn Fn(f64) -> f64| differ * fall / spread(&speeds.iter().map(|v| of(*v)).collect::<Vec<f64>>());
+    let least = |of: &dyn Fn(f64) -> f64| {
+        differ * fall / spread(&speeds.iter().map(|v| of(*v)).collect::<Vec<f64>>()).max(f64::MIN_POSITIVE)
+    };
     let follows = |id, name, unit, of: &dyn Fn(f64) -> f64| {
         Candidate::one(id, Kind::Plant, name, unit, all(of)).positive().at_least(least(of))
     };
@@ -214,13 +217,6 @@ fn differ(ways: &[Way], fall_m_s2: f64) -> f64 {
     let left = sum(&|e| (e.0 - friction - slope * (e.2 - speed)).powi(2));
     let by_noise = (each.len() as f64 - 2.0).max(0.0) * noise_m * noise_m;
     ((left - by_noise).max(0.0) / weights).sqrt()
-}
-
-/// Standard deviation.
-fn spread(values: &[f64]) -> f64 {
-    let n = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// Residual of the paths from cubics, m.

@@ -97,8 +97,8 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
     let study = closer(&mut [Tried::new(hysteresis::ID, high - low)], &once)?;
     let told = if is_loaded { Confounding::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
-    let input = Input::new((&rows, &stretch), names.force_unit, inertia, seen);
     let compared = compared(study, (&rows, names), ("force at the input", names.force_unit), floor);
+    let input = Input { rows, stretch, unit: names.force_unit, inertia, middle };
     Ok(Some(Force { compared, told, input }))
 }
 
@@ -138,8 +138,8 @@ impl Confounding {
         let used: Vec<usize> = (0..rows.len())
             .filter(|i| study.layout.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
             .collect();
-        let others = study.base.iter().enumerate().filter(|(k, _)| *k != load).map(|(_, column)| column.as_slice());
-        let columns: Vec<&[f64]> = others.chain([direction, study.base[load].as_slice()]).collect();
+        let others = study.baseline.iter().enumerate().filter(|(k, _)| *k != load).map(|(_, column)| column.as_slice());
+        let columns: Vec<&[f64]> = others.chain([direction, study.baseline[load].as_slice()]).collect();
         let gram = nalgebra::DMatrix::from_fn(columns.len(), columns.len(), |a, b| {
             used.iter().map(|i| columns[a][*i] * columns[b][*i]).sum::<f64>()
         });
@@ -193,12 +193,6 @@ pub struct Input {
 }
 
 impl Input {
-    /// `unit`: of the force; `inertia`: index of the acceleration among the model's regressors.
-    pub fn new((rows, stretch): (&[Row], &[usize]), unit: &'static str, inertia: usize, seen: &Seen) -> Self {
-        let (low, high) = seen.ends();
-        Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
-    }
-
     /// Law of a friction of this size, or of a cause that is a law by itself.
     fn law(&self, id: &str, value: f64) -> Option<Effect> {
         Some(match id {
@@ -256,7 +250,7 @@ impl Forward for Input {
     fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
         let effects = self.effects(fit).ok_or_else(|| NO_LAW.to_owned())?;
         // The sensors' zeros and the load drive it; they are no laws.
-        let of_model = fit.columns().take(fit.study.base.len()).enumerate().filter(|(k, _)| *k != self.inertia);
+        let of_model = fit.columns().take(fit.study.baseline.len()).enumerate().filter(|(k, _)| *k != self.inertia);
         let beside: Vec<(&[f64], f64)> = of_model.map(|(_, column)| column).collect();
         let row = |i: usize| (self.motion(i), fit.less(i, &beside));
         let first = window[0];

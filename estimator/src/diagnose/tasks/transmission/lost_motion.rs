@@ -2,11 +2,12 @@
 
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
-use super::rows::{Columns, Row, Seen, constants, ratio, spread};
+use super::rows::{Columns, Row, Seen, constants, ratio};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::SIGNIFICANT;
+use crate::diagnose::data::row_means::spread;
 use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
@@ -41,8 +42,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let share = Shape::Share { least: LEAST_SHARE * lever, whole: f64::NEG_INFINITY, most: LARGEST_SHARE * lever };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let least =
-        |column: &[f64]| (SIGNIFICANT * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
+    let smallest = (SIGNIFICANT * noise).max(STEPS_OF_SENSOR * seen.step);
+    let least = |column: &[f64]| smallest / spread(column).max(f64::MIN_POSITIVE);
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
@@ -59,11 +60,10 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let late = of(&|r| -r.rate);
     let least_late = least(&late).max(CLOCKS_DIFFER_S * lever.abs());
     let rate_noise = seen.fine.iter().map(Fine::rate_noise).fold(0.0, f64::max);
-    plain.push(
-        Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late).at_least(least_late).noisy(rate_noise),
-    );
+    let delay = Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late);
+    plain.push(delay.at_least(least_late).noisy(rate_noise));
     plain.extend(generic(rows, low, high).into_iter().map(|term| {
-        let least = least(&term.columns[0]);
+        let least = least(&term.regressors[0]);
         term.at_least(least)
     }));
     let once = |tried: &[Tried]| {

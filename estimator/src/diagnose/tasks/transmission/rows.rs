@@ -141,10 +141,3 @@ pub fn ratio(rows: &[Row]) -> f64 {
     }
     product / square.max(f64::MIN_POSITIVE)
 }
-
-/// Standard deviation.
-pub fn spread(values: &[f64]) -> f64 {
-    let n = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
-}

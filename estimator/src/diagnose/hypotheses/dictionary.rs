@@ -112,7 +112,7 @@ impl Dictionary<'_> {
                 direction: point.direction,
                 ..Motion::default()
             };
-            match k.checked_sub(1).map(|before| track.fine[before]).filter(|before| before.stretch == point.stretch) {
+            match k.checked_sub(1).map(|before| track.fine[before]).filter(|before| before.segment == point.segment) {
                 // The mean speed between two points.
                 Some(before) => {
                     let mean = motion(0.5 * (before.velocity + point.velocity));
