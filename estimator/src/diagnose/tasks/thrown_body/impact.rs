@@ -28,12 +28,17 @@ const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
 /// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
-/// Change of the velocity there from which a blow begins, and least speed of a blow, m/s.
+/// Change of the velocity there from which a blow begins, m/s.
 const BLOW_M_S: f64 = 0.15;
+/// Least speed of a blow, m/s: the scatter of a slower one is as large as its restitution.
+const SLOW_M_S: f64 = 0.4;
 /// Change of the velocity up to which a blow is over, and up to which two velocities are equal, m/s.
 const STILL_M_S: f64 = 0.10;
 /// Height within which a second corner hits at the same time, in half widths.
 const SECOND_CORNER_HEIGHT: f64 = 0.1;
+/// Scatter of the blows about one restitution, as a share of their speed, above which most were several blows. They
+/// then determine none.
+const MIXED: f64 = 0.25;
 /// Ratio of a normal distribution's standard deviation to its median absolute value.
 /// Derived: 1/0.6745, the inverse median absolute deviation of a standard normal distribution (Hampel 1974).
 const OVER_MEDIAN: f64 = 1.4826;
@@ -56,9 +61,12 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
     if pairs.len() < LEAST_PIECES {
         return Ok(None);
     }
-    let pairs = without_second_blows(pairs);
+    let (pairs, scatter_m_s) = without_second_blows(pairs);
     let n = pairs.len();
     let speed = (pairs.iter().map(|(before, _)| before * before).sum::<f64>() / n as f64).sqrt();
+    if scatter_m_s > MIXED * speed {
+        return Ok(None);
+    }
     let step_s = seen.tracks.iter().map(Track::step_s).sum::<f64>() / seen.tracks.len() as f64;
     let pushed = UNSEEN * seen.fall.down_m_s2 * step_s / speed;
     let y: Vec<f64> = pairs.iter().map(|(before, after)| after + restitution * before).collect();
@@ -99,8 +107,8 @@ impl Told for Blows {
 }
 
 /// Pairs of speeds before and after, but those that are far off the rest: there, a second corner hit before the next
-/// sample.
-fn without_second_blows(pairs: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+/// sample. The scatter of the rest, m/s, is returned beside them.
+fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
@@ -108,7 +116,7 @@ fn without_second_blows(pairs: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let kept = median(&mut pairs.iter().map(|(before, after)| after / before).collect());
     let off = |(before, after): &(f64, f64)| (after - kept * before).abs();
     let scatter_m_s = OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
-    pairs.into_iter().filter(|pair| off(pair) <= SIGNIFICANT * scatter_m_s).collect()
+    (pairs.into_iter().filter(|pair| off(pair) <= SIGNIFICANT * scatter_m_s).collect(), scatter_m_s)
 }
 
 /// Upward velocity of the corner that hits first, before and after, m/s.
@@ -138,7 +146,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     }
     let up = |of: &Free, spin: Vector3<f64>| of.rise_m_s(at_s, fall_m_s2) + spin.cross(&arm).z;
     let (down, rebound) = (up(&falls, spin_before), up(&rises, spin_after));
-    (down < -BLOW_M_S).then_some((down, rebound))
+    (down < -SLOW_M_S).then_some((down, rebound))
 }
 
 /// A first blow, and the free flight on either side of it.
