@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 
 /// Tried directions of the anchor from the middle of the carries, in turns, and inverse distances in 1/half ranges; 0
 /// is a wall.
-const DIRECTIONS: Axis = Axis::cells(20);
+const ANCHOR_DIRECTIONS: Axis = Axis::cells(20);
 const NEARNESS: Axis = Axis::even(0.0, 0.6, 3);
 /// Tried shares of the carries in which the cable is slack.
 const SLACK_SHARES: Axis = Axis::even(0.15, 0.88, 5);
@@ -75,7 +75,7 @@ fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64])
         explains.worth(&pull(rows, number, anchor, length), weight)
     };
     let mut tried: Vec<(f64, Tie)> = Vec::new();
-    for (turn, nearness) in DIRECTIONS.values().flat_map(|turn| NEARNESS.values().map(move |d| (turn, d))) {
+    for (turn, nearness) in ANCHOR_DIRECTIONS.values().flat_map(|turn| NEARNESS.values().map(move |d| (turn, d))) {
         let direction = TAU * turn;
         let (anchor, away) = field.anchor_and_length(Tie([direction, nearness, 0.0]));
         let mut lengths: Vec<f64> = places.iter().map(|p| ((p - anchor).norm() - away) / range_m).collect();
