@@ -6,6 +6,7 @@
 use blind::{Counts, Set, battery};
 use estimator::ablation::{reset, vary};
 use estimator::diagnose::{Findings, Options, diagnose};
+use estimator::estimate::Fit;
 use estimator::pipeline::{self, analyse};
 use haptics::recording::Recording;
 use serde_json::{Value, json};
@@ -76,8 +77,8 @@ impl Change {
 
 fn main() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    let [seed, part, parts, every, enough] =
-        ["ABLATE_SEED", "ABLATE_PART", "ABLATE_PARTS", "ABLATE_EVERY", "ABLATE_ENOUGH"]
+    let [seed, part, parts, every, enough, most] =
+        ["ABLATE_SEED", "ABLATE_PART", "ABLATE_PARTS", "ABLATE_EVERY", "ABLATE_ENOUGH", "ABLATE_CASES"]
             .map(|name| number(name).unwrap_or_else(|| panic!("{name} is not set to a whole number")));
     let list = |name: &str| std::env::var(name).unwrap_or_default().split(',').map(str::to_owned).collect::<Vec<_>>();
     let factors: Vec<f64> = list("ABLATE_FACTORS").iter().filter_map(|text| text.parse().ok()).collect();
@@ -85,11 +86,17 @@ fn main() {
     // A constant far from its value may break an invariant: that is an answer, too, and needs no text.
     set_hook(Box::new(|_| {}));
     let mut changed: HashMap<(usize, usize), u64> = HashMap::new();
-    for make in cases(seed, every as usize).into_iter().skip(part as usize).step_by(parts as usize) {
+    let cases = cases(seed, every as usize).into_iter().take(usize::try_from(most).unwrap_or(usize::MAX));
+    for make in cases.skip(part as usize).step_by(parts as usize) {
         let case = make();
         drop(reset());
-        let was = ask(&case);
-        let read = reset();
+        let diagnosis = diagnosed(&case);
+        let read_by_diagnosis: HashSet<usize> = reset().into_iter().collect();
+        let fit = fitted(&case);
+        let read_by_fit: HashSet<usize> = reset().into_iter().collect();
+        let was = Outcome::of(&case, &diagnosis, &fit);
+        let mut read: Vec<usize> = read_by_diagnosis.union(&read_by_fit).copied().collect();
+        read.sort_unstable();
         let mut variants = Vec::new();
         for &index in read.iter().filter(|index| only.is_empty() || only.contains(*index)) {
             for (which, &factor) in factors.iter().enumerate() {
@@ -98,7 +105,11 @@ fn main() {
                     continue;
                 }
                 vary(index, factor);
-                let change = Change::between(&was, &ask(&case));
+                // A stage that does not read the constant answers as before.
+                let again = read_by_diagnosis.contains(&index).then(|| diagnosed(&case));
+                let refit = read_by_fit.contains(&index).then(|| fitted(&case));
+                let is = Outcome::of(&case, again.as_ref().unwrap_or(&diagnosis), refit.as_ref().unwrap_or(&fit));
+                let change = Change::between(&was, &is);
                 drop(reset());
                 if matches!(change, Change::Words | Change::Worse | Change::Better) {
                     *changes += 1;
@@ -110,46 +121,55 @@ fn main() {
     }
 }
 
-/// Diagnoses and fits a case.
-fn ask(case: &Case) -> Outcome {
-    let panicked = |_| Err("panic".to_owned());
-    let diagnosed = || diagnose(&case.recordings, &case.options).map_err(|e| e.to_string());
-    let answer = catch_unwind(AssertUnwindSafe(diagnosed)).unwrap_or_else(panicked);
+/// Diagnoses a case; a panic is an answer, too.
+fn diagnosed(case: &Case) -> Result<Findings, String> {
+    let ask = || diagnose(&case.recordings, &case.options).map_err(|e| e.to_string());
+    catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| Err("panic".to_owned()))
+}
+
+/// Fits a case; a panic is an answer, too.
+fn fitted(case: &Case) -> Result<Fit, String> {
     let options = pipeline::Options { task: case.options.task, ..pipeline::Options::default() };
-    let fitted = || analyse(&case.recordings, &options).map(|a| a.fit).map_err(|e| e.to_string());
-    let fit = catch_unwind(AssertUnwindSafe(fitted)).unwrap_or_else(|_| Err("panic".to_owned()));
-    let mut estimates = HashMap::new();
-    let mut words = Vec::new();
-    let mut digits = DefaultHasher::new();
-    match &answer {
-        Ok(findings) => {
-            let said = serde_json::to_value(&findings.diagnosis).unwrap_or(Value::Null);
-            said.to_string().hash(&mut digits);
-            words.push(format!("{:?}", findings.verdict));
-            words.extend(findings.causes.iter().map(|c| c.id.clone()));
-            words.push("or".to_owned());
-            words.extend(findings.alternatives.iter().map(|a| a.id.clone()));
-            for cause in &findings.causes {
-                for p in &cause.parameters {
-                    estimates.insert(format!("{} {}", cause.id, p.name), (p.value, p.std_error));
+    let ask = || analyse(&case.recordings, &options).map(|a| a.fit).map_err(|e| e.to_string());
+    catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| Err("panic".to_owned()))
+}
+
+impl Outcome {
+    fn of(case: &Case, answer: &Result<Findings, String>, fit: &Result<Fit, String>) -> Self {
+        let mut estimates = HashMap::new();
+        let mut words = Vec::new();
+        let mut digits = DefaultHasher::new();
+        match answer {
+            Ok(findings) => {
+                let said = serde_json::to_value(&findings.diagnosis).unwrap_or(Value::Null);
+                said.to_string().hash(&mut digits);
+                words.push(format!("{:?}", findings.verdict));
+                words.extend(findings.causes.iter().map(|c| c.id.clone()));
+                words.push("or".to_owned());
+                words.extend(findings.alternatives.iter().map(|a| a.id.clone()));
+                for cause in &findings.causes {
+                    for p in &cause.parameters {
+                        estimates.insert(format!("{} {}", cause.id, p.name), (p.value, p.std_error));
+                    }
                 }
             }
+            Err(sentence) => words.push(sentence.clone()),
         }
-        Err(sentence) => words.push(sentence.clone()),
-    }
-    match &fit {
-        Ok(fit) => {
-            serde_json::to_string(fit).unwrap_or_default().hash(&mut digits);
-            for p in &fit.parameters {
-                words.push(format!("{}{}", p.name, if p.identified { "" } else { "?" }));
-                if let (true, Some(value), Some(error)) = (p.identified, p.value, p.std_error) {
-                    estimates.insert(p.name.clone(), (value, error));
+        match fit {
+            Ok(fit) => {
+                serde_json::to_string(fit).unwrap_or_default().hash(&mut digits);
+                for p in &fit.parameters {
+                    words.push(format!("{}{}", p.name, if p.identified { "" } else { "?" }));
+                    if let (true, Some(value), Some(error)) = (p.identified, p.value, p.std_error) {
+                        estimates.insert(p.name.clone(), (value, error));
+                    }
                 }
             }
+            Err(sentence) => words.push(sentence.clone()),
         }
-        Err(sentence) => words.push(sentence.clone()),
+        let is_right = (case.is_right)(answer.clone());
+        Self { digits: digits.finish(), estimates, words: words.join(" "), is_right }
     }
-    Outcome { digits: digits.finish(), estimates, words: words.join(" "), is_right: (case.is_right)(answer) }
 }
 
 /// Every `every`-th case of the fast blind battery, and every kind of every other task once.

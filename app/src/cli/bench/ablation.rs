@@ -30,6 +30,9 @@ pub struct AblationBench {
     /// Only every so many cases of the blind battery
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     every: u64,
+    /// Only so many cases of each seed, spread over all tasks
+    #[arg(long)]
+    cases: Option<u64>,
     /// A factor of a constant is tried no more after so many changed answers of one process
     #[arg(long, default_value_t = 3)]
     enough: u64,
@@ -116,7 +119,10 @@ impl AblationBench {
             child.env("ABLATE_SEED", seed.to_string()).env("ABLATE_PART", part.to_string());
             child.env("ABLATE_PARTS", parts.to_string()).env("ABLATE_EVERY", self.every.to_string());
             child.env("ABLATE_ENOUGH", self.enough.to_string()).env("ABLATE_FACTORS", factors.join(","));
-            child.env("ABLATE_ONLY", only.join(",")).env("RAYON_NUM_THREADS", "1");
+            child
+                .env("ABLATE_ONLY", only.join(","))
+                .env("ABLATE_CASES", self.cases.unwrap_or(u64::MAX).to_string())
+                .env("RAYON_NUM_THREADS", "1");
             let mut child = child.stdout(Stdio::piped()).spawn().context("the cases run")?;
             let lines = BufReader::new(child.stdout.take().context("a process without output")?).lines();
             let mut cases = Vec::new();

@@ -1,8 +1,7 @@
 //! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
 
-use super::normal_equations::{ROUNDING, Solved, System};
+use super::normal_equations::{Solved, System};
 use super::rules::Rules;
-use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::{Form, Relation};
@@ -12,13 +11,15 @@ use std::collections::HashMap;
 /// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
 /// of two.
 pub const MANY: usize = 2;
-/// Most causes at once.
+/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
 const MOST_CAUSES: usize = 4;
-/// Number of further causes if the model has no friction.
-/// Derived: dry and viscous friction, which the model then lacks.
 const FRICTIONS: usize = 2;
+/// Rounds of swapping after each addition.
+const SWAP_ROUNDS: usize = 3;
 /// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
+/// Relative change of the folds' errors below which they did not test a cause.
+const UNTESTED: f64 = 1e-8;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
 
@@ -46,6 +47,8 @@ pub struct Stepwise<'a> {
     prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
 
+/// Squared correlation of two causes' estimates from which they count as one.
+const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const CANCELLED_SHARE: f64 = 0.1;
 
@@ -241,7 +244,7 @@ impl Stepwise<'_> {
     }
 
     pub(crate) fn swap(&self, chosen: &mut [usize]) {
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..SWAP_ROUNDS {
             let mut changed = false;
             for k in 0..chosen.len() {
                 let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
@@ -303,6 +306,9 @@ impl Stepwise<'_> {
             let first = self.system.base + (0..k).map(count).sum::<usize>();
             first..first + count(k)
         };
+        let covariance = |a: usize, b: usize| solved.inverse[(own(a).start, own(b).start)];
+        let single = |o: usize| count(k) == 1 && count(o) == 1;
+        let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
         let taken_back = |o: usize| {
             let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
             let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
@@ -315,7 +321,7 @@ impl Stepwise<'_> {
             self.plain_price(&rest)
                 .is_some_and(|less| less - self.price(chosen) > self.rules.sure * self.rules.threshold)
         };
-        (0..chosen.len()).filter(|o| *o != k).any(|o| taken_back(o) && !sure(o) && left(k) < left(o))
+        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
     }
 
     /// Sum of squares, over the training rows, of the contribution of these regressors to a solution.
@@ -338,7 +344,7 @@ impl Stepwise<'_> {
         // If only rows that are never held out determine it (a bias beside gravity: the free rows), the folds do not
         // change.
         let gain = before - after;
-        if self.is_spared(chosen, k, (before, after)) {
+        if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
             return self.clear(chosen, k);
         }
         gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
@@ -350,7 +356,7 @@ impl Stepwise<'_> {
         let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
         let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
         let score = self.plain_price(&without(chosen, k)).map_or(0.0, |less| less - self.price(chosen));
-        (-ROUNDING..SPARED * score).contains(&lost)
+        (0.0..SPARED * score).contains(&lost)
     }
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {
