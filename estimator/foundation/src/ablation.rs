@@ -33,6 +33,8 @@ impl Scale for f64 {
 macro_rules! whole_numbers {
     ($($kind:ty)*) => {$(
         impl Scale for $kind {
+            // One body for all widths.
+            #[allow(clippy::cast_lossless)]
             fn scaled(self, factor: f64) -> Self {
                 (self as f64 * factor).round() as Self
             }
