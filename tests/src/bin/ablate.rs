@@ -9,6 +9,7 @@ use estimator::diagnose::{Findings, Options, diagnose};
 use estimator::estimate::Fit;
 use estimator::pipeline::{self, analyse};
 use haptics::recording::Recording;
+use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -20,6 +21,22 @@ const MOVED_ERRORS: f64 = 0.5;
 
 /// Prints the score of an answer: right or not.
 type Judge = Box<dyn Fn(Result<Findings, String>) -> bool>;
+
+/// Part of the work of the bench, its one argument.
+#[derive(Deserialize)]
+struct Task {
+    seed: u64,
+    /// Every `parts`-th case is asked, from this one on.
+    part: usize,
+    parts: usize,
+    /// Largest number of cases; none: all.
+    cases: Option<usize>,
+    /// A factor of a constant is tried no more after so many changed answers.
+    enough: u64,
+    factors: Vec<f64>,
+    /// Indices of the constants that are varied.
+    varied: Vec<usize>,
+}
 
 /// A case, its scorer closed over its truth.
 struct Case {
@@ -76,18 +93,14 @@ impl Change {
 }
 
 fn main() {
-    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    let [seed, part, parts, every, enough, most] =
-        ["ABLATE_SEED", "ABLATE_PART", "ABLATE_PARTS", "ABLATE_EVERY", "ABLATE_ENOUGH", "ABLATE_CASES"]
-            .map(|name| number(name).unwrap_or_else(|| panic!("{name} is not set to a whole number")));
-    let list = |name: &str| std::env::var(name).unwrap_or_default().split(',').map(str::to_owned).collect::<Vec<_>>();
-    let factors: Vec<f64> = list("ABLATE_FACTORS").iter().filter_map(|text| text.parse().ok()).collect();
-    let only: HashSet<usize> = list("ABLATE_ONLY").iter().filter_map(|text| text.parse().ok()).collect();
+    let task = std::env::args().nth(1).unwrap_or_default();
+    let task: Task = serde_json::from_str(&task).unwrap_or_else(|e| panic!("the argument is no task: {e}"));
+    let varied: HashSet<usize> = task.varied.into_iter().collect();
     // A constant far from its value may break an invariant: that is an answer, too, and needs no text.
     set_hook(Box::new(|_| {}));
     let mut changed: HashMap<(usize, usize), u64> = HashMap::new();
-    let cases = cases(seed, every as usize).into_iter().take(usize::try_from(most).unwrap_or(usize::MAX));
-    for make in cases.skip(part as usize).step_by(parts as usize) {
+    let cases = cases(task.seed).into_iter().take(task.cases.unwrap_or(usize::MAX));
+    for make in cases.skip(task.part).step_by(task.parts) {
         let case = make();
         drop(reset());
         let diagnosis = diagnosed(&case);
@@ -98,10 +111,10 @@ fn main() {
         let mut read: Vec<usize> = read_by_diagnosis.union(&read_by_fit).copied().collect();
         read.sort_unstable();
         let mut variants = Vec::new();
-        for &index in read.iter().filter(|index| only.is_empty() || only.contains(*index)) {
-            for (which, &factor) in factors.iter().enumerate() {
+        for &index in read.iter().filter(|index| varied.contains(*index)) {
+            for (which, &factor) in task.factors.iter().enumerate() {
                 let changes = changed.entry((index, which)).or_default();
-                if *changes >= enough {
+                if *changes >= task.enough {
                     continue;
                 }
                 vary(index, factor);
@@ -172,10 +185,10 @@ impl Outcome {
     }
 }
 
-/// Every `every`-th case of the fast blind battery, and every kind of every other task once.
-fn cases(seed: u64, every: usize) -> Vec<Box<dyn Fn() -> Case>> {
+/// The fast blind battery, and every kind of every other task once, in an order that mixes them.
+fn cases(seed: u64) -> Vec<Box<dyn Fn() -> Case>> {
     let mut all: Vec<Box<dyn Fn() -> Case>> = Vec::new();
-    for job in battery(Counts::FAST, seed).into_iter().step_by(every) {
+    for job in battery(Counts::FAST, seed) {
         all.push(Box::new(move || {
             let (case, truth) = job.make();
             let (options, recordings) = (blind::score::options(&case), case.recordings.clone());

@@ -4,7 +4,7 @@
 mod schemata;
 
 use super::super::{Output, progress};
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use schemars::JsonSchema;
 use schemata::{Constant, Sources};
@@ -15,7 +15,6 @@ use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// Arguments of `bench ablation`.
@@ -27,9 +26,6 @@ pub struct AblationBench {
     /// Seeds of the cases
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     seeds: Vec<u64>,
-    /// Only every so many cases of the blind battery
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
-    every: u64,
     /// Only so many cases of each seed, spread over all tasks
     #[arg(long)]
     cases: Option<u64>,
@@ -39,10 +35,10 @@ pub struct AblationBench {
     /// Factors of each constant
     #[arg(long, value_delimiter = ',', default_value = "0.5,2")]
     factors: Vec<f64>,
-    /// Only constants of these names
+    /// Only constants with these names
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Writes the table as Markdown
+    /// File for the table, as Markdown
     #[arg(long)]
     write: Option<PathBuf>,
 }
@@ -74,7 +70,7 @@ struct Row {
     counts: Vec<Counts>,
 }
 
-/// What `bench ablation --json` prints.
+/// Answer of `bench ablation --json`.
 #[derive(JsonSchema, Serialize)]
 pub(crate) struct Said {
     /// Seeds of the cases.
@@ -99,37 +95,43 @@ impl AblationBench {
         let copy = source.join("target/ablation/sources");
         let (constants, fixed) =
             progress::during("building the sources with constants that vary", |_| build(&source, &copy))?;
-        let cases = self.ask(&copy, &constants)?;
-        let said = self.said(&cases, &constants, fixed);
+        let varied = self.varied(&constants)?;
+        let cases = progress::during("asking the cases", |_| self.ask(&copy, &varied))?;
+        let said = self.said(&cases, &varied, &constants, fixed);
+        let text = markdown(&said);
         if let Some(path) = &self.write {
-            std::fs::write(path, markdown(&said)).with_context(|| path.display().to_string())?;
+            std::fs::write(path, &text).with_context(|| path.display().to_string())?;
         }
-        Ok(Output { text: markdown(&said), json: serde_json::to_value(&said)? })
+        Ok(Output { text, json: serde_json::to_value(&said)? })
+    }
+
+    /// Indices of the constants that are asked for; an unknown name is an error.
+    fn varied(&self, constants: &[Constant]) -> anyhow::Result<Vec<usize>> {
+        if let Some(unknown) = self.only.iter().find(|name| constants.iter().all(|c| c.name != **name)) {
+            bail!("no constant that can vary is called `{unknown}`: see the list that the bench prints without --only");
+        }
+        let is_asked = |c: &Constant| self.only.is_empty() || self.only.contains(&c.name);
+        Ok(constants.iter().enumerate().filter(|(_, c)| is_asked(c)).map(|(k, _)| k).collect())
     }
 
     /// Asks all cases of all seeds in as many processes as there are cores.
-    fn ask(&self, copy: &Path, constants: &[Constant]) -> anyhow::Result<Vec<Value>> {
+    fn ask(&self, copy: &Path, varied: &[usize]) -> anyhow::Result<Vec<Value>> {
         let parts = thread::available_parallelism().map_or(1, usize::from);
-        let named = constants.iter().enumerate().filter(|(_, c)| self.only.contains(&c.name));
-        let only: Vec<String> = named.map(|(k, _)| k.to_string()).collect();
-        let factors: Vec<String> = self.factors.iter().map(f64::to_string).collect();
-        let done = AtomicUsize::new(0);
         let one = |seed: u64, part: usize| -> anyhow::Result<Vec<Value>> {
+            let task = json!({
+                "seed": seed,
+                "part": part,
+                "parts": parts,
+                "cases": self.cases,
+                "enough": self.enough,
+                "factors": self.factors,
+                "varied": varied,
+            });
             let mut child = Command::new(copy.join("../target/debug/ablate"));
-            child.env("ABLATE_SEED", seed.to_string()).env("ABLATE_PART", part.to_string());
-            child.env("ABLATE_PARTS", parts.to_string()).env("ABLATE_EVERY", self.every.to_string());
-            child.env("ABLATE_ENOUGH", self.enough.to_string()).env("ABLATE_FACTORS", factors.join(","));
-            child
-                .env("ABLATE_ONLY", only.join(","))
-                .env("ABLATE_CASES", self.cases.unwrap_or(u64::MAX).to_string())
-                .env("RAYON_NUM_THREADS", "1");
-            let mut child = child.stdout(Stdio::piped()).spawn().context("the cases run")?;
+            child.arg(task.to_string()).env("RAYON_NUM_THREADS", "1").stdout(Stdio::piped());
+            let mut child = child.spawn().context("the program that asks the cases does not start")?;
             let lines = BufReader::new(child.stdout.take().context("a process without output")?).lines();
-            let mut cases = Vec::new();
-            for line in lines {
-                cases.push(serde_json::from_str(&line?)?);
-                eprintln!("{} cases", done.fetch_add(1, Ordering::Relaxed) + 1);
-            }
+            let cases = lines.map(|line| Ok(serde_json::from_str(&line?)?)).collect::<anyhow::Result<Vec<Value>>>()?;
             if !child.wait()?.success() {
                 bail!("the process that asks the cases of seed {seed} ended early");
             }
@@ -137,20 +139,20 @@ impl AblationBench {
         };
         let mut all = Vec::new();
         for &seed in &self.seeds {
-            let parts: Vec<_> = thread::scope(|scope| {
+            let answers = thread::scope(|scope| {
                 let one = &one;
                 let threads: Vec<_> = (0..parts).map(|part| scope.spawn(move || one(seed, part))).collect();
-                threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+                threads.into_iter().map(thread::ScopedJoinHandle::join).collect::<Vec<_>>()
             });
-            for part in parts {
-                all.extend(part?);
+            for answer in answers {
+                all.extend(answer.map_err(|_| anyhow!("a thread that reads the cases of seed {seed} panicked"))??);
             }
         }
         Ok(all)
     }
 
-    /// Counts the changes of every constant.
-    fn said(&self, cases: &[Value], constants: &[Constant], fixed: usize) -> Said {
+    /// Counts the changes of every constant that was varied.
+    fn said(&self, cases: &[Value], varied: &[usize], constants: &[Constant], fixed: usize) -> Said {
         let mut counts: BTreeMap<usize, Vec<Counts>> = BTreeMap::new();
         for variant in cases.iter().filter_map(|case| case["variants"].as_array()).flatten() {
             let (Some(index), Some(factor)) = (variant[0].as_u64(), variant[1].as_f64()) else { continue };
@@ -167,7 +169,7 @@ impl AblationBench {
                 _ => {}
             }
         }
-        let row = |(k, c): (usize, &Constant)| Row {
+        let row = |k: usize, c: &Constant| Row {
             name: c.name.clone(),
             file: c.file.display().to_string(),
             line: c.line,
@@ -180,7 +182,7 @@ impl AblationBench {
             right: cases.iter().filter(|case| case["right"] == json!(true)).count(),
             factors: self.factors.clone(),
             fixed,
-            constants: constants.iter().enumerate().map(row).collect(),
+            constants: varied.iter().map(|&k| row(k, &constants[k])).collect(),
         }
     }
 }
@@ -241,4 +243,54 @@ fn markdown(said: &Said) -> String {
         text.push('\n');
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bench(only: &[&str]) -> AblationBench {
+        AblationBench {
+            source: None,
+            seeds: vec![1],
+            cases: None,
+            enough: 3,
+            factors: vec![0.5, 2.0],
+            only: only.iter().map(|name| (*name).to_owned()).collect(),
+            write: None,
+        }
+    }
+
+    fn constants() -> Vec<Constant> {
+        let one = |name: &str| Constant {
+            name: name.to_owned(),
+            file: PathBuf::from("estimator/src/diagnose/a.rs"),
+            line: 1,
+            value: "0.5".to_owned(),
+        };
+        vec![one("NEAR"), one("FAR")]
+    }
+
+    #[test]
+    fn changes_are_counted_by_constant_and_factor() {
+        let cases = [
+            json!({"case": "a", "right": true, "variants": [[0, 0.5, "worse"], [0, 2.0, "none"], [1, 2.0, "moved"]]}),
+            json!({"case": "b", "right": false, "variants": [[0, 0.5, "better"], [0, 2.0, "digits"]]}),
+        ];
+        let said = bench(&[]).said(&cases, &[0, 1], &constants(), 3);
+        assert_eq!((said.cases, said.right, said.fixed), (2, 1, 3));
+        let near = &said.constants[0].counts;
+        assert_eq!((near[0].asked, near[0].worse, near[0].better), (2, 1, 1));
+        assert_eq!((near[1].asked, near[1].digits, said.constants[1].counts[1].moved), (2, 1, 1));
+        let table = markdown(&said);
+        assert!(table.contains("| `diagnose/a` NEAR | 0.5 | 2 | – | – | – | 1 | 1 | 2 | 1 |"), "{table}");
+    }
+
+    #[test]
+    fn an_unknown_name_is_an_error() {
+        assert_eq!(bench(&[]).varied(&constants()).expect("all"), [0, 1]);
+        assert_eq!(bench(&["FAR"]).varied(&constants()).expect("one"), [1]);
+        let error = bench(&["NEAR", "HALF"]).varied(&constants()).expect_err("no constant").to_string();
+        assert!(error.contains("`HALF`"), "{error}");
+    }
 }

@@ -64,7 +64,7 @@ pub fn propose(track: &Track, model: &Model, study: &ChannelFit, open: &[Alterna
     best.map(|(_, next)| next)
 }
 
-/// Recording to make: its experiment and its words, and its predicted rows in each channel, with what was found there.
+/// Proposed recording: the experiment in words, and the predicted rows of each channel with its fit.
 pub(crate) type Asked<'a> = (Experiment, String, Vec<(Imagined, &'a ChannelFit)>);
 
 /// The shortest of several recordings that is likely to settle the open questions, or the one that settles most. `None`

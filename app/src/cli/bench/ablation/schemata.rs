@@ -301,6 +301,10 @@ pub(super) fn copy(workspace: &Path, copy: &Path) -> anyhow::Result<()> {
     if !listed.status.success() {
         bail!("{} is no checkout of the sources; give --source", workspace.display());
     }
+    // A module that was moved would stand twice.
+    for folder in FOLDERS.map(|folder| copy.join(folder)).iter().filter(|folder| folder.exists()) {
+        fs::remove_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
     for file in String::from_utf8_lossy(&listed.stdout).lines() {
         let (from, to) = (workspace.join(file), copy.join(file));
         if from.is_file() {
@@ -312,4 +316,68 @@ pub(super) fn copy(workspace: &Path, copy: &Path) -> anyhow::Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A workspace with one file in `diagnose` and one in `identify`, copied to another folder.
+    fn workspace(diagnose: &str) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (place, text) in FOLDERS.iter().zip([diagnose, "const ALONE: f64 = 3.0;\n"]) {
+            for root in ["", "copy"] {
+                let path = folder.path().join(root).join(place);
+                fs::create_dir_all(&path).expect("a folder");
+                fs::write(path.join("a.rs"), text).expect("a file");
+            }
+        }
+        let copy = folder.path().join("copy");
+        (folder, copy)
+    }
+
+    fn written(diagnose: &str) -> (Vec<Constant>, String) {
+        let (folder, copy) = workspace(diagnose);
+        let sources = Sources::read(folder.path()).expect("they are read");
+        let constants = sources.write(&copy).expect("they are written");
+        (constants, fs::read_to_string(copy.join(FOLDERS[0]).join("a.rs")).expect("the file"))
+    }
+
+    #[test]
+    fn a_constant_becomes_a_function_and_its_uses_calls() {
+        let (constants, text) = written(
+            "use super::b::{FAR, other};\n/// Near, m.\npub(crate) const NEAR: f64 = 0.5;\nconst FAR: [f64; 2] = [NEAR, 2.0 * NEAR];\n\
+             fn f(x: f64) -> bool {\n    assert!(x > NEAR, \"NEAR\");\n    x < NEAR\n}\n",
+        );
+        assert_eq!(constants.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["NEAR", "FAR", "ALONE"]);
+        assert_eq!((constants[0].line, constants[0].value.as_str()), (3, "0.5"));
+        assert!(text.contains("use super::b::{FAR, other};"), "an import stays: {text}");
+        assert!(text.contains("pub(crate) fn NEAR() ->  f64 { foundation::ablation::value(0,  0.5) }"), "{text}");
+        assert!(text.contains("value(1,  [NEAR(), 2.0 * NEAR()]) }"), "{text}");
+        assert!(text.contains("assert!(x > NEAR(), \"NEAR\");\n    x < NEAR()\n"), "{text}");
+    }
+
+    #[test]
+    fn texts_lengths_of_arrays_and_tests_stay() {
+        let source = "const NAME: &str = \"a\";\nconst COUNT: usize = 3;\nstatic ALL: [u8; COUNT] = [0; COUNT];\n\
+                      #[cfg(test)]\nmod tests {\n    const OWN: f64 = 1.0;\n}\n";
+        let (constants, text) = written(source);
+        assert_eq!(constants.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["ALONE"]);
+        assert_eq!(text, source);
+    }
+
+    #[test]
+    fn a_constant_that_an_error_points_at_stays_from_then_on() {
+        let (folder, copy) = workspace("const NEAR: f64 = 0.5;\nconst FAR: f64 = 2.0;\n");
+        let mut sources = Sources::read(folder.path()).expect("they are read");
+        let error = serde_json::json!({"message": {
+            "level": "error", "children": [],
+            "spans": [{"file_name": format!("{}/a.rs", FOLDERS[0]), "line_start": 2, "line_end": 2}],
+        }});
+        assert_eq!(sources.write(&copy).expect("they are written").len(), 3);
+        assert!(sources.keep_fixed(&copy, &error.to_string()));
+        let names: Vec<String> = sources.write(&copy).expect("they are written").into_iter().map(|c| c.name).collect();
+        assert_eq!((names, sources.fixed()), (vec!["NEAR".to_owned(), "ALONE".to_owned()], 1));
+        assert!(!sources.keep_fixed(&copy, "{}"), "an error that points at none ends the search");
+    }
 }
