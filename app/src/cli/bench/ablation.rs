@@ -169,7 +169,7 @@ impl AblationBench {
                 _ => {}
             }
         }
-        let row = |k: usize, c: &Constant| Row {
+        let mut row = |k: usize, c: &Constant| Row {
             name: c.name.clone(),
             file: c.file.display().to_string(),
             line: c.line,
