@@ -11,9 +11,7 @@ const BLUR_OF_FREE: f64 = 0.004;
 /// A reversal may be at any point between two rows: standard deviation of its position, in rows, with some margin.
 const SKEW: f64 = 0.5;
 /// Difference of the clocks of force and motion, s.
-const CLOCKS_S: f64 = 1e-3;
-/// Speed, in units of the velocity blur, below which the object may stick: its friction is then undetermined.
-const STICKS: f64 = 1.0;
+pub(crate) const CLOCKS_S: f64 = 1e-3;
 /// Number of sticking rows that count as one observation. Rows of a mechanism overlap, and none of them sticks alone.
 pub const STICKING_ROWS_TOGETHER: f64 = 3.0;
 /// Uncertainty of the direction above which a row counts as standing.
@@ -41,13 +39,13 @@ pub fn blur(track: &mut Track) {
         let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
         let share = track.fine[k].velocity / width(clocks_s * acceleration);
         track.fine[k].direction = share.tanh();
-        track.fine[k].open = 1.0 - (share / STICKS).tanh().powi(2);
+        track.fine[k].open = 1.0 - share.tanh().powi(2);
     }
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         if row.span.len == 0 {
             let share = row.motion.velocity / width(SKEW * row.motion.acceleration * period_s);
             row.motion.direction = share.tanh();
-            row.open = 1.0 - (share / STICKS).tanh().powi(2);
+            row.open = 1.0 - share.tanh().powi(2);
             continue;
         }
         let (mut sum, mut open) = (0.0, 0.0);

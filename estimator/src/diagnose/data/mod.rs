@@ -3,6 +3,7 @@ pub(crate) mod covariates;
 pub(crate) mod direction;
 pub(crate) mod interpolation;
 pub(crate) mod known_weight;
+pub(crate) mod limits;
 pub(crate) mod plain_fit;
 pub(crate) mod regression_data;
 pub(crate) mod row_means;

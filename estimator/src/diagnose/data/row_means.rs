@@ -1,14 +1,12 @@
 //! Means over the rows of a track, with the parts that many regressors share computed once.
 
+use super::limits::SLOW_ROW_S;
 use super::regression_data::{Place, Row, Span, Track, Weighing};
 use haptics::law::{Effect, Motion};
 
-/// Longest row that is short for effects of position, s.
-const SHORT_S: f64 = 0.015;
-
 /// True if the rows are short for effects of position.
 pub fn is_short(track: &Track) -> bool {
-    track.period_s <= SHORT_S
+    track.period_s <= SLOW_ROW_S
 }
 
 /// Force of a law of position that depends on the direction in proportion, if at all, like [`column`]. Within a short

@@ -5,6 +5,7 @@
 //! the displacement from the middle of the stick phase, scaled to the noise of the force, so that both kinds of rows
 //! count in one comparison. Pure Coulomb friction predicts zero there.
 
+use super::limits::{AMBIGUOUS, FEWEST, SIGNIFICANT};
 use super::regression_data::{Place, Row, Track};
 use haptics::Vec2;
 use haptics::law::{Hysteresis, Law, MAX_PARAMETERS, Memory, Motion};
@@ -20,20 +21,10 @@ const BENT: f64 = 0.95;
 /// slow slide.
 const UNLIKE: f64 = 0.7;
 const UNLIKE_SURE: f64 = 4.0;
-/// Longest sampling period at which stick phases are resolved, s.
-const SLOWEST_S: f64 = 0.03;
-/// Least number of rows of a stick phase.
-const LEAST_STICK_ROWS: usize = 3;
-/// Load, in standard deviations of its noise, up to which its side is unknown.
-const UNKNOWN_SIDE_NOISES: f64 = 2.0;
-/// Load, in standard deviations of its noise, that certainly presses to one side of a gap.
-const PRESSED_NOISES: f64 = 3.5;
 /// Number of rows before and after over which position and load of a floating object are averaged.
 const NEAR: usize = 2;
 /// Ratio of noises up to which rows count as equally noisy.
 const ALIKE: f64 = 2.0;
-/// Evidence by which creep must exceed sticking, 2 ln(likelihood).
-const CREEP_EVIDENCE: f64 = 10.0;
 /// Steps in which a change of the load is followed.
 const LOAD_STEPS: usize = 16;
 
@@ -50,12 +41,12 @@ pub struct Load {
 /// Adds the rows of the stick phases. `loads`: one per row, `None` if the friction is unknown.
 pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     let noise = track.position_noise;
-    if noise <= 0.0 || noise.is_nan() || track.raw_period_s > SLOWEST_S {
+    if noise <= 0.0 || noise.is_nan() {
         return;
     }
     let largest = largest(track);
     let stands = |i: usize| {
-        let below = |l: &Load| l.share.abs() < HOLDS && l.friction > UNKNOWN_SIDE_NOISES * track.force_noise;
+        let below = |l: &Load| l.share.abs() < HOLDS && l.friction > SIGNIFICANT * track.force_noise;
         track.rows[i].place == Place::Along && loads[i].as_ref().is_some_and(below)
     };
     let stays = |range: std::ops::Range<usize>| {
@@ -71,7 +62,7 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
         }
         // A row at either end may already have moved.
         let still = first + 1..i.saturating_sub(1);
-        if still.len() >= LEAST_STICK_ROWS && stays(still.clone()) {
+        if still.len() >= FEWEST && stays(still.clone()) {
             made.push(standstill(track, &loads[still.clone()], still, number));
             number += 1;
         }
@@ -110,8 +101,7 @@ fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
 /// Reduces the weight of a stick phase with large displacement under small load: the noise of the load limits its
 /// accuracy (effective variance, Orear 1982).
 fn trusted(mut rows: Vec<Row>, slope: f64, noise_m: f64) -> Vec<Row> {
-    let of_load =
-        |row: &Row| if let Place::Stuck { noise, .. } = row.place { noise / UNKNOWN_SIDE_NOISES } else { 0.0 };
+    let of_load = |row: &Row| if let Place::Stuck { noise, .. } = row.place { noise / SIGNIFICANT } else { 0.0 };
     let load = rows.iter().map(of_load).sum::<f64>() / rows.len().max(1) as f64;
     let share = noise_m / noise_m.hypot(slope * load);
     for row in &mut rows {
@@ -151,10 +141,10 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
             |of: &dyn Fn(&Load) -> f64| near.clone().filter_map(|i| loads[i].as_ref()).map(of).sum::<f64>() / count;
         let noise = (ALIKE / count).sqrt() * track.force_noise / load.friction;
         let whole = mean(&|l| l.whole);
-        let side = if whole.abs() > PRESSED_NOISES * noise { whole.signum() } else { 0.0 };
+        let side = if whole.abs() > SIGNIFICANT * noise { whole.signum() } else { 0.0 };
         Some(Row {
             segment: number,
-            place: Place::Stuck { share: mean(&|l| l.share), side, noise: UNKNOWN_SIDE_NOISES * noise, scale },
+            place: Place::Stuck { share: mean(&|l| l.share), side, noise: SIGNIFICANT * noise, scale },
             along: Vec2::zeros(),
             force: Vec2::zeros(),
             force_rate: Vec2::zeros(),
@@ -215,7 +205,7 @@ pub fn creep(track: &Track, y: &[f64], losses: &[&[f64]]) -> Option<Vec<f64>> {
     let most = losses.iter().map(|loss| told(loss)).fold(0.0, f64::max);
     let left = (all - by_creep).max(1e-12 * all);
     // Worth a parameter, and better than any of the others.
-    let worth = stuck.len() as f64 * (all / left).ln() > (stuck.len() as f64).ln() + CREEP_EVIDENCE;
+    let worth = stuck.len() as f64 * (all / left).ln() > (stuck.len() as f64).ln() + AMBIGUOUS;
     (by_creep > most && worth).then_some(column)
 }
 
@@ -294,7 +284,7 @@ fn side(row: &Row, all: bool) -> f64 {
     let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
     match all {
         true => side,
-        false if share.abs() > noise * PRESSED_NOISES / UNKNOWN_SIDE_NOISES => share.signum(),
+        false if share.abs() > noise => share.signum(),
         false => 0.0,
     }
 }

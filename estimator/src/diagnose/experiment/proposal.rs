@@ -8,8 +8,10 @@ use super::strokes::Course;
 use super::strokes::{Excitation, HANG, LIBRARY};
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::limits::AMBIGUOUS;
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{eccentric_mass, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
 use haptics::Vec2;
@@ -17,23 +19,19 @@ use haptics::law::Motion;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
-const RECORDING_LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
+const RECORDING_LENGTHS_S: Axis = Axis::geometric(20.0, 80.0, 3);
 pub(crate) const LIKELY: f64 = 0.8;
-/// Evidence that settles a question, as a log likelihood ratio.
-const SETTLED: f64 = 5.0;
 /// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
 /// one because neither answer may be true (measured, `docs/diagnosis.md`).
 pub(crate) const SURE_BY_MOTION: f64 = 0.85;
 pub(crate) const SURE_HUNG: f64 = 0.95;
-/// Evidence from which a question counts as settled.
-const SETTLED_EVIDENCE: f64 = 1e6;
 /// Largest turn of a crank to either side, rad.
 const TURN_RAD: f64 = 7.0;
-/// Weight to hang on, as a multiple of the object's, and the heaviest, N, which fingers can still lift.
-const HUNG_WEIGHTS: f64 = 6.0;
+/// Heaviest weight to hang on, N, which fingers can still lift.
 const HEAVIEST_N: f64 = 1.2;
-/// Hung weight on a mechanism that turns: multiple of the moment found, and lever, m.
-const HUNG_MOMENTS: f64 = 10.0;
+/// Weight to hang on, as a multiple of the object's weight or moment.
+const HUNG_MULTIPLE: f64 = 10.0;
+/// Lever of the weight that is hung on a mechanism, m.
 const LEVER_M: f64 = 0.1;
 
 /// Next experiment, which separates the found causes from the `open` alternatives; `None` if no question is open.
@@ -46,7 +44,7 @@ pub fn propose(track: &Track, model: &Model, study: &ChannelFit, open: &[Alterna
         return hang(track, model, study, *pair);
     }
     let mut best: Option<(f64, NextExperiment)> = None;
-    for seconds in RECORDING_LENGTHS_S {
+    for seconds in RECORDING_LENGTHS_S.values() {
         for excitation in LIBRARY.iter().filter(|e| track.planar || e.free_s == 0.0) {
             let asked = asked(track, excitation, seconds);
             let imagined = Imagined::along(&imagine(track, model, values, excitation, &asked), model, study);
@@ -124,25 +122,24 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
 fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
-    let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S[0]);
+    let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S.low());
     let in_steps = |weight: f64| (20.0 * weight.clamp(0.1, HEAVIEST_N)).round() / 20.0;
     if track.planar {
         let own = model.iter().zip(&solved.values).filter(|(e, _)| e.role() == haptics::law::Role::Gravity);
         let own_n: f64 = own.map(|(e, share)| share * e.values[0]).sum();
-        asked.added_weight_n = in_steps(HUNG_WEIGHTS * own_n.max(0.02));
+        asked.added_weight_n = in_steps(HUNG_MULTIPLE * own_n.max(0.02));
         asked.added_lever_m = track.radius_m?;
         // Factor by which the weight enlarges the sine of a tilt.
         let times = 1.0 + asked.added_weight_n / own_n.max(0.02);
         let share = asked.seconds / track.span_s.max(1.0);
-        let lambda =
-            chosen.lambda.min(SETTLED_EVIDENCE) * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
+        let lambda = chosen.lambda * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
         return Some(hung_proposal(&asked, &[pair], power(lambda), "the handle"));
     }
     let before = study.chosen.iter().take_while(|c| c.candidate != chosen.candidate);
     let first = study.baseline.len() + before.map(|c| study.candidates[c.candidate].regressors.len()).sum::<usize>();
     let moment = solved.values[first..first + 2].iter().map(|v| v * v).sum::<f64>().sqrt();
     asked.added_lever_m = LEVER_M;
-    asked.added_weight_n = in_steps(HUNG_MOMENTS * moment / LEVER_M);
+    asked.added_weight_n = in_steps(HUNG_MULTIPLE * moment / LEVER_M);
     let hung = asked.added_weight_n * LEVER_M;
     // Either all of it acts, or the sine of a small tilt; nothing in between is considered.
     let noise = track.force_noise.max(1e-12);
@@ -168,13 +165,10 @@ fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &st
 
 /// Probability that a log likelihood ratio of mean λ/2 and variance λ settles it.
 pub(crate) fn power(lambda: f64) -> f64 {
-    let lambda = lambda.clamp(0.0, SETTLED_EVIDENCE);
-    let sure = (0.5 * lambda - SETTLED) / lambda.max(1e-9).sqrt();
+    let lambda = lambda.clamp(0.0, f64::MAX);
+    let sure = (0.5 * lambda - 0.5 * AMBIGUOUS) / lambda.max(1e-9).sqrt();
     Normal::new(0.0, 1.0).map_or(0.0, |n| n.cdf(sure))
 }
-
-/// Probability that turning a slope round settles the question: neither answer may be true.
-const SETTLES: f64 = 0.85;
 
 /// Next experiment of a free motion in words: it cannot be driven.
 pub(crate) fn turned_track(open: &[Alternative]) -> Option<NextExperiment> {
@@ -183,7 +177,7 @@ pub(crate) fn turned_track(open: &[Alternative]) -> Option<NextExperiment> {
     open.iter().find(asks)?;
     let motion = "turn the track end for end, release it again as before, and count the coordinate along the thing, not along the room: a \
                   slope then pulls the other way, friction stays";
-    Some(NextExperiment::in_words(motion, pair.map(str::to_owned).to_vec(), SETTLES))
+    Some(NextExperiment::in_words(motion, pair.map(str::to_owned).to_vec(), SURE_BY_MOTION))
 }
 
 /// Predicted rows of an experiment on the object of `track`. `values`: estimates of the model's laws.

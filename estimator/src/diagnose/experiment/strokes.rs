@@ -6,9 +6,12 @@
 use crate::diagnose::contract::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
+/// Source: 15/8 of the mean speed, the peak of a minimum-jerk movement (Flash & Hogan 1985).
 pub(crate) const PEAK: f64 = 1.875;
+/// Time without touch that is asked for before and after a motion, s.
+pub(crate) const FREE_S: f64 = 2.0;
 /// Shortest duration of a back-and-forth movement, s.
-const SHORTEST_STROKE_S: f64 = 0.25;
+pub(crate) const SHORTEST_STROKE_S: f64 = 0.25;
 
 /// Minimum jerk, as a share of the way.
 pub(crate) fn smooth(u: f64) -> f64 {
@@ -141,7 +144,7 @@ pub static LIBRARY: [Excitation; 7] = [
     Excitation {
         id: "sweep-let-go",
         words: "turn to and fro over the whole range, slowly and fast, and let go for two seconds before and after",
-        free_s: 2.0,
+        free_s: FREE_S,
         step: |k| going(side(k), one_of([0.4, 1.0, 0.7, 0.2], k / 2), 0.1, one_of([0.6, 1.2, -0.8], k)),
     },
     Excitation {
@@ -178,7 +181,7 @@ pub static LIBRARY: [Excitation; 7] = [
         id: "long-mixed",
         words: "move about as before: long and short strokes, slow and fast ones, pulling and pushing across, with two seconds of free motion \
                 before and after",
-        free_s: 2.0,
+        free_s: FREE_S,
         step: |k| {
             let to = one_of([0.9, -0.3, 0.4, -1.0, 0.1, 0.7, -0.7, 0.2, -0.1, 1.0, -0.9], k);
             let pace = one_of([0.5, 0.25, 0.9, 0.4, 0.7, 0.15, 1.0], k);

@@ -1,24 +1,18 @@
 //! Motions of needles and switches: from one turning point to the next, smooth between them.
 
-use super::strokes::{PEAK, smooth};
+use super::strokes::{PEAK, SHORTEST_STROKE_S, smooth};
 use crate::diagnose::contract::Experiment;
+use crate::diagnose::data::limits::{HALF, PAUSE_S};
 
 /// Ids of the motions.
 pub const PIERCE: &str = "pierce-slow-fast";
 pub const THROW: &str = "throw-slow-fast";
-/// Shortest duration of a back-and-forth movement, s.
-const SHORTEST_TURN_S: f64 = 0.15;
-/// Distance of a resting needle from its sheet, m, and duration of a change of place, s.
-const RESTING_NEEDLE_M: f64 = 4e-3;
-const OVER_S: f64 = 1.0;
-/// Depth of the presses before a puncture, as a share of the puncture depth.
-const PRESS_DEPTH_SHARE: f64 = 0.6;
+/// Lowest and highest speed of a hand in a proposed motion, m/s.
+pub(crate) const HAND_SPEEDS_M_S: (f64, f64) = (0.03, 0.15);
 /// Paces of throws, in turn; two throws per pace, one to either side.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];
 /// Duration of the press against a stop, of the release, and of the rest after it, s.
 const PRESS_S: f64 = 0.35;
-const RELEASE_S: f64 = 0.4;
-const ALONE_S: f64 = 0.25;
 
 /// Turning points: time, s, and place.
 #[derive(Clone, Debug)]
@@ -37,7 +31,7 @@ impl Turns {
     /// Adds a movement to a position, with this peak speed.
     fn go(&mut self, to: f64, fastest: f64) {
         let (now_s, from) = self.end();
-        self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_TURN_S), to));
+        self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_STROKE_S), to));
     }
 
     fn at(&self, time_s: f64) -> f64 {
@@ -68,19 +62,19 @@ impl Insertions {
         if asked.id != PIERCE || !sane {
             return None;
         }
-        let (mut depth, mut begin_s) = (Turns(vec![(0.0, -RESTING_NEEDLE_M)]), Vec::new());
+        let (mut depth, mut begin_s) = (Turns(vec![(0.0, -asked.half_range)]), Vec::new());
         while depth.end().0 < asked.seconds {
             begin_s.push(depth.end().0);
-            depth.go(PRESS_DEPTH_SHARE * puncture_m, 0.2 * asked.fast);
-            depth.go(-RESTING_NEEDLE_M, asked.fast);
+            depth.go(HALF * puncture_m, 0.2 * asked.fast);
+            depth.go(-asked.half_range, asked.fast);
             depth.go(full_m, 0.5 * asked.fast);
             for pace in [0.15, 1.0, 1.0] {
                 for place in [puncture_m, full_m, puncture_m, full_m] {
                     depth.go(place, pace * asked.fast);
                 }
             }
-            depth.go(-RESTING_NEEDLE_M, 0.5 * asked.fast);
-            depth.rest(OVER_S);
+            depth.go(-asked.half_range, 0.5 * asked.fast);
+            depth.rest(PAUSE_S);
         }
         Some(Self { depth, begin_s, puncture_m })
     }
@@ -109,7 +103,7 @@ impl Insertions {
     pub fn place(&self, time_s: f64) -> (usize, f64) {
         let k = self.begin_s.partition_point(|b| *b <= time_s).saturating_sub(1);
         let ends_s = self.begin_s.get(k + 1).copied().unwrap_or_else(|| self.duration_s());
-        (k, smooth(1.0 - (ends_s - time_s) / OVER_S))
+        (k, smooth(1.0 - (ends_s - time_s) / PAUSE_S))
     }
 }
 
@@ -151,8 +145,8 @@ impl Throws {
             throws.push(Throw { begins_s, takes_s: way.end().0 - begins_s, right, fast_m_s });
             way.rest(PRESS_S);
             let (now_s, _) = way.end();
-            way.0.push((now_s + RELEASE_S, side * released_m));
-            way.rest(ALONE_S);
+            way.0.push((now_s + PRESS_S, side * released_m));
+            way.rest(PRESS_S);
         }
         Some(Self { throws, middle_of_hand: way })
     }

@@ -3,17 +3,13 @@
 use super::integrate::{Side as Driven, follow, over};
 use super::windows::{Compared, Errors, NO_LAW, NOT_FAITHFUL, ROLLOUT_WINDOW_S, told, windows};
 use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, drive_forces, inertia};
-
-/// Largest deviation of the laws from the regressors, as a share of the cause's effect.
-const FAITHFUL: f64 = 0.5;
-/// Least weight of a row for the test of the laws.
-const TRUSTED: f64 = 0.5;
 
 /// One side of the comparison: laws, and the measured force less the found sensor faults.
 struct Side {
@@ -76,13 +72,13 @@ fn faithful(track: &Track, study: &ChannelFit, side: &Side, other: &Side) -> boo
             None => drive_forces(&side.effects, &rows.iter().map(|i| track.rows[*i].motion).collect::<Vec<_>>()),
         };
         for (i, needed) in rows.into_iter().zip(needed) {
-            if study.layout.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
+            if study.layout.weight[i] > HALF && track.rows[i].motion.direction.abs() > HALF {
                 off += (side.drive[i] - side.left[i] - needed).powi(2);
                 worth += (side.left[i] - other.left[i]).powi(2);
             }
         }
     }
-    off <= FAITHFUL * FAITHFUL * worth
+    off <= HALF * HALF * worth
 }
 
 /// Rows along the motion that follow each other.

@@ -4,17 +4,12 @@
 
 use super::windows::{Compared, Errors, ROLLOUT_WINDOW_S, told, windows};
 use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::data::limits::{GAP_IN_PERIODS, HALF};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 
-/// Most windows, taken evenly from the whole recording; more add no information.
-const MOST_WINDOWS: usize = 60;
-/// Least share of a window's rows in which a cause acts.
-const ACTS: f64 = 0.5;
 /// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
 const LEAST_WINDOW_ROWS: usize = 5;
-/// Largest time step, in row periods, within one window.
-const CONSECUTIVE_PERIODS: f64 = 1.6;
 
 /// A channel with a free-run simulation.
 pub trait Forward {
@@ -65,7 +60,7 @@ pub fn consecutive(
     same: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<Vec<usize>> {
     let goes_on = |a: usize, b: usize| {
-        same(a, b) && (0.0..CONSECUTIVE_PERIODS * period_s).contains(&(time_s(b) - time_s(a))) && a != b
+        same(a, b) && (0.0..GAP_IN_PERIODS * period_s).contains(&(time_s(b) - time_s(a))) && a != b
     };
     let most = ((ROLLOUT_WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW_ROWS) + 1;
     windows(order, [LEAST_WINDOW_ROWS, most], goes_on)
@@ -78,10 +73,9 @@ pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Ro
     let own = &study.candidates[picks[k]].regressors;
     let acts = |row: &&usize| own.iter().any(|column| column[**row] != 0.0);
     let mut windows = channel.windows();
-    windows.retain(|w| w.iter().filter(acts).count() as f64 >= ACTS * w.len() as f64);
-    let every = windows.len().div_ceil(MOST_WINDOWS).max(1);
+    windows.retain(|w| w.iter().filter(acts).count() as f64 >= HALF * w.len() as f64);
     let mut compared: Vec<[Errors; 2]> = Vec::new();
-    for window in windows.iter().step_by(every) {
+    for window in &windows {
         let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
         // A value that only this window determines is unknown without it.
         let (Some(without), Some(with)) = solved else { continue };

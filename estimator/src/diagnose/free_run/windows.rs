@@ -5,15 +5,12 @@
 //! the measured motion, and its force is compared. The integrator is that of the servo's worlds.
 
 use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::selection::held_out_gain;
-use crate::diagnose::selection::held_out_gain::DRAWS;
+use crate::diagnose::selection::held_out_gain::{DRAWS, LEAST_CHANGE_SHARE};
 
 /// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const ROLLOUT_WINDOW_S: f64 = 0.5;
-/// Fewer windows say nothing.
-const LEAST_WINDOWS: usize = 3;
-/// Relative difference of errors up to which they count as equal.
-const DIFFER: f64 = 1e-3;
 /// Reasons why there is no free run.
 pub const NO_LAW: &str = "no law of a world runs it";
 pub const TOO_FEW: &str = "too few uninterrupted pieces were there to run it over";
@@ -49,7 +46,7 @@ pub fn windows(order: &[usize], [least, most]: [usize; 2], goes_on: impl Fn(usiz
 
 /// Rollout of the errors without and with a cause, window by window.
 pub fn told(what: &Compared<'_>, windows: &[[Errors; 2]]) -> Result<Rollout, String> {
-    if windows.len() < LEAST_WINDOWS {
+    if windows.len() < FEWEST {
         return Err(TOO_FEW.to_owned());
     }
     let all: Vec<usize> = (0..windows.len()).collect();
@@ -62,7 +59,7 @@ pub fn told(what: &Compared<'_>, windows: &[[Errors; 2]]) -> Result<Rollout, Str
     if !(rms_before.is_finite() && rms_after.is_finite()) {
         return Err("the laws do not stay where anything was measured".to_owned());
     }
-    if (rms_before - rms_after).abs() < DIFFER * rms_before {
+    if (rms_before - rms_after).abs() < LEAST_CHANGE_SHARE * rms_before {
         return Err(THE_SAME.to_owned());
     }
     Ok(Rollout {

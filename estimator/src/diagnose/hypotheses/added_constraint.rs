@@ -1,5 +1,6 @@
 //! A wall or a cable as a hypothesis: its place, or the direction of its anchor and its length, are searched.
 
+use super::axis::Axis;
 use super::candidate::{Candidate, Searched};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
@@ -11,20 +12,13 @@ use std::f64::consts::TAU;
 pub(crate) const ID: &str = "added-constraint";
 
 /// Tried places of a wall, as shares of the positions that lie before it.
-const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// The same around one that was found, in ranges.
-const WALLS_AROUND: [f64; 4] = [-0.06, -0.03, 0.03, 0.06];
-/// Number of tried anchor directions of a cable, and the slack shares of the travel around it.
-const CABLES: u32 = 16;
-const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
+const WALLS: Axis = Axis::even(0.4, 0.9, 6);
+/// Tried anchor directions of a cable, in turns, and its slack as a share of the travel.
+const DIRECTIONS: Axis = Axis::cells(16);
+const SLACK: Axis = Axis::even(0.35, 0.8, 3);
 /// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
-const REACHES: [f64; 3] = [2.5, REACH, 20.0];
-/// Directions around one that was found, in steps of the coarse grid, and lengths in arms: at the distance that was
-/// found, and at another one.
-const TURNS_AROUND: [f64; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
-const RESTS_AROUND: [f64; 5] = [-0.3, -0.15, 0.0, 0.15, 0.3];
-const RESTS_AT_OTHER_REACH: [f64; 3] = [-0.2, 0.0, 0.2];
+const REACHES: Axis = Axis::geometric(0.5 * REACH, 4.0 * REACH, 4);
 /// Points: place and side of a wall.
 const WALL: &str = "wall";
 /// Points: direction of the anchor, rad, length at rest, m, and distance of the anchor in arms.
@@ -39,13 +33,10 @@ impl Hypothesis for AddedConstraint {
         let position = |share| ranges.track.quantile(share, |r| r.motion.position);
         let sides = [(1.0, 0.0), (-1.0, 1.0)];
         let walls =
-            WALLS.iter().flat_map(|w| sides.map(|(side, base)| Point::two(WALL, position(base + side * w), side)));
+            WALLS.values().flat_map(|w| sides.map(|(side, base)| Point::two(WALL, position(base + side * w), side)));
         let rest = |share: f64| ranges.track.radius_m.unwrap_or(0.0) * (REACH - 1.0 + 2.0 * share);
-        let cable = |k: u32| {
-            let direction = TAU * f64::from(k) / f64::from(CABLES);
-            SLACK.map(|s| Point { form: CABLE, at: [direction, rest(s), REACH] })
-        };
-        walls.chain((0..CABLES).flat_map(cable)).collect()
+        let cables = |turn: f64| SLACK.values().map(move |s| Point { form: CABLE, at: [TAU * turn, rest(s), REACH] });
+        walls.chain(DIRECTIONS.values().flat_map(cables)).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
@@ -54,7 +45,7 @@ impl Hypothesis for AddedConstraint {
             if let (Some(direction), Some(rest)) = (found.value("anchor direction"), found.value("rest length")) {
                 all.extend(cables_around(near, (direction, rest), found.value("anchor distance")));
             } else if let Some(place) = found.value("place") {
-                let places = WALLS_AROUND.map(|s| place + s * near.step * near.ranges.range);
+                let places = WALLS.around(place, near.ranges.range, near.step);
                 all.extend(places.map(|place| Point::two(WALL, place, found.side)));
             }
         }
@@ -99,12 +90,16 @@ fn cables_around(near: &Near<'_>, (direction, rest): (f64, f64), distance: Optio
     let radius = near.ranges.track.radius_m.unwrap_or(0.0);
     let found = distance.map_or(REACH, |d| d / radius.max(1e-12));
     let mut all = Vec::new();
-    for turn in TURNS_AROUND.map(|s| s * near.step * TAU / f64::from(CABLES)) {
-        let cable = |rest: f64, reach: f64| Point { form: CABLE, at: [direction + turn, rest, reach] };
-        all.extend(RESTS_AROUND.map(|s| cable(rest + s * near.step * radius, found)));
+    for direction in DIRECTIONS.around(direction, TAU, near.step) {
+        // A share of slack is a share of both ways across the circle.
+        let cables = |rest: f64, reach: f64| {
+            let rests = SLACK.around(rest, 2.0 * radius, near.step);
+            rests.map(|rest| Point { form: CABLE, at: [direction, rest, reach] })
+        };
+        all.extend(cables(rest, found));
         // The same slack with another distance of the anchor.
-        for reach in REACHES.into_iter().filter(|reach| (reach - found).abs() > 1e-6) {
-            all.extend(RESTS_AT_OTHER_REACH.map(|s| cable(rest + (s * near.step + reach - found) * radius, reach)));
+        for reach in REACHES.values().filter(|reach| (reach - found).abs() > 1e-6) {
+            all.extend(cables(rest + (reach - found) * radius, reach));
         }
     }
     all

@@ -4,17 +4,17 @@ use super::candidate::Candidate;
 use crate::diagnose::data::regression_data::{Place, Row, Track};
 use haptics::law::Coordinate;
 
-/// Waves round a turn, or over the range.
-const COORDINATE_WAVES: u32 = 6;
-/// Slow waves in time.
-const SLOW_WAVES: u32 = 6;
+/// Number of generic waves round a turn, over the range, or in time.
+const GENERIC_WAVES: u32 = 6;
+/// The same where the rows are few.
+pub(crate) const FEW_WAVES: u32 = 4;
 
 /// Factor of a wave, with its name.
 type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 
 /// All of them.
 pub fn generic(track: &Track) -> Vec<Candidate> {
-    generic_of(track, COORDINATE_WAVES, SLOW_WAVES)
+    generic_of(track, GENERIC_WAVES, GENERIC_WAVES)
 }
 
 /// Half waves over the duration of these times, s: generic terms of a channel in this unit.

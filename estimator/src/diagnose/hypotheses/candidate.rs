@@ -1,6 +1,7 @@
 //! Candidate terms: effects that a cause would have on the residual.
 
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::SURE;
 use haptics::law::Kind;
 use std::sync::Arc;
 
@@ -21,6 +22,8 @@ const FARTHEST_REST: f64 = 3.0;
 /// Largest share of the dry friction that a law may replace. Beyond it, another presliding distance or gap would fit
 /// better.
 pub(crate) const LARGEST_SHARE: f64 = 1.7;
+/// Least share of the dry friction that a law of lost motion may replace.
+pub(crate) const LEAST_SHARE: f64 = 0.1;
 /// Penalty of one of two causes that are equivalent in some recordings, so that the other one is always named first.
 /// Examples are a rotated sensor where the load keeps its sign, equivalent to friction by direction, and friction by
 /// direction along one coordinate, equivalent to a bias.
@@ -67,14 +70,11 @@ impl Shape {
     /// Penalty of its parameters beside their number, in 2 ln(likelihood).
     fn doubt(self, values: &[f64]) -> f64 {
         match (self, values) {
-            (Self::Share { whole, .. }, [share, ..]) if *share < whole => PARTLY,
+            (Self::Share { whole, .. }, [share, ..]) if *share < whole => SURE,
             _ => 0.0,
         }
     }
 }
-
-/// Extra evidence that a law of only part of the friction needs.
-const PARTLY: f64 = 60.0;
 
 /// k u + f0 + here u³ + there (u − 1)³ as k (u − place) + f0 + k3 (u − place)³: k, f0, k3 and the place.
 pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {

@@ -28,7 +28,7 @@ impl Hypothesis for ForceDrift {
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
-        ranges.settling().map(|tau| Point::one(SETTLING, tau)).to_vec()
+        ranges.settling().map(|tau| Point::one(SETTLING, tau)).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {

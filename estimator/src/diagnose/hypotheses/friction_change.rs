@@ -1,5 +1,6 @@
 //! A change of friction as a hypothesis, in proportion to the model's own: slow, sudden, or with a recorded channel.
 
+use super::axis::Axis;
 use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
@@ -12,9 +13,7 @@ use haptics::law::{Effect, FrictionChange, Kind, LoadFrictionChange};
 pub(crate) const ID: &str = "friction-change";
 
 /// Time constants of a slow change, in shares of the recording.
-const WARMING_SHARES: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
-/// The same around one that was found, relative to it.
-const WARMING_AROUND: [f64; 7] = [0.58, 0.69, 0.83, 1.0, 1.2, 1.44, 1.7];
+const WARMING_SHARES: Axis = Axis::geometric(0.1, 3.0, 7);
 /// Points: time constant.
 const WARMING: &str = "time constant";
 /// Points: start time of a sudden change.
@@ -32,13 +31,14 @@ impl Hypothesis for FrictionChange {
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
-        let warming = WARMING_SHARES.map(|share| Point::one(WARMING, share * ranges.track.span_s));
-        warming.into_iter().chain(ranges.starts().map(|start| Point::one(STARTS, start))).collect()
+        let warming = WARMING_SHARES.values().map(|share| Point::one(WARMING, share * ranges.track.span_s));
+        warming.chain(ranges.starts().map(|start| Point::one(STARTS, start))).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
         let taus = near.of(ID).filter_map(|found| found.value("tau"));
-        let warming = taus.flat_map(|tau| near.times(tau, WARMING_AROUND)).map(|tau| Point::one(WARMING, tau));
+        let warming =
+            taus.flat_map(|tau| WARMING_SHARES.around(tau, 1.0, near.step)).map(|tau| Point::one(WARMING, tau));
         warming.chain(near.starts().into_iter().map(|start| Point::one(STARTS, start))).collect()
     }
 

@@ -1,5 +1,6 @@
 //! A tilt as a hypothesis: of a crank's plane, of an axis, or of a slope under a linear motion.
 
+use super::axis::Axis;
 use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::hypothesis::{About, Found, Hypothesis};
@@ -11,11 +12,10 @@ use haptics::law::{Coordinate, Effect, GravityTilt, Kind};
 
 pub(crate) const ID: &str = "gravity-tilt";
 
-/// Largest tried tilt, rad: a larger one would be noticed.
-const LARGEST_TILT: f64 = 1.4;
-const TILT_STEPS: i32 = 12;
-/// Steepest tilt of a plane that was assumed to be level, as its sine.
-const STEEPEST: f64 = 0.6;
+/// Tried tilts, rad: a larger one would be noticed.
+const TILTS: Axis = Axis::even(-1.4, 1.4, 25);
+/// Tried tilts of a plane that was assumed to be level, as their sines.
+const SINES: Axis = Axis::even(0.0, 0.6, 31);
 
 impl Hypothesis for GravityTilt {
     fn about(&self) -> About {
@@ -103,19 +103,19 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
         let force = track.rows.iter().map(|r| of(track, r).map_or(0.0, |h| h.force));
         force.zip(tilted.iter().zip(&upright)).map(|(w, (t, u))| w * (t - u)).collect()
     };
-    // Steps around a tilt: the one with the smallest residual, and its weight.
-    let best = |around: f64, step: f64| {
-        let tried = (-TILT_STEPS..=TILT_STEPS).filter_map(|k| {
+    // Tilts around one, closer by a factor: the one with the smallest residual, and its weight.
+    let best = |around: f64, closer: f64| {
+        let tried = TILTS.values().filter_map(|value| {
             // The tilt is never exactly zero, because the regressor is the effect per radian.
-            let tilt = around + step * (f64::from(k) + 0.05);
+            let tilt = around + closer * (value + 0.05 * TILTS.spacing());
             let tilted = turned(tilt);
             let (left, values) = plain.left(vec![tilted.clone()], &hung_on(&tilted))?;
             (values[0] > 0.0).then_some((left, tilt, values[0]))
         });
         tried.min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let rough = best(0.0, LARGEST_TILT / f64::from(TILT_STEPS))?;
-    let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(TILT_STEPS))?;
+    let rough = best(0.0, 1.0)?;
+    let (_, tilt, weight) = best(rough.1, 0.1)?;
     let tilted = turned(tilt);
     // The model's own weight already contains the vertical part of the object's.
     let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));
@@ -130,8 +130,7 @@ fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
     let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();
     let waves = vec![column(&|r| r.motion.position.cos()), column(&|r| r.motion.position.sin())];
     let missing = |sine: f64| column(&|r| of(track, r).map_or(0.0, |h| (sine - 1.0) * h.force * level(track, r, h)));
-    let tried = (0..=30).filter_map(|k| {
-        let sine = STEEPEST * f64::from(k) / 30.0;
+    let tried = SINES.values().filter_map(|sine| {
         let (left, values) = plain.left(waves.clone(), &missing(sine))?;
         Some((left, sine, values))
     });

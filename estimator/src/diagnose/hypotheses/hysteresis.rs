@@ -1,6 +1,6 @@
 //! Presliding as a hypothesis: friction bends over a searched distance before it slides.
 
-use super::candidate::{Candidate, LARGEST_SHARE, Shape};
+use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
@@ -10,12 +10,12 @@ use haptics::law::{Effect, Hysteresis, Kind, LoadHysteresis};
 
 pub(crate) const ID: &str = "hysteresis";
 
-/// Least share of the friction that bends before it slides, and least share that counts as all of it.
-const LEAST_BENT: f64 = 0.3;
+/// Least share of the friction that counts as all of it.
 const ALL_BENT: f64 = 0.65;
 /// Presliding distance from which only a share of the friction may bend, in multiples of the shortest that is felt.
 const LONG_BENT: f64 = 6.0;
 /// Shape parameter of presliding that springs back along a straight line.
+/// Source: Wen 1976; with β = ½ the Bouc–Wen law unloads along a straight line.
 const STRAIGHT_SHAPE: f64 = 0.5;
 /// Points: presliding distance.
 const BENT: &str = "presliding distance";
@@ -71,7 +71,7 @@ fn bent(data: &Dictionary<'_>, way: f64, shape: f64) -> Candidate {
     stick_phases::bends(&data.track.rows, &values, &mut column);
     // Presliding of only part of the friction needs strong evidence: noise of the path during sticking looks like a
     // short bend.
-    let least = if way > LONG_BENT * data.grid.felt { LEAST_BENT } else { ALL_BENT };
+    let least = if way > LONG_BENT * data.grid.felt { LEAST_SHARE } else { ALL_BENT };
     let hysteresis = Candidate::one(ID, Kind::Plant, "share", "1", column);
     let share = Shape::Share { least, whole: ALL_BENT, most: LARGEST_SHARE };
     hysteresis.shaped(share).at("way", way, data.units().length)

@@ -1,5 +1,6 @@
 //! A local resistance in both directions, or a push at a place, as a hypothesis: place and width are searched.
 
+use super::axis::Axis;
 use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
@@ -10,12 +11,9 @@ use std::f64::consts::TAU;
 
 pub(crate) const ID: &str = "local-resistance";
 
-/// Number of tried places, and the widths as shares of the range.
-const PLACES: usize = 24;
-const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
-/// Places around one that was found, in steps of the coarse grid, and widths relative to the one found.
-const PLACES_AROUND: [f64; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
-const WIDTHS_AROUND: [f64; 5] = [0.65, 0.8, 1.0, 1.25, 1.5];
+/// Tried places and widths, as shares of the range.
+pub(crate) const PLACES: Axis = Axis::cells(24);
+const WIDTHS: Axis = Axis::geometric(0.12, 0.35, 3);
 /// Points: place and width.
 const HUMP: &str = "place and width";
 
@@ -26,17 +24,17 @@ impl Hypothesis for LocalResistance {
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
         let (from, span) = (if ranges.turn > 0.0 { 0.0 } else { ranges.low }, ranges.span());
-        let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
-        places.flat_map(|place| WIDTHS.map(|width| Point::two(HUMP, place, width * span))).collect()
+        let places = PLACES.values().map(|share| from + span * share);
+        places.flat_map(|place| WIDTHS.values().map(move |width| Point::two(HUMP, place, width * span))).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
         let found = near.of(ID).filter_map(|found| found.value("place").zip(found.value("width")));
         let refined = |(place, width): (f64, f64)| {
-            PLACES_AROUND.into_iter().flat_map(move |aside| {
-                let place = place + near.step * aside * near.ranges.span() / PLACES as f64;
-                near.times(width, WIDTHS_AROUND).map(|width| Point::two(HUMP, place, width))
-            })
+            PLACES
+                .around(place, near.ranges.span(), near.step)
+                .into_iter()
+                .flat_map(move |place| WIDTHS.around(width, 1.0, near.step).map(|width| Point::two(HUMP, place, width)))
         };
         found.flat_map(refined).collect()
     }

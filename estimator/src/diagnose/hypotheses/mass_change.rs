@@ -28,7 +28,7 @@ impl Hypothesis for MassChange {
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
         let starts = ranges.starts().map(|start| Point::one(STARTS, start));
-        ranges.settling().map(|tau| Point::one(SETTLING, tau)).into_iter().chain(starts).collect()
+        ranges.settling().map(|tau| Point::one(SETTLING, tau)).chain(starts).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {

@@ -3,6 +3,7 @@
 
 pub(crate) mod added_constraint;
 pub(crate) mod all;
+pub(crate) mod axis;
 pub(crate) mod axis_sign;
 pub(crate) mod backlash;
 pub(crate) mod basis_functions;

@@ -1,9 +1,10 @@
 //! A spring as a hypothesis, linear or hardening: the rest position of a hardening one is searched.
 
 use super::added_constraint;
+use super::axis::Axis;
 use super::candidate::{Candidate, Shape, about_its_zero};
 use super::dictionary::Dictionary;
-use super::grid::{BETWEEN, Near, Point, Ranges};
+use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
 use super::relations::{Form, Over};
 use crate::diagnose::data::regression_data::Track;
@@ -11,11 +12,9 @@ use haptics::law::{Effect, Kind, ReturnSpring};
 
 pub(crate) const ID: &str = "return-spring";
 
-/// Number of tried rest positions of a hardening spring, and their largest distance from the middle, in half ranges.
-const RESTS: u32 = 13;
-const RESTS_WITHIN: f64 = 1.5;
-/// Number of rest positions if the linear part of the spring shows.
-const FINER_RESTS: u32 = 25;
+/// Tried rest positions of a hardening spring, as shares of the range from its lower end. They are twice as many if the
+/// linear part of the spring shows.
+const RESTS: Axis = Axis::even(-0.25, 1.25, 13);
 /// Points: rest position of a cubic.
 const CUBIC: &str = "cubic";
 /// Points: rest position of a spring whose linear part shows, too. Tried if such a spring was found.
@@ -34,11 +33,11 @@ impl Hypothesis for ReturnSpring {
         let hardens = |found: &&Candidate| found.regressors.len() > 2 || !found.searched.is_empty();
         // A wall and a hardening spring are similar.
         let is_similar = near.of(added_constraint::ID).next().is_some() || near.of(ID).any(|found| hardens(&found));
-        let count = if is_similar { FINER_RESTS } else { 0 };
-        let apart = near.step * RESTS_WITHIN * near.ranges.range / f64::from(RESTS - 1);
+        let finer = is_similar.then(|| rests(RESTS.halved(), &near.ranges)).into_iter().flatten();
         let cubics = near.of(ID).filter(hardens).filter_map(|found| found.value("q0"));
-        let cubics = cubics.flat_map(|q0| BETWEEN.map(|s| Point::one(CUBIC, q0 + s * apart)));
-        rests(count, &near.ranges).map(|rest| Point::one(HARDENING, rest)).chain(cubics).collect()
+        let cubics =
+            cubics.flat_map(|q0| RESTS.around(q0, near.ranges.range, near.step)).map(|q0| Point::one(CUBIC, q0));
+        finer.map(|rest| Point::one(HARDENING, rest)).chain(cubics).collect()
     }
 
     fn candidates(&self, data: &Dictionary<'_>) -> Vec<Candidate> {
@@ -97,9 +96,8 @@ fn middle_and_half(track: &Track) -> [f64; 2] {
     [0.5 * (low + high), 0.5 * (high - low).max(1e-12)]
 }
 
-/// Rest positions of a spring, evenly spaced about the middle of the range.
-fn rests(count: u32, ranges: &Ranges<'_>) -> impl Iterator<Item = f64> {
-    let (low, high) = (ranges.low, ranges.high);
-    let share = move |k: u32| 2.0 * f64::from(k) / f64::from(count - 1) - 1.0;
-    (0..count).map(move |k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k)))
+/// Rest positions of a spring.
+fn rests(axis: Axis, ranges: &Ranges<'_>) -> impl Iterator<Item = f64> {
+    let (low, range) = (ranges.low, ranges.range);
+    axis.values().map(move |share| low + range * share)
 }

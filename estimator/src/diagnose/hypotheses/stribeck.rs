@@ -1,5 +1,6 @@
 //! Stribeck friction as a hypothesis: the speed at which static friction decays is searched, for two exponents.
 
+use super::axis::Axis;
 use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
@@ -13,14 +14,15 @@ use haptics::law::{Effect, Stribeck};
 pub(crate) const ID: &str = "stribeck";
 
 /// Speeds of the decay of static friction, as shares of the usual speed.
-const SPEEDS: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
-/// The same around a speed that was found, relative to it.
-const SPEEDS_AROUND: [f64; 5] = [0.72, 0.85, 1.0, 1.18, 1.38];
+pub(crate) const SPEEDS: Axis = Axis::geometric(0.06, 0.9, 12);
 /// Exponents of that decay; 0 is the Gaussian.
-const FALLING: [f64; 2] = [0.0, 1.0];
+/// Source: the Gaussian and the exponential form of the Stribeck curve (Armstrong-Hélouvry, Dupont & Canudas de Wit
+/// 1994).
+const FALLING: Axis = Axis::even(0.0, 1.0, 2);
 /// Ratio of speeds at which a Gaussian is most like an exponential.
 const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Number of rows, on either side, over which an acceleration is evaluated.
+/// Derived: the shortest window of an acceleration, two rows on either side (`FINER`).
 const RATE_ROWS: f64 = 2.0;
 /// Share of the rows that count as slow.
 const SLOW_ROWS_SHARE: f64 = 0.25;
@@ -41,8 +43,8 @@ impl Hypothesis for Stribeck {
     }
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
-        let of = |alpha: f64| SPEEDS.map(|share| Point::two(DECAY, share * ranges.fast, alpha));
-        FALLING.into_iter().flat_map(of).collect()
+        let of = |alpha: f64| SPEEDS.values().map(move |share| Point::two(DECAY, share * ranges.fast, alpha));
+        FALLING.values().flat_map(of).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
@@ -51,7 +53,7 @@ impl Hypothesis for Stribeck {
             // The other exponent is tried as finely: on the coarse grid the wrong one may fit better.
             let [gaussian, exponential] =
                 if alpha == 1.0 { [vs * LIKE_EXPONENTIAL, vs] } else { [vs, vs / LIKE_EXPONENTIAL] };
-            let of = |(vs, alpha)| near.times(vs, SPEEDS_AROUND).map(|vs| Point::two(DECAY, vs, alpha));
+            let of = |(vs, alpha)| SPEEDS.around(vs, 1.0, near.step).map(|vs| Point::two(DECAY, vs, alpha));
             [(gaussian, 0.0), (exponential, 1.0)].map(of).concat()
         };
         near.of(ID).flat_map(refined).collect()

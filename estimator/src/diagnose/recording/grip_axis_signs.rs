@@ -3,9 +3,10 @@
 //!
 //! These laws hold for any grip and object, so they are tested before the recording is segmented.
 
-use super::rate_signs::{mirrored, with_rates_of_motion};
+use super::rate_signs::{CORRELATED, mirrored, with_rates_of_motion};
 use super::sample_faults;
 use crate::diagnose::contract::Cause;
+use crate::diagnose::data::limits::{CERTAIN, LEAST_PHASE_SAMPLES};
 use estimation::segment::threshold::percentile;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{Tip, is_two_fingered};
@@ -13,16 +14,10 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least force of each finger in a grip, as a share of the usual grip.
-const PRESSING: f64 = 0.3;
-/// Least force of each finger in a grip, in standard deviations of the noise.
-const OVER_NOISE: f64 = 10.0;
-/// Least number of samples of a grip.
-const LEAST_GRIP_SAMPLES: usize = 20;
-/// Correlation of the two forces from which nothing is held between the fingers.
-const NOTHING_HELD_CORRELATION: f64 = 0.8;
+/// Least force of a press, as a share of the usual grip, or of the strongest press against a stop.
+pub(crate) const PRESSING: f64 = 0.4;
 /// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
-const TRAVEL_M: f64 = 2e-3;
+pub(crate) const TRAVEL_M: f64 = 2e-3;
 const STAYS: f64 = 0.1;
 /// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
 const STANDS_M: f64 = 5e-4;
@@ -91,7 +86,7 @@ impl Grips {
         let mut any: Vec<f64> =
             (0..recording.len()).map(|i| fx[0][i].hypot(fy[0][i]).max(fx[1][i].hypot(fy[1][i]))).collect();
         let noise = [&fx[0], &fx[1], &fy[0], &fy[1]].map(|f| white_noise(f)).into_iter().fold(0.0, f64::max);
-        let floor = OVER_NOISE * noise;
+        let floor = CERTAIN * noise;
         let least = (PRESSING * percentile(&mut press, 0.95)).max(floor);
         let least_n = (PRESSING * percentile(&mut any, 0.95)).max(floor);
         let mut spans: Vec<Range<usize>> = Vec::new();
@@ -101,7 +96,7 @@ impl Grips {
                 _ => spans.push(i..i + 1),
             }
         }
-        spans.retain(|s| s.len() >= LEAST_GRIP_SAMPLES);
+        spans.retain(|s| s.len() >= LEAST_PHASE_SAMPLES);
         let [x, y] = [place(|p| p.x), place(|p| p.y)];
         (least_n > 0.0).then_some(Self { spans, least_n, x, y, fx, fy })
     }
@@ -167,12 +162,12 @@ impl Grips {
             let samples: Vec<usize> = (0..recording.len()).filter(pushes).collect();
             let sum = |f: &dyn Fn(usize) -> f64| samples.iter().map(|i| f(*i)).sum::<f64>();
             let [along, across] = [&self.fx[k], &self.fy[k]].map(|f| sum(&|i| f[i].abs()));
-            if samples.len() < LEAST_GRIP_SAMPLES || across > 0.5 * along {
+            if samples.len() < LEAST_PHASE_SAMPLES || across > 0.5 * along {
                 continue;
             }
             let outwards = if k == 0 { sum(&|i| self.fx[k][i]) } else { -sum(&|i| self.fx[k][i]) };
             let name = k + 1;
-            if outwards < -NOTHING_HELD_CORRELATION * along {
+            if outwards < -CORRELATED * along {
                 let why = format!("finger {name} pushes alone, and fx{name}_N pulls: a finger can only push");
                 return Some(Found { axes: vec![format!("fx{name}_N")], why });
             }
@@ -196,7 +191,7 @@ impl Grips {
         let [one, two] = &self.fx;
         let size = |f: &[f64]| self.mean(|i| f[i] * f[i]).sqrt();
         let together = self.mean(|i| one[i] * two[i]) / (size(one) * size(two)).max(f64::MIN_POSITIVE);
-        if together.abs() < NOTHING_HELD_CORRELATION {
+        if together.abs() < CORRELATED {
             return None;
         }
         let pulls = [self.mean(|i| one[i]) < 0.0, self.mean(|i| two[i]) > 0.0];
@@ -225,7 +220,7 @@ impl Grips {
         }
         let [one, two] = [0, 1].map(|k| lifts.iter().map(|l| l.gained_n[k]).sum::<f64>());
         let noise = white_noise(&self.fy[0]).max(white_noise(&self.fy[1]));
-        if (one - two).abs().max((one + two).abs()) < OVER_NOISE * noise {
+        if (one - two).abs().max((one + two).abs()) < CERTAIN * noise {
             return None;
         }
         let all = |axis: &str, unit: &str| [1, 2].map(|k| format!("{axis}{k}_{unit}")).to_vec();

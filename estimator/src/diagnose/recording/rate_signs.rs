@@ -1,3 +1,4 @@
+use foundation::signal::task::DERIVATIVE_WINDOW_S;
 use haptics::recording::Recording;
 use std::borrow::Cow;
 
@@ -16,14 +17,13 @@ pub(crate) const RATES: [(&str, &str); 12] = [
     ("dqb1_rad_s", "qb1_rad"),
     ("dqt1_rad_s", "qt1_rad"),
 ];
-/// Time over which differences are taken, s.
-pub(crate) const DIFFERENCE_S: f64 = 0.03;
-/// Correlation with the motion's rate at or below which a rate is mirrored.
-pub(crate) const AGAINST: f64 = -0.8;
+
+/// Correlation, of either sign, that is certain.
+pub(crate) const CORRELATED: f64 = 0.8;
 
 /// The recording with the sign of a rate corrected that goes against its motion, and the name of that rate.
 pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Option<&'static str>) {
-    let against = RATES.iter().find(|(rate, of)| correlation(recording, rate, of).is_some_and(|c| c < AGAINST));
+    let against = RATES.iter().find(|(rate, of)| correlation(recording, rate, of).is_some_and(|c| c < -CORRELATED));
     match against {
         Some((rate, _)) => (Cow::Owned(mirrored(recording, &[rate])), Some(rate)),
         None => (Cow::Borrowed(recording), None),
@@ -36,7 +36,7 @@ pub(crate) fn correlation(recording: &Recording, rate: &str, of: &str) -> Option
     let time_s = recording.time_s.as_ref()?;
     let n = time_s.len();
     let period_s = (time_s.last()? - time_s.first()?) / n.max(2) as f64;
-    let half = ((0.5 * DIFFERENCE_S / period_s).round() as usize).max(1);
+    let half = ((0.5 * DERIVATIVE_WINDOW_S / period_s).round() as usize).max(1);
     let (mut across, mut of_rate, mut of_slope) = (0.0_f64, 0.0_f64, 0.0_f64);
     for i in (half..n.saturating_sub(half)).step_by(half) {
         let slope = (place[i + half] - place[i - half]) / (time_s[i + half] - time_s[i - half]).max(1e-9);

@@ -2,7 +2,9 @@
 //! mirrored axes.
 
 use crate::diagnose::contract::{Cause, CauseParameter, Gain, parameter};
+use crate::diagnose::data::limits::{CERTAIN, SIGNIFICANT};
 use crate::diagnose::hypotheses::{axis_sign, channel_fault, force_saturation, length_scale};
+use crate::diagnose::selection::held_out_gain::LEAST_CHANGE_SHARE;
 use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
@@ -15,8 +17,6 @@ pub struct Faults {
     pub bad: Vec<bool>,
 }
 
-/// Distance of a saturation limit from the samples, in standard deviations of the noise, from which none is clipped.
-const RAIL_SIGMAS: f64 = 3.5;
 /// Kinds of warnings that are a fault of a channel.
 const CHANNEL: [&str; 7] =
     ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
@@ -65,7 +65,7 @@ fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [
     let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
     let (Some(channel), Some(span)) = (channel, warning.spans.first()) else { return };
     let level = channel.values.get(span.first).map_or(0.0, |v| v.abs());
-    let near = level - RAIL_SIGMAS * white_noise(&channel.values);
+    let near = level - SIGNIFICANT * white_noise(&channel.values);
     for (bad, value) in bad.iter_mut().zip(&channel.values) {
         *bad |= value.abs() > near;
     }
@@ -156,13 +156,9 @@ pub fn against_motion(which: &str) -> Cause {
     wrong_sign(which, format!("{which} goes against what the recorded places do; it is taken with the other sign"))
 }
 
-/// Standard errors, and least relative error, from which a known length shows a wrong scale.
-const SCALE_SIGMAS: f64 = 6.0;
-const LEAST_SCALE: f64 = 2e-3;
-
 /// Scale error of lengths (`epsilon` with its standard error) against a known length, as a cause; `None` if they agree.
 pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
-    let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
+    let off = epsilon.abs() > LEAST_CHANGE_SHARE.max(CERTAIN * std_error);
     let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);
     off.then(|| certain(length_scale::ID, vec![parameter("epsilon", epsilon, std_error, "1")], evidence))
 }

@@ -6,6 +6,8 @@
 //! Sub-sample offset between force and motion, which is no delay.
 
 use super::delay_scan::{Demands, look};
+use crate::diagnose::data::direction::CLOCKS_S;
+use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::regression_data::{Model, Row, Track};
 use crate::diagnose::data::row_means::{Weights, column};
 use crate::diagnose::hypotheses::basis_functions::generic;
@@ -20,7 +22,7 @@ use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
 /// Demands on a guess for a repetition of the diagnosis.
-const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
+const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: SURE };
 
 /// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one
 /// that matters. Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
@@ -141,9 +143,8 @@ fn is_force(name: &str) -> bool {
     })
 }
 
-/// Largest offset of one whole sample between channels that sampling alone explains, s.
-const LARGEST_SKEW_S: f64 = 2e-3;
 /// Delay of a command that is held until the next sample, in samples: half a sample with some margin.
+/// Derived: a command that is held acts half a sample late on average; 0.2 samples are margin.
 const HELD_COMMAND: f64 = 0.7;
 /// Difference of the clocks and filters of two instruments, s: a smaller delay of the force is none.
 pub(crate) const CLOCKS_DIFFER_S: f64 = 3e-4;
@@ -158,7 +159,7 @@ pub fn skew(study: &ChannelFit, k: usize, track: &Track) -> Option<f64> {
     let found = delay.first()?;
     // A hand's force is measured; a motor's is usually the command.
     let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
-    let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
+    let ahead_s = track.raw_period_s.min(CLOCKS_S).max(held_s);
     let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }

@@ -2,11 +2,12 @@
 
 use nalgebra::DMatrix;
 
-/// Number of rows multiplied at a time: a block of the matrix product's own, so that sums stay equal to the bit. Then
-/// the least number of rows, below which another algorithm is used, and the number of columns at a time.
+/// Number of rows multiplied at a time: a block of the matrix product's own, so that sums stay equal to the bit.
+/// Derived: the block of rows of the `matrixmultiply` crate (its KC for f64), so that sums stay equal to the bit.
 const TILE: usize = 256;
-const LEAST_TILE: usize = 8;
-const PANEL: usize = 64;
+/// Number of columns multiplied at a time.
+/// Derived: 64 columns of 256 rows take 128 KiB and fit in the cache of a core.
+pub(crate) const PANEL: usize = 64;
 
 /// Gram matrix of all columns over the picked rows. It is computed as matrix products, which are several times as fast
 /// as single columns. The tiles fit in the cache, and only one side of the diagonal is computed.
@@ -35,8 +36,10 @@ pub fn more(columns: &[Vec<f64>], picked: &[usize], had: &DMatrix<f64>, from: &[
     })
 }
 
-/// Least number of columns side by side, below which another algorithm is used, and number of columns at a time.
-const LEAST_COLUMNS: usize = 8;
+/// Least number of rows and columns, below which another algorithm is used.
+/// Derived: the next power of two above the 5 up to which `nalgebra` multiplies by another algorithm.
+const LEAST_SIDE: usize = 8;
+/// Number of columns of a strip.
 pub const STRIP: usize = 24;
 
 /// Columns with weighted rows.
@@ -62,7 +65,7 @@ impl Weighed<'_> {
     pub fn products(&self, strips: &[Vec<usize>], with: &[usize], own: bool, picked: &[usize]) -> Vec<DMatrix<f64>> {
         // Too few columns are repeated.
         let enough = |columns: &[usize]| -> Vec<usize> {
-            columns.iter().copied().cycle().take(columns.len().max(LEAST_COLUMNS)).collect()
+            columns.iter().copied().cycle().take(columns.len().max(LEAST_SIDE)).collect()
         };
         let (asked, count) = (strips, with.len());
         let strips: Vec<Vec<usize>> = strips.iter().map(|strip| enough(strip)).collect();
@@ -72,11 +75,11 @@ impl Weighed<'_> {
             .iter()
             .map(|strip| DMatrix::zeros(strip.len(), with.len() + if own { strip.len() } else { 0 }))
             .collect();
-        let mut tile = DMatrix::zeros(TILE + LEAST_TILE, with.len() + widest);
-        let mut turned = DMatrix::zeros(widest, TILE + LEAST_TILE);
+        let mut tile = DMatrix::zeros(TILE + LEAST_SIDE, with.len() + widest);
+        let mut turned = DMatrix::zeros(widest, TILE + LEAST_SIDE);
         let mut rest = picked;
         while !rest.is_empty() {
-            let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_TILE { rest.len() } else { TILE });
+            let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_SIDE { rest.len() } else { TILE });
             rest = later;
             let fill = |tile: &mut DMatrix<f64>, place: usize, column: usize| {
                 let mut place = tile.column_mut(place);
@@ -106,13 +109,13 @@ impl Weighed<'_> {
 pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
     let Weighed { columns, weight } = columns;
     let mut means = Vec::with_capacity(columns.len());
-    for columns in columns.chunks(LEAST_COLUMNS) {
-        let mut sums = [0.0; LEAST_COLUMNS];
+    for columns in columns.chunks(LEAST_SIDE) {
+        let mut sums = [0.0; LEAST_SIDE];
         for rows in rows.chunk_by(|a, b| a + 1 == *b) {
             let rows = rows[0]..rows[0] + rows.len();
             let weight = &weight[rows.clone()];
             // Unused places hold an arbitrary column.
-            let mut here = [weight; LEAST_COLUMNS];
+            let mut here = [weight; LEAST_SIDE];
             here.iter_mut().zip(columns).for_each(|(here, column)| *here = &column[rows.clone()]);
             for (k, weight) in weight.iter().enumerate() {
                 sums.iter_mut().zip(&here).for_each(|(sum, here)| *sum += (here[k] * weight).powi(2));
@@ -132,13 +135,13 @@ fn is_run(rows: &[usize]) -> bool {
 /// with all before.
 fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first: usize, picked: &[usize]) {
     let count = order.len();
-    let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);
-    let mut turned = DMatrix::zeros(count - first, TILE + LEAST_TILE);
+    let mut tile = DMatrix::zeros(TILE + LEAST_SIDE, count);
+    let mut turned = DMatrix::zeros(count - first, TILE + LEAST_SIDE);
     let panels = (count - first).div_ceil(PANEL).max(1);
     let bound = |panel: usize| first + panel * (count - first) / panels;
     let mut rest = picked;
     while !rest.is_empty() && first < count {
-        let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_TILE { rest.len() } else { TILE });
+        let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_SIDE { rest.len() } else { TILE });
         rest = later;
         for (mut tile, column) in tile.column_iter_mut().zip(order) {
             let column = &columns[*column];

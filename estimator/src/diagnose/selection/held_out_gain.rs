@@ -15,8 +15,8 @@ const LAGS: usize = 10;
 /// Least change by a cause on held-out rows, 2 ln(likelihood), for them to count for or against it. A true cause gains
 /// about as much there, ± twice its root.
 const TESTED: f64 = 3.0;
-/// Share of the residual power below which a change is noise.
-const LEAST_CHANGE_SHARE: f64 = 1e-3;
+/// Relative change that is none: of the power of a residual, of the error of a rollout, of a known length.
+pub(crate) const LEAST_CHANGE_SHARE: f64 = 1e-3;
 
 /// Sums of squares over parts of the locked blocks, and rows.
 #[derive(Default)]

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Largest share of an effect in one segment, as one minus this.
+/// Derived: far above the rounding of a sum of squares (1e-16); it prevents a division by zero.
 const LEAST_REST: f64 = 1e-9;
 
 impl System {

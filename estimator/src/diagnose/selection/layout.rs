@@ -1,13 +1,13 @@
 //! Rows of a channel: segment, time, weight and hold-out role of each.
 
 use super::noise_model::Noise;
+use crate::diagnose::data::limits::{GAP_IN_PERIODS, LEAST_PIECES};
+use crate::diagnose::hypotheses::axis::Axis;
 use std::collections::HashMap;
 
 /// Lengths of the jackknife blocks, s: correlation times of a model error, which are typical durations of a hand's
 /// reversal and stroke.
-const PIECES_S: [f64; 3] = [0.25, 0.5, 1.0];
-/// Least number of jackknife blocks from which their scatter can be estimated.
-const LEAST_PIECES: usize = 8;
+const PIECES_S: Axis = Axis::geometric(0.25, 1.0, 3);
 
 /// Hold-out role of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,9 +82,9 @@ impl Layout {
     pub fn pieces(&self) -> Vec<Vec<usize>> {
         match self.blocks {
             Blocks::OfRows => {
-                PIECES_S.iter().filter_map(|piece_s| self.runs((piece_s / self.period_s) as usize)).collect()
+                PIECES_S.values().filter_map(|piece_s| self.runs((piece_s / self.period_s) as usize)).collect()
             }
-            Blocks::OfTime => PIECES_S.iter().map(|piece_s| self.intervals(*piece_s)).collect(),
+            Blocks::OfTime => PIECES_S.values().map(|piece_s| self.intervals(piece_s)).collect(),
             Blocks::None => Vec::new(),
         }
     }
@@ -114,12 +114,10 @@ impl Layout {
 
 /// Numbers the segments: rows without a gap in time. `new` begins a segment in any case.
 pub fn segments(time_s: &[f64], period_s: f64, new: impl Fn(usize) -> bool) -> Vec<usize> {
-    /// Time step, in periods, from which rows are missing.
-    const GAP: f64 = 1.6;
     let mut number = 0;
     (0..time_s.len())
         .map(|i| {
-            if i > 0 && (new(i) || !(0.0..GAP * period_s).contains(&(time_s[i] - time_s[i - 1]))) {
+            if i > 0 && (new(i) || !(0.0..GAP_IN_PERIODS * period_s).contains(&(time_s[i] - time_s[i - 1]))) {
                 number += 1;
             }
             number

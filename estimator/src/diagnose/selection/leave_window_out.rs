@@ -1,10 +1,7 @@
 //! A fit without some of the rows.
 
-use super::normal_equations::{System, Use, scaled};
+use super::normal_equations::{LEAST_LEFT, System, Use, scaled};
 use nalgebra::DMatrix;
-
-/// Least remaining share of a column's power. Below it, no remaining row determines the coefficient.
-const LEAST_LEFT: f64 = 0.3;
 
 impl System {
     /// Coefficients of the model's and the chosen candidates' regressors from all training rows but these; `None` if

@@ -2,6 +2,7 @@
 
 use super::layout::Layout;
 use super::normal_equations::Use;
+use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use std::ops::Range;
 
 /// Highest order of the autoregression that whitens the residual of a force.
@@ -39,7 +40,7 @@ pub fn whitener(residual: &[f64], layout: &Layout, used: &[Use]) -> Vec<f64> {
             }
         }
     }
-    if lags[0] <= 0.0 || count < 40.0 {
+    if lags[0] <= 0.0 || count < LEAST_ROWS_OF_A_FIT as f64 {
         return Vec::new();
     }
     let mut best = (count * lags[0].ln(), Vec::new());

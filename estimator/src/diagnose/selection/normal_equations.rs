@@ -6,24 +6,25 @@ use super::gram;
 use super::gram::{Weighed, gram, mean_squares};
 use super::layout::{Held, Layout};
 use super::noise_model::Whitening;
+use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Least number of rows of a block; `MOST_BLOCKS` is the largest number of blocks.
-const LEAST_BLOCK: usize = 12;
-/// The same for rows that are single observations.
-const LEAST_ALONE: usize = 3;
-const MOST_BLOCKS: usize = 20;
+/// Least number of rows of a block.
+pub(crate) const LEAST_BLOCK: usize = 12;
+/// Largest number of blocks.
+pub(crate) const MOST_BLOCKS: usize = 20;
 /// Every so many-th block is locked: it is used for the gain only.
-const LOCKED_EVERY: usize = 4;
+pub(crate) const LOCKED_EVERY: usize = 4;
 /// Guard time beside a locked block, s: rows within it are not used.
 const GUARD_S: f64 = 0.1;
-/// Least effective number of rows of a block.
-const LEAST_SAID: usize = 3;
-/// Rounding error of sums of ones.
-const ROUNDING: f64 = 1e-6;
+/// Rounding error of sums over the rows.
+/// Derived: far above the rounding of a sum of ones (1e-16 times the rows) and far below one row.
+pub(crate) const ROUNDING: f64 = 1e-6;
+/// Least remaining share of a column's power. Below it, no remaining row determines the coefficient.
+pub(crate) const LEAST_LEFT: f64 = 0.3;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
@@ -59,8 +60,8 @@ pub fn uses(layout: &Layout) -> Vec<Use> {
             said - own
         })
         .collect();
-    let least = if is_alone { LEAST_ALONE } else { LEAST_BLOCK };
-    let most = ((said + ROUNDING) as usize / LEAST_SAID).clamp(1, MOST_BLOCKS);
+    let least = if is_alone { FEWEST } else { LEAST_BLOCK };
+    let most = ((said + ROUNDING) as usize / FEWEST).clamp(1, MOST_BLOCKS);
     let blocks = (testable.len() / least).clamp(1, most);
     let guard = if is_alone { 0 } else { (GUARD_S / layout.period_s).round().max(1.0) as usize };
     let block_of = |k: usize| ((before[k] * blocks as f64 / said.max(1e-300)) as usize).min(blocks - 1);
@@ -267,10 +268,9 @@ impl System {
 
     /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.
     pub fn supported(&self, candidate: usize) -> bool {
-        const LEAST_SUPPORT_SHARE: f64 = 0.3;
         self.places[candidate]
             .clone()
-            .all(|c| self.energy[c].0 > LEAST_SUPPORT_SHARE * self.energy[c].1 && self.energy[c].1 > 0.0)
+            .all(|c| self.energy[c].0 > LEAST_LEFT * self.energy[c].1 && self.energy[c].1 > 0.0)
     }
 
     /// Least squares on the rows that train.
@@ -353,6 +353,8 @@ pub(crate) struct Scaled {
 
 /// Factors the normal equations. A small ridge keeps them regular for equal columns.
 pub(crate) fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
+    /// Derived: far above the rounding of a scaled sum of squares (1e-16) and far below the distinct share of any
+    /// regressor.
     const NUMERICAL_RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =

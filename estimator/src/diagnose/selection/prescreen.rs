@@ -1,16 +1,12 @@
 //! Prescreen before the noise is known: the strongest causes, from few of the products of all columns.
 
-use super::gram::{STRIP, Weighed};
+use super::gram::{PANEL, STRIP, Weighed};
 use super::layout::Layout;
 use super::normal_equations::{FOLDS, System, Use, columns_of, counted, energy, places, uses};
+use super::rules::LIKELY_CAUSES;
 use super::stepwise::{Stepwise, cheapest};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use nalgebra::DMatrix;
-
-/// Number of columns up to which all are multiplied at once.
-const MULTIPLIED_AT_ONCE: usize = 64;
-/// Number of causes for which products are computed ahead.
-const AHEAD: usize = 6;
 
 /// A system without whitening, whose products are computed when they are needed: those of the model with all columns,
 /// then those of each chosen cause. Products not yet computed are NaN.
@@ -27,7 +23,7 @@ pub struct Rough<'a> {
 impl<'a> Rough<'a> {
     pub fn new(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64], layout: &'a Layout) -> Self {
         let columns = columns_of(base, candidates, y);
-        if columns.len() < MULTIPLIED_AT_ONCE {
+        if columns.len() < PANEL {
             let system = System::new(base, candidates, y, layout, Vec::new());
             return Self { system, candidates, columns, weight: &layout.weight, parts: Vec::new() };
         }
@@ -141,7 +137,7 @@ fn likely(priced: &[(usize, f64)], open: &[usize], candidates: &[Candidate]) -> 
     others.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut ahead: Vec<usize> = Vec::new();
     for (c, _) in others {
-        if ahead.len() < AHEAD && ahead.iter().all(|known| candidates[*known].id != candidates[c].id) {
+        if ahead.len() < LIKELY_CAUSES && ahead.iter().all(|known| candidates[*known].id != candidates[c].id) {
             ahead.push(c);
         }
     }

@@ -2,6 +2,7 @@
 
 use super::comparison::ChannelFit;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::hypotheses::all::is_share;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -11,10 +12,6 @@ use haptics::law::{Coordinate, Law, PositionRipple, ReturnSpring};
 
 /// Share of the distance between two tried values that is added to the vertex's standard error.
 const OF_STEP: f64 = 0.1;
-/// Standard error of a value without a neighbour on one side, as a share of the distance to the other.
-const AT_THE_END: f64 = 0.5;
-/// Relative standard error of a value that was tried alone.
-const ALONE: f64 = 1.0;
 
 /// A searched value with one standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +122,7 @@ pub fn known(study: &ChannelFit, k: usize, which: usize) -> Known {
     match neighbours(study, own, which).map(tried).into() {
         (Some(below), Some(above)) => vertex(below, (here, least), above),
         (Some((other, _)), None) | (None, Some((other, _))) => {
-            Known { value: here, std_error: AT_THE_END * (other - here).abs() }
+            Known { value: here, std_error: HALF * (other - here).abs() }
         }
         (None, None) => alone(here),
     }
@@ -191,7 +188,7 @@ fn wave([below, above]: [Option<(f64, f64)>; 2], (here, least): (f64, f64)) -> K
 }
 
 fn alone(value: f64) -> Known {
-    Known { value, std_error: ALONE * value.abs() }
+    Known { value, std_error: value.abs() }
 }
 
 /// The same cause with another value at one place.

@@ -1,12 +1,10 @@
 //! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::comparison::ChannelFit;
+use super::rules::LIKELY_CAUSES;
 use super::stepwise::{MANY, Stepwise};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
-
-/// Number of causes, strongest alone, that are tried as the first of a pair.
-const FIRST_OF_A_PAIR: usize = 6;
 
 impl Stepwise<'_> {
     /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the
@@ -17,8 +15,7 @@ impl Stepwise<'_> {
         alone.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut firsts: Vec<usize> = Vec::new();
         for (_, c) in alone {
-            if firsts.len() < FIRST_OF_A_PAIR && firsts.iter().all(|f| self.candidates[*f].id != self.candidates[c].id)
-            {
+            if firsts.len() < LIKELY_CAUSES && firsts.iter().all(|f| self.candidates[*f].id != self.candidates[c].id) {
                 firsts.push(c);
             }
         }

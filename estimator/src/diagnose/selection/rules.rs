@@ -1,16 +1,21 @@
 //! Limits that decide which causes an answer names, side by side for the two kinds of channels.
 
+use crate::diagnose::data::limits::{AMBIGUOUS, SLOW_ROW_S};
+
 /// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200.
 pub(crate) const THRESHOLD: f64 = 20.0;
-/// The same for slow rows, whose noise averages out less.
-const THRESHOLD_SLOW: f64 = 25.0;
-/// Row period from which rows count as slow, s.
-const SLOW_PERIOD_S: f64 = 0.019;
+/// The same for slow rows, whose noise averages out less, and for few observations.
+pub(crate) const THRESHOLD_SLOW: f64 = 25.0;
 /// Largest ratio of final residual to force noise under a correct model along one coordinate, whose residual also
 /// contains noise of the motion: for a noise measured in free rows, and for one estimated from fast changes.
-const MUCH: f64 = 1.6;
-const MUCH_UNSEEN: f64 = 8.0;
+pub(crate) const MUCH: f64 = 1.6;
+pub(crate) const MUCH_UNSEEN: f64 = 4.0;
+/// Largest ratio of residuals, after over before, of an explanation that is as good.
+pub(crate) const AS_GOOD: f64 = 1.1;
+/// Number of causes, strongest first, that are tried as the first of a pair and whose products are computed ahead.
+pub(crate) const LIKELY_CAUSES: usize = 6;
 /// Probability of an alternative below which it is excluded.
+/// Derived: 1/(1 + e³) = 0.047, an evidence margin of 6 in 2 ln(likelihood).
 pub const OPEN: f64 = 0.047;
 
 /// The limits in force for one channel. Evidence is 2 ln(likelihood ratio) less the price of the parameters.
@@ -65,10 +70,10 @@ impl Rules {
     /// Channel whose rows may be few, or dealt out between fitted and held-out ones.
     pub fn of_channel(period_s: f64) -> Self {
         Self {
-            threshold: if period_s > SLOW_PERIOD_S { THRESHOLD_SLOW } else { THRESHOLD },
+            threshold: if period_s > SLOW_ROW_S { THRESHOLD_SLOW } else { THRESHOLD },
             has_dry_friction: true,
             one_loss: false,
-            ambiguous: 10.0,
+            ambiguous: AMBIGUOUS,
             ridge: 1e-2,
             remainder: 0.12,
             sure: 10.0,
@@ -77,12 +82,12 @@ impl Rules {
             shown: 1.0,
             steady: 15.0,
             harms: 1.05,
-            unexplained: 25.0,
+            unexplained: THRESHOLD_SLOW,
             overfit: f64::INFINITY,
             least_share: 0.0,
             much: None,
             surely_not_white: 1e-12,
-            visible: 25.0,
+            visible: THRESHOLD_SLOW,
             open: OPEN,
         }
     }
@@ -97,10 +102,10 @@ impl Rules {
         Self {
             one_loss: true,
             is_sparse: false,
-            unexplained: 20.0,
-            overfit: 1.1,
+            unexplained: THRESHOLD,
+            overfit: AS_GOOD,
             least_share: f64::NEG_INFINITY,
-            visible: 20.0,
+            visible: THRESHOLD,
             // An evidence margin of 6.
             open: 1.0 / (1.0 + 3.0_f64.exp()),
             ..Self::of_channel(period_s)

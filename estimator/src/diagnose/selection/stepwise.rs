@@ -1,7 +1,8 @@
 //! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
 
-use super::normal_equations::{Solved, System};
+use super::normal_equations::{ROUNDING, Solved, System};
 use super::rules::Rules;
+use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::{Form, Relation};
@@ -11,15 +12,13 @@ use std::collections::HashMap;
 /// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
 /// of two.
 pub const MANY: usize = 2;
-/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
+/// Most causes at once.
 const MOST_CAUSES: usize = 4;
+/// Number of further causes if the model has no friction.
+/// Derived: dry and viscous friction, which the model then lacks.
 const FRICTIONS: usize = 2;
-/// Rounds of swapping after each addition.
-const SWAP_ROUNDS: usize = 3;
 /// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
-/// Relative change of the folds' errors below which they did not test a cause.
-const UNTESTED: f64 = 1e-8;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
 
@@ -244,7 +243,7 @@ impl Stepwise<'_> {
     }
 
     pub(crate) fn swap(&self, chosen: &mut [usize]) {
-        for _ in 0..SWAP_ROUNDS {
+        for _ in 0..MOST_ROUNDS {
             let mut changed = false;
             for k in 0..chosen.len() {
                 let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
@@ -344,7 +343,7 @@ impl Stepwise<'_> {
         // If only rows that are never held out determine it (a bias beside gravity: the free rows), the folds do not
         // change.
         let gain = before - after;
-        if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
+        if self.is_spared(chosen, k, (before, after)) {
             return self.clear(chosen, k);
         }
         gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
@@ -356,7 +355,7 @@ impl Stepwise<'_> {
         let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
         let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
         let score = self.plain_price(&without(chosen, k)).map_or(0.0, |less| less - self.price(chosen));
-        (0.0..SPARED * score).contains(&lost)
+        (-ROUNDING..SPARED * score).contains(&lost)
     }
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {

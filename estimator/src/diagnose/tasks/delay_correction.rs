@@ -2,18 +2,18 @@
 
 use crate::diagnose::contract::{Baseline, Cause, Gain, Verdict, parameter};
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{CERTAIN, MOST_ROUNDS};
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
 use crate::diagnose::recording::time_delay::put_back;
+use crate::diagnose::selection::rules::AS_GOOD;
 use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
 
 /// Delay up to which a linear regressor is accurate, s.
 pub(crate) const LINEAR_S: f64 = 3e-3;
-/// Most rounds.
-pub(crate) const DELAY_ROUNDS: usize = 5;
 
 /// The diagnosis `ask`, repeated with the force shifted back while a large delay is found, and then completed.
 pub fn corrected(
@@ -28,7 +28,7 @@ pub fn corrected(
     let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
     let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
     let mut found = None;
-    for _ in 0..DELAY_ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         let back_s = whole(late_s);
         if back_s == 0.0 {
             return Ok(first);
@@ -44,8 +44,7 @@ pub fn corrected(
     }
     // A delay that was not named must improve the residual clearly.
     let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
-    let sure =
-        |found: &Findings| found.delay.rest_s.is_none_or(|[_, error]| late_s.abs() > UNNAMED_DELAY_STD_ERRORS * error);
+    let sure = |found: &Findings| found.delay.rest_s.is_none_or(|[_, error]| late_s.abs() > CERTAIN * error);
     let found = found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found)));
     Ok(match found {
         Some(found) => with_delay(found, &first, late_s, whole(late_s)),
@@ -67,10 +66,6 @@ pub(crate) fn period_s(recording: &Recording) -> Option<f64> {
     recording.time_s.as_ref().filter(|t| t.len() > 2).map(|time_s| mean_step_s(time_s))
 }
 
-/// Standard errors that a delay must have if it was not named at first.
-pub(crate) const UNNAMED_DELAY_STD_ERRORS: f64 = 5.0;
-/// Largest ratio of residuals, after over before the shift, if the delay was named.
-pub(crate) const AS_GOOD: f64 = 1.1;
 /// The same ratio if the delay was not named.
 pub(crate) const BETTER: f64 = 0.95;
 

@@ -1,6 +1,7 @@
 //! Force along one coordinate: its residual, and the causes that explain it.
 
 use crate::diagnose::data::direction::{STICKING_ROWS_TOGETHER, blur, blurred};
+use crate::diagnose::data::limits::CERTAIN;
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
@@ -233,9 +234,6 @@ pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), Estimate
     Ok((fit.rms, resisting > 0.0))
 }
 
-/// Standard errors below zero from which the wrong sign of a mass, damping or dry friction is certain.
-const SURELY_NEGATIVE: f64 = 6.0;
-
 /// True if the laws of a model, all positive physically, are estimated with the wrong sign: none is certainly positive,
 /// and the strongest and the friction's work are certainly negative.
 pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
@@ -258,8 +256,8 @@ pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
         .sum();
     let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
     // A delayed force also drives the motion, but needs no negative dry friction for that.
-    let negative = |s: &f64| *s < -SURELY_NEGATIVE;
-    Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
+    let negative = |s: &f64| *s < -CERTAIN;
+    Ok(friction < 0.0 && sizes.iter().all(|s| *s < CERTAIN) && (negative(mass) || others.iter().all(negative)))
 }
 
 /// Regressors and target of a fit.

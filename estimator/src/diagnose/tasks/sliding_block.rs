@@ -14,9 +14,11 @@ use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{CERTAIN, HAND_CLOSES_S, HAND_REST_M_S, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::experiment::proposal;
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::{
@@ -35,19 +37,12 @@ use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind,
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
-/// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
+/// Least force of a touching finger, as a share of its usual force.
 const SLIDER_TOUCH_SHARE: f64 = 0.1;
-const SLIDER_TOUCH_NOISES: f64 = 6.0;
 /// Margin at the slow closing and opening of fingers, s.
 const GRIP_CLOSING_MARGIN_S: f64 = 0.15;
-/// Least speed of sliding, m/s, and its least total duration, s.
-const SLIDES_M_S: f64 = 5e-3;
+/// Least total duration of sliding, s.
 const LEAST_S: f64 = 2.0;
-/// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
-const EMPTY_FINGERS_S: f64 = 1.0;
-const PART_S: f64 = 0.25;
-/// Standard errors by which a constant force is attributed to the sensor or to the table.
-const CONSTANT_STD_ERRORS: f64 = 4.0;
 /// Relative error of a known mass from which a scale is wrong.
 const MASS_SHARE: f64 = 0.08;
 
@@ -191,7 +186,7 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
     let lift_n = smooth(time, &net).value.iter().map(|f| f - bias_y).collect();
     let step_s = mean_step_s(time);
     let calm = smooth(time, &rate).value;
-    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > SLIDES_M_S).count() as f64 * step_s;
+    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > HAND_REST_M_S).count() as f64 * step_s;
     let channel = |name: &str, unit: &str, values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
     let along = Recording {
         name: recording.name.clone(),
@@ -218,7 +213,7 @@ fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> 
     let x: Vec<f64> = force.iter().map(|f| f.x - levels.bias_n[finger].x).collect();
     let pressed: Vec<f64> = smooth(&signals.time_s, &x).value.iter().map(|f| f.abs()).collect();
     let usual = percentile(&mut pressed.clone(), 0.95);
-    let least = (SLIDER_TOUCH_SHARE * usual).max(SLIDER_TOUCH_NOISES * levels.force_noise_n);
+    let least = (SLIDER_TOUCH_SHARE * usual).max(CERTAIN * levels.force_noise_n);
     pressed.iter().map(|f| *f > least).collect()
 }
 
@@ -236,10 +231,10 @@ fn widen(bad: &mut [bool], time_s: &[f64]) {
 
 /// Mean total force on empty fingers along the table, and its standard error, N.
 fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64)> {
-    if (levels.free.len() as f64) * step_s < EMPTY_FINGERS_S {
+    if (levels.free.len() as f64) * step_s < PAUSE_S {
         return None;
     }
-    let part = (PART_S / step_s).round().max(1.0) as usize;
+    let part = (HAND_CLOSES_S / step_s).round().max(1.0) as usize;
     let means: Vec<f64> = levels
         .free
         .chunks_exact(part)
@@ -273,8 +268,7 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
     found.alternatives.retain(|a| !CONSTANT.contains(&a.id.as_str()) && a.instead_of != cause.id);
     let free = of_empty_fingers(read);
     let (mean, error) = free.unwrap_or_default();
-    let felt = mean.abs() > CONSTANT_STD_ERRORS * error
-        && (b.value - mean).abs() < CONSTANT_STD_ERRORS * error.hypot(b.std_error);
+    let felt = mean.abs() > CERTAIN * error && (b.value - mean).abs() < CERTAIN * error.hypot(b.std_error);
     let of_sensor = |cause: &mut Cause| {
         force_bias::ID.clone_into(&mut cause.id);
         cause.kind = Kind::Instrument;
@@ -328,7 +322,6 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
 
 /// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
 fn let_go(found: &mut Named, track: &Track) {
-    const FREE_BEFORE_S: f64 = 2.0;
     let size = found.causes.iter().find(|c| c.id == force_bias::ID).and_then(|c| c.parameters.first()).map(|b| b.value);
     let (Some(next), Some(size)) = (&mut found.next, size) else { return };
     if !next.separates.iter().any(|s| s == gravity_tilt::ID) {
@@ -336,13 +329,13 @@ fn let_go(found: &mut Named, track: &Track) {
     }
     let at = |share: f64| track.quantile(share, |r| r.motion.position);
     // Rows of empty fingers, before and after, with a row's noise each.
-    let rows = 2.0 * FREE_BEFORE_S / track.period_s;
+    let rows = 2.0 * FREE_S / track.period_s;
     let lambda = rows * (size / track.force_noise.max(1e-9)).powi(2);
     next.expected_power = proposal::SURE_HUNG * proposal::power(lambda);
     next.experiment = Some(Experiment {
         id: "slide-let-go".to_owned(),
         seconds: 10.0,
-        free_s: FREE_BEFORE_S,
+        free_s: FREE_S,
         middle: 0.5 * (at(0.02) + at(0.98)),
         half_range: 0.5 * (at(0.98) - at(0.02)),
         fast: track.quantile(0.95, |r| r.motion.velocity.abs()),
@@ -356,7 +349,7 @@ fn scale(study: &ChannelFit, model: &Model, mass_kg: Option<f64>) -> Option<(f64
     let k = model.iter().position(|e| e.law().id() == Inertia.id())?;
     let variance = solved.variance(study.system.rows);
     let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
-    let differs = (ratio - 1.0).abs() >= MASS_SHARE.max((CONSTANT_STD_ERRORS + 1.0) * error);
+    let differs = (ratio - 1.0).abs() >= MASS_SHARE.max(CERTAIN * error);
     differs.then_some((ratio, error))
 }
 

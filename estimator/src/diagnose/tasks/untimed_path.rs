@@ -5,10 +5,13 @@ use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::{Part, Told};
 use crate::diagnose::contract::NotExcited;
+use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::NO_CLOCK;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::local_resistance::PLACES;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_cross_axis, force_gain, inertia, local_resistance, return_spring, time_delay,
@@ -31,11 +34,8 @@ use haptics::recording::Recording;
 
 /// Number of equal parts of the path, with the mean force of each.
 const PATH_PARTS: usize = 160;
-/// Least mean number of samples per part.
-const LEAST_PART_SAMPLES: usize = 3;
-/// Number of tried places of a local resistance, and its widths as shares of the range.
-const PATH_PLACES: usize = 24;
-const PATH_WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
+/// Tried widths of a local resistance, as shares of the range.
+const PATH_WIDTHS: Axis = Axis::geometric(0.08, 0.9, 6);
 
 /// Units of force and place.
 struct Units {
@@ -173,7 +173,7 @@ fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Ro
         })
         .collect();
     let Some(whole) = travelled.last().copied().filter(|w| *w > 0.0) else { return Vec::new() };
-    let count = (n / LEAST_PART_SAMPLES).clamp(1, PATH_PARTS);
+    let count = (n / FEWEST).clamp(1, PATH_PARTS);
     let axes = |names: [&str; 3]| names.map(|name| recording.channel(name).map(<[f64]>::to_vec));
     let measured = axes(["fx_N", "fy_N", "fz_N"]);
     let second = second_names(recording).map(|names| names.map(|n| recording.channel(&n).map(<[f64]>::to_vec)));
@@ -231,8 +231,8 @@ fn along(rows: &[Row], units: &Units) -> Result<AlongPath, EstimateError> {
         Candidate::one(id, Kind::Plant, "k", units.per_place, spring.clone()),
         Candidate::several(id, Kind::Plant, vec![spring, harder], vec![("k", units.per_place), ("k3", units.per_cube)]),
     ];
-    for (k, share) in (0..PATH_PLACES).flat_map(|k| PATH_WIDTHS.map(|w| (k, w))) {
-        let (place, width) = (low + range * (k as f64 + 0.5) / PATH_PLACES as f64, share * range);
+    for (place, width) in PLACES.values().flat_map(|place| PATH_WIDTHS.values().map(move |w| (place, w))) {
+        let (place, width) = (low + range * place, range * width);
         let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
         let resists = Candidate::one(local_resistance::ID, Kind::Plant, "F", units.force, column).positive();
         candidates.push(resists.at("place", place, units.place).at("width", width, units.place));

@@ -2,6 +2,7 @@
 
 use super::rows::{Place, Rows};
 use crate::diagnose::hypotheses::added_constraint;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::selection::comparison::ChannelFit;
 use estimation::regression::linear::least_squares;
@@ -11,18 +12,19 @@ use haptics::world::Cable;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Number of tried directions of the anchor from the middle of the carries, and inverse distances in 1/half ranges; 0
+/// Tried directions of the anchor from the middle of the carries, in turns, and inverse distances in 1/half ranges; 0
 /// is a wall.
-const DIRECTIONS: u32 = 20;
-const NEARNESS: [f64; 3] = [0.0, 0.25, 0.6];
+const ANCHOR_DIRECTIONS: Axis = Axis::cells(20);
+const NEARNESS: Axis = Axis::even(0.0, 0.6, 3);
 /// Tried shares of the carries in which the cable is slack.
-const SLACK_SHARES: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
+const SLACK_SHARES: Axis = Axis::even(0.15, 0.88, 5);
 /// Number of starting points that are refined, and of halvings of their step.
 const REFINED: usize = 4;
 const CABLE_HALVINGS: usize = 9;
 /// Most moves with one step size. Without a cable the search does not converge.
 const MOVES: usize = 15;
 /// Distance of the anchor, in half ranges, from which a cable is a wall.
+/// Derived: at 200 half ranges the circle about the anchor departs from a line by only 1/400 of a half range.
 const FAR: f64 = 200.0;
 
 /// Anchor of a cable, relative to the middle of the carries. Direction, rad; inverse distance, in 1/half ranges; travel
@@ -73,12 +75,12 @@ fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64])
         explains.worth(&pull(rows, number, anchor, length), weight)
     };
     let mut tried: Vec<(f64, Tie)> = Vec::new();
-    for (k, nearness) in (0..DIRECTIONS).flat_map(|k| NEARNESS.map(|d| (k, d))) {
-        let direction = TAU * f64::from(k) / f64::from(DIRECTIONS);
+    for (turn, nearness) in ANCHOR_DIRECTIONS.values().flat_map(|turn| NEARNESS.values().map(move |d| (turn, d))) {
+        let direction = TAU * turn;
         let (anchor, away) = field.anchor_and_length(Tie([direction, nearness, 0.0]));
         let mut lengths: Vec<f64> = places.iter().map(|p| ((p - anchor).norm() - away) / range_m).collect();
         lengths.sort_by(f64::total_cmp);
-        for slack in SLACK_SHARES {
+        for slack in SLACK_SHARES.values() {
             let tie = Tie([direction, nearness, lengths[(slack * (lengths.len() - 1) as f64) as usize]]);
             tried.push((worth(tie), tie));
         }
@@ -170,6 +172,7 @@ fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64>
 /// `None` if they cannot be computed.
 pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
+    /// Derived: far above rounding (1e-16 m) and far below the distance of an anchor, whose squared share is the error.
     const STEP_M: f64 = 1e-4;
     let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == added_constraint::ID)?;
     let cable = &study.candidates[pick];

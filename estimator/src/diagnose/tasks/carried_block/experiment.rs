@@ -5,6 +5,9 @@ use super::net_force::Carry;
 use super::signals::Seen;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal::{LIKELY, SURE_BY_MOTION, power};
+use crate::diagnose::experiment::strokes::FREE_S;
+use crate::diagnose::experiment::waypoints::HAND_SPEEDS_M_S;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{force_bias, force_drift, gravity_tilt, mass_change};
 use estimation::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
@@ -15,15 +18,13 @@ const LIBRARY: [(&str, &str, f64); 2] = [
         "carry-let-go",
         "let go for two seconds before and after the carry, and hold the block still in between: a drift of the sensor stays, a lost \
          weight does not",
-        2.0,
+        FREE_S,
     ),
     ("carry-still", "lift the block and hold it still", 0.0),
 ];
 /// Lengths of a carry, s. The shortest that is likely to suffice is asked for: a leak soon ends, and a drift does not
 /// stay linear for long.
-const HELD_S: [f64; 3] = [4.0, 8.0, 16.0];
-/// Slowest lift of a block, m/s.
-const LIFT_M_S: f64 = 0.02;
+const HELD_S: Axis = Axis::geometric(4.0, 16.0, 3);
 
 /// Predicted row: time, s, and kind.
 #[derive(Clone, Copy, PartialEq)]
@@ -103,7 +104,7 @@ pub fn propose(open: &[Alternative], carry: &Carry<'_>, seen: &[Seen<'_>]) -> Op
     let variance = solved.variance(study.system.rows);
     let rivals: Vec<&Alternative> = open.iter().filter(|a| a.instead_of == first.instead_of).collect();
     let mut best: Option<NextExperiment> = None;
-    for seconds in HELD_S {
+    for seconds in HELD_S.values() {
         for (id, words, free_s) in LIBRARY {
             let rows = imagine(seconds, free_s, period_s);
             let weight: Vec<f64> = rows
@@ -159,7 +160,7 @@ fn asked(id: &str, seconds: f64, free_s: f64, seen: &[Seen<'_>]) -> Experiment {
         free_s,
         middle: percentile(&mut places, 0.5),
         half_range: 0.5 * lifted.max(4e-3),
-        fast: percentile(&mut speeds, 0.95).max(LIFT_M_S),
+        fast: percentile(&mut speeds, 0.95).max(HAND_SPEEDS_M_S.0),
         across_n: grip,
         ..Experiment::default()
     }

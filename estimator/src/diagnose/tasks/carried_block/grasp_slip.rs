@@ -1,21 +1,19 @@
 //! Slips of the fingers on a standing block as candidates: over all rests, and finer around the best.
 
 use super::standing_height::{Rows, Stand};
+use crate::diagnose::data::limits::{HALF, PARTS};
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::comparison::ChannelFit;
 use estimation::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
+use std::iter::once;
 
-/// Number of tried starts in every rest, besides its beginning.
-const REST_SLIP_STARTS: usize = 10;
-/// Durations of a slip that are tried in every rest, s.
-const SLIP_DURATIONS_S: [f64; 3] = [0.0, 0.1, 0.3];
-/// Refinement around the best slip: steps of its start, in rows, and factors of its duration.
-const START_STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
-const DURATION_FACTORS: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
-/// Durations, s, tried beside a slip without duration.
-const SHORT_SLIPS_S: [f64; 3] = [0.0, 0.01, 0.02];
+/// Durations of a slip, s, that are tried in every rest beside a slip without duration.
+const SLIP_DURATIONS_S: Axis = Axis::geometric(0.1, 0.3, 2);
+/// Neighbouring rows, around which the start of the best slip is refined.
+const NEXT_ROW: Axis = Axis::even(0.0, 1.0, 2);
 
 /// Candidate slips in every rest, and finer ones around the best. `model`: regressors of the height beside them.
 pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<Candidate>) {
@@ -25,8 +23,10 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
     // The rest of the best slip gets refined neighbours instead.
     let others = (0..rests.len()).filter(|rest| best.is_none_or(|b| b.rest != *rest));
     let all = others.flat_map(|rest| {
-        let starts = heights.starts(rest, REST_SLIP_STARTS);
-        starts.into_iter().flat_map(move |start_s| SLIP_DURATIONS_S.map(|length_s| Slip { rest, start_s, length_s }))
+        let starts = heights.starts(rest, PARTS);
+        starts.into_iter().flat_map(move |start_s| {
+            once(0.0).chain(SLIP_DURATIONS_S.values()).map(move |length_s| Slip { rest, start_s, length_s })
+        })
     });
     let mut slips: Vec<Slip> = all.collect();
     slips.extend(best.map(|best| around(&heights, best)).unwrap_or_default());
@@ -79,9 +79,9 @@ fn around(heights: &Heights<'_>, best: Slip) -> Vec<Slip> {
     let (first_s, last_s) = heights.bounds(best.rest);
     let rows = &heights.rests[best.rest].rows;
     let step_s = (last_s - heights.time_s[rows.start]) / (rows.len() - 1).max(1) as f64;
-    let lengths =
-        if best.length_s > 0.0 { DURATION_FACTORS.map(|s| s * best.length_s).to_vec() } else { SHORT_SLIPS_S.to_vec() };
-    let mut starts = START_STEPS.map(|s| (best.start_s + s * step_s).clamp(first_s, last_s)).to_vec();
+    let lengths = SLIP_DURATIONS_S.around(best.length_s, 1.0, HALF);
+    let lengths = if best.length_s > 0.0 { lengths.to_vec() } else { vec![0.0] };
+    let mut starts = NEXT_ROW.around(best.start_s, step_s, HALF).map(|s| s.clamp(first_s, last_s)).to_vec();
     starts.dedup();
     let with = |start_s: f64| lengths.iter().map(move |length_s| Slip { start_s, length_s: *length_s, ..best });
     starts.into_iter().flat_map(with).collect()

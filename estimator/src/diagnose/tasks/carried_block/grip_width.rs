@@ -4,7 +4,9 @@ use super::signals::Seen;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::{ASSUMED_ERROR, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::free_run::channel::Pads;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -21,12 +23,10 @@ use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
 
-/// Number of tried bends of the pads' law, from weak to strong, and tried ends of the foam.
-const BENDS: usize = 7;
+/// Tried bends of the pads' law, from weak to strong, and tried ends of the foam.
+const BENDS: Axis = Axis::cells(7);
 /// Compliance of a pad of usual size, m/N, for the test of excitation.
 const USUAL_GIVE: f64 = 1.0 / 8000.0;
-/// A usual error of lengths.
-const USUAL_SCALE: f64 = 0.02;
 
 /// The comparison with the data for its texts.
 pub struct Grasp {
@@ -79,10 +79,9 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
 
 /// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
 pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<Option<Grasp>, EstimateError> {
-    const LEAST_GRIP_ROWS: usize = 30;
     let rows = rows(seen);
     let n = rows.number.len();
-    if n < LEAST_GRIP_ROWS {
+    if n < LEAST_ROWS_OF_A_FIT {
         return Ok(None);
     }
     let blocks = rows.number.iter().copied().max().unwrap_or(0);
@@ -143,8 +142,7 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
     let less = |cushion: &Cushion| -> Vec<f64> {
         rows.grip_n.iter().map(|f| 2.0 * (f.max(0.0) - cushion.depth_m(f.max(0.0)))).collect()
     };
-    for k in 0..BENDS {
-        let share = (k as f64 + 0.5) / BENDS as f64;
+    for share in BENDS.values() {
         let bend = 0.01 * 300.0_f64.powf(share) / largest_n.powi(2);
         let linear = Cushion::linear(1.0);
         let harder = Cushion { spring: StiffnessHardening { k3: bend, ..linear.spring }, ..linear };
@@ -243,7 +241,9 @@ impl Told for Grasp {
             stiffness_hardening::ID => {
                 Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
             }
-            length_scale::ID => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
+            length_scale::ID => {
+                Some((ASSUMED_ERROR, "the widths of the blocks are not known; state one in the sidecar"))
+            }
             _ => None,
         }
     }

@@ -12,6 +12,7 @@ use super::signals::Seen;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, MOST_ROUNDS};
 use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -49,18 +50,17 @@ pub struct Carry<'a> {
 
 /// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
 pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> Result<Carry<'a>, EstimateError> {
-    const LEAST_CARRY_ROWS: usize = 30;
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
     // Every other row is testable, so a short effect has rows both in the fit and among the held-out ones.
     let testable: Vec<bool> = (0..rows.all.len()).map(|i| i % 2 == 0).collect();
     let carried = rows.all.iter().filter(|r| is_carried(r)).count();
-    if carried < LEAST_CARRY_ROWS {
+    if carried < LEAST_ROWS_OF_A_FIT {
         return Err(EstimateError::TooFewSamples {
             recording: seen.first().map(|s| s.blocks.recording.name.clone()).unwrap_or_default(),
             samples: carried,
             what: " of carried blocks, a filter window apart".to_owned(),
-            needed: LEAST_CARRY_ROWS,
+            needed: LEAST_ROWS_OF_A_FIT,
         });
     }
     let known: Vec<Option<f64>> =
@@ -94,23 +94,18 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     Ok(Carry { late, compared, longest_s, cable_errors, weighed, airborne })
 }
 
-/// Share of a cable's evidence below which another cause may only be misfit of the cable. Its law is a linear spring
-/// with a damper, but a real cable turns in the grip and sags.
-const OF_A_CABLE: f64 = 0.05;
-/// Most rounds of removal: without one misfit term another one may appear.
-const REMOVAL_ROUNDS: usize = 4;
-
-/// Comparison without causes that may be misfit of a cable or wall.
+/// Comparison without causes that may be misfit of a cable or wall: its law is a linear spring with a damper, but a real
+/// cable turns in the grip and sags.
 fn without_remainders(mut channel: Channel) -> Result<ChannelFit, EstimateError> {
     let mut study = channel.clone().fit()?;
-    for _ in 0..REMOVAL_ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         let of = |c: &SelectedTerm| &study.candidates[c.candidate];
         let cable =
             study.chosen.iter().filter(|c| of(c).id == added_constraint::ID).map(|c| c.score).fold(0.0, f64::max);
         let rests: Vec<(&str, Option<String>)> = study
             .chosen
             .iter()
-            .filter(|c| of(c).id != added_constraint::ID && c.score < OF_A_CABLE * cable)
+            .filter(|c| of(c).id != added_constraint::ID && c.score < channel.rules.remainder * cable)
             .map(|c| (of(c).id, of(c).expression.clone()))
             .collect();
         if rests.is_empty() {

@@ -2,15 +2,17 @@
 
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::{
     force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change, viscous_friction,
 };
+use crate::diagnose::recording::grip_axis_signs::TRAVEL_M;
 use haptics::law::Kind;
 
-/// Starts of a change of weight that are tried in every carry.
-const WEIGHT_CHANGE_STARTS: usize = 6;
+/// Starts of a change of weight that are tried in every carry, in shares of its duration.
+const WEIGHT_CHANGE_STARTS: Axis = Axis::even(1.0 / 7.0, 6.0 / 7.0, 6);
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
 
@@ -67,17 +69,13 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     };
     let rate = |from: f64| lift(&|t| (t - from).max(0.0));
     found.push(Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(*first)));
-    for s in 1..=WEIGHT_CHANGE_STARTS {
-        let start = first + (last - first) * s as f64 / (WEIGHT_CHANGE_STARTS + 1) as f64;
+    for start in WEIGHT_CHANGE_STARTS.values().map(|share| first + (last - first) * share) {
         let later = Candidate::one(mass_change::ID, Kind::Plant, "rate", "N/s", rate(start));
         found.push(later.at("t0", start, "s"));
         let step = lift(&|t| f64::from(u8::from(t >= start)));
         found.push(Candidate::one(mass_change::ID, Kind::Plant, "step", "N", step).at("t0", start, "s"));
     }
 }
-
-/// Least motion along an axis, m, from which a block counts as moved.
-const MOVED_M: f64 = 1e-3;
 
 /// Faults that the force sensors may have. `known`: weights that are known, N; `given`: the forces by them.
 pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
@@ -142,7 +140,7 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
         for (axis, name) in [(0, "x"), (1, "y")] {
             let (middle, spread) = along(rows, axis);
             // An axis without motion shows no dependence on position.
-            if spread > MOVED_M {
+            if spread > TRAVEL_M {
                 term(name, &|s, r| s.place[axis][r.i] - middle);
             }
         }

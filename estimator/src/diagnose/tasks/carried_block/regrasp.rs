@@ -4,6 +4,7 @@
 use super::signals::Seen;
 use super::standing_height::{Ground, Stand};
 use crate::diagnose::contract::{Cause, Gain, parameter};
+use crate::diagnose::data::limits::{ASSUMED_ERROR, CERTAIN};
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
@@ -12,17 +13,12 @@ use estimation::identify::block::slip_detection::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Standard errors from which a displacement is a slip.
-const REGRASP_STD_ERRORS: f64 = 5.0;
-/// Relative standard error of a world's height that states none.
-const UNKNOWN_HEIGHT_ERROR: f64 = 0.01;
-
 /// Slips between the two ends of each carry, largest first.
 pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause> {
     let height = |number: usize| -> Option<(f64, f64)> {
         let block = world.blocks.get(number - 1)?;
         let stated = world.provenance.iter().find(|p| p.object == block.name && p.name == "height_m");
-        Some((block.height_m, stated.and_then(|p| p.std_error).unwrap_or(UNKNOWN_HEIGHT_ERROR * block.height_m)))
+        Some((block.height_m, stated.and_then(|p| p.std_error).unwrap_or(ASSUMED_ERROR * block.height_m)))
     };
     let pairs = ground.stands.iter().filter(|s| s.placed).filter_map(|placed| {
         let same = |s: &&Stand| !s.placed && s.number == placed.number && s.recording == placed.recording;
@@ -45,7 +41,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
         Some((after - before - expected, error, placed))
     });
     let (way, error, stand) = pairs
-        .filter(|(way, error, _)| way.abs() > LEAST_M.max(REGRASP_STD_ERRORS * error))
+        .filter(|(way, error, _)| way.abs() > LEAST_M.max(CERTAIN * error))
         .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
     let share = 1.0 - (error / way).powi(2);
     Some(Cause {

@@ -5,6 +5,7 @@
 pub(crate) mod tests;
 
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{HAND_CLOSES_S, HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
 use estimation::identify::block::placement_time::{stands_from, usual_lift};
 use estimation::identify::block::signals::{Blocks, MAIN, object};
 use estimation::segment::Method;
@@ -14,23 +15,16 @@ use foundation::signal::task::{half_width, smooth};
 use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 
-/// Least duration of free motion, s.
-const LEAST_FREE_MOTION_S: f64 = 0.25;
 /// Margin at the ends of free motion, which may already touch, s.
 const ENDS_S: f64 = 0.05;
 /// Share of the usual lift below which part of the weight is supported.
 const WHOLE: f64 = 0.75;
-/// Speed of a resting grip, m/s; number of rows examined before it rests; and relative change of the lift that counts.
-const GRIP_REST_M_S: f64 = 8e-3;
-const BEFORE: usize = 6;
-const OTHER_LIFT: f64 = 0.05;
-/// Difference of two lifts, in standard deviations of the noise, from which they differ.
-const LIFT_NOISES: f64 = 4.0;
 /// Duration for which a block swings behind its pads after the lift, s.
 const BLOCK_SWINGS_S: f64 = 0.12;
 /// Rows at either end of a carry: the ground may support the block in those before the first number. Those from the
 /// first to the second number define the carried lift. A lift off it by `END_SHARE` is partly supported.
 const END_ROWS: (usize, usize) = (4, 10);
+/// Relative change of the lift that counts, at the ends of a carry and after a block was put down.
 const END_SHARE: f64 = 0.025;
 
 /// One recording.
@@ -93,7 +87,7 @@ impl<'a> Seen<'a> {
     /// Lift noise from samples without touch, or from fast changes of the lift if there are none.
     fn lift_noise(&self) -> f64 {
         let free = self.free();
-        if free.len() < BEFORE {
+        if free.len() < LEAST_PIECES {
             return white_noise(&self.blocks.lift);
         }
         let squares: f64 = free.iter().map(|i| self.blocks.lift[*i].powi(2)).sum();
@@ -145,7 +139,7 @@ impl<'a> Seen<'a> {
         let usual = usual_lift(&self.blocks.signals.time_s, rows, &lift);
         move |i| {
             let whole = usual(self.time_s(*i));
-            lift(*i) < (WHOLE * whole).min(whole - LIFT_NOISES * self.lift_noise_n)
+            lift(*i) < (WHOLE * whole).min(whole - SIGNIFICANT * self.lift_noise_n)
         }
     }
 
@@ -197,17 +191,17 @@ impl<'a> Seen<'a> {
     /// air.
     fn put_down(&self, rows: &[usize]) -> Option<(usize, usize)> {
         let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
-        let moved = rows.iter().rposition(|i| speed(*i) > GRIP_REST_M_S)?;
+        let moved = rows.iter().rposition(|i| speed(*i) > HAND_REST_M_S)?;
         let from = moved + 1;
-        if from + 2 > rows.len() || from < BEFORE {
+        if from + 2 > rows.len() || from < LEAST_PIECES {
             return None;
         }
-        let before = &rows[from.saturating_sub(2 * BEFORE)..from - 2];
-        let lowered = before.iter().any(|i| self.velocity[1][*i] < -GRIP_REST_M_S);
+        let before = &rows[from.saturating_sub(2 * LEAST_PIECES)..from - 2];
+        let lowered = before.iter().any(|i| self.velocity[1][*i] < -HAND_REST_M_S);
         let mean = |rows: &[usize]| rows.iter().map(|i| self.blocks.lift[*i]).sum::<f64>() / rows.len() as f64;
         let (carried, now) = (mean(before), mean(&rows[from..]));
         let error = self.lift_noise_n * (1.0 / before.len() as f64 + 1.0 / (rows.len() - from) as f64).sqrt();
-        let other = (now - carried).abs() > (OTHER_LIFT * carried.abs()).max(LIFT_NOISES * error);
+        let other = (now - carried).abs() > (END_SHARE * carried.abs()).max(SIGNIFICANT * error);
         // A block may hang still just above the ground and then be lowered slowly. It stands once the lift is nearer to
         // the new value.
         let stands = |i: &usize| (self.blocks.lift[*i] - now).abs() < (self.blocks.lift[*i] - carried).abs();
@@ -229,7 +223,7 @@ impl<'a> Seen<'a> {
     /// Rows of free motion.
     pub fn free(&self) -> Vec<usize> {
         let states = self.blocks.segmentation.states.iter();
-        let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_MOTION_S);
+        let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= HAND_CLOSES_S);
         self.every(long.flat_map(|s| {
             (s.first..s.end).filter(|k| self.time_s(*k) > s.t0 + ENDS_S && self.time_s(*k) < s.t1 - ENDS_S)
         }))

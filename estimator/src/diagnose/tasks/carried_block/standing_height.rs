@@ -5,6 +5,7 @@ use super::signals::Seen;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::LEAST_PIECES;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -12,6 +13,7 @@ use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
+use crate::diagnose::selection::normal_equations::{LEAST_BLOCK, MOST_BLOCKS};
 use crate::diagnose::selection::rules::Rules;
 use estimation::identify::block::rests::{Rest, rests};
 use estimation::identify::block::signals::object;
@@ -23,17 +25,10 @@ use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Least number of rows of a rest.
-const LEAST_REST_ROWS: usize = 8;
-/// Least number of rows in all, for folds.
-const LEAST_IN_ALL: usize = 24;
 /// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
 /// ones never are: when a slip at the very contact began shows in nothing else.
 const HELD_OUT_RESTS: usize = 2;
 const RESTS_NEVER_HELD_OUT: usize = 4;
-/// Testable rows per held-out block, and the largest number of such blocks, as in the comparison.
-const BLOCK: usize = 12;
-const MOST_REST_BLOCKS: usize = 20;
 
 /// One end of a carry.
 pub struct Stand {
@@ -92,7 +87,7 @@ pub fn ground(
         }
     }
     let n = rows.stand.len();
-    if stands.is_empty() || n < LEAST_IN_ALL {
+    if stands.is_empty() || n < HELD_OUT_RESTS * LEAST_BLOCK {
         return Ok(None);
     }
     let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
@@ -133,7 +128,7 @@ pub fn ground(
 /// Order in which rows are held out together: each held-out block takes rows from all rests. The effect of a slip needs
 /// rows before and after it, and a rest is shorter than a block of consecutive rows.
 fn spread(along: &[bool]) -> Vec<f64> {
-    let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_REST_BLOCKS);
+    let blocks = (along.iter().filter(|t| **t).count() / LEAST_BLOCK).clamp(1, MOST_BLOCKS);
     let before = along.iter().scan(0, |count, testable| {
         *count += usize::from(*testable);
         Some(*count)
@@ -155,7 +150,7 @@ fn add(
         (begins_s.unwrap_or(0.0), rest.samples.clone())
     };
     let picked = one.every(samples.into_iter());
-    if picked.len() < LEAST_REST_ROWS || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
+    if picked.len() < LEAST_PIECES || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
         return;
     }
     let half = half_width(&one.blocks.signals.time_s);

@@ -4,11 +4,12 @@ use super::path;
 use super::path::{Arm, Geometry};
 use super::rows::{Axes, Signals, with_axes};
 use crate::diagnose::contract::Cause;
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
-use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::rules::{MUCH, MUCH_UNSEEN, Rules};
 use crate::diagnose::tasks::baseline_models::plain_crank;
 use crate::diagnose::tasks::one_coordinate;
 use foundation::estimate::EstimateError;
@@ -33,8 +34,6 @@ const ALONE: [&[&str]; 14] = [
     &["x1_m", "vx1_m_s"],
     &["y1_m", "vy1_m_s"],
 ];
-/// Ratio of residual to noise up to which mirrored channels are not searched: other causes leave as much.
-const SENSELESS: f64 = 4.0;
 
 /// A crank's recording, prepared for the diagnosis.
 pub struct Looked {
@@ -79,7 +78,7 @@ pub fn of_crank<'a>(
     let fault = rate.map(sample_faults::against_motion);
     let looked = Looked::at(&straight, bad)?;
     let (before, _) = looked.left()?;
-    if before < SENSELESS * looked.rows.force_noise {
+    if before < MUCH_UNSEEN * looked.rows.force_noise {
         return Ok((straight, fault, looked));
     }
     let mut best: Option<(f64, Looked, Recording, &[&str])> = None;
@@ -89,7 +88,7 @@ pub fn of_crank<'a>(
         let Ok((after, resists)) = looked.left() else { continue };
         // One mirrored channel is likelier than that and an axis of the force.
         let better = |(least, held): (f64, &Looked)| (looked.axis.is_some(), after) < (held.axis.is_some(), least);
-        let sound = resists && after < MIRRORED_SHARE * before && makes_sense((before, after), &looked.rows);
+        let sound = resists && after < HALF * before && makes_sense((before, after), &looked.rows);
         if sound && best.as_ref().is_none_or(|(least, held, ..)| better((*least, held))) {
             best = Some((after, looked, other, names));
         }
@@ -112,19 +111,13 @@ fn model_of(arm: &Arm) -> regression_data::Model {
     model
 }
 
-/// Largest ratio of residuals, after over before, for a mirrored axis.
-const MIRRORED_SHARE: f64 = 0.5;
-/// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
-/// change of sign reduces an effect that is large beside the noise.
-const SENSE: f64 = 4.0;
+/// Largest residual of a mirrored axis, as a share of the residual before, if it is much larger than a measured noise.
+/// Many a change of sign reduces an effect that is large beside the noise.
 const MIRRORED_RESIDUAL_SHARE: f64 = 0.1;
 
 fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
-    !track.noise_is_measured || after < SENSE * track.force_noise || after < MIRRORED_RESIDUAL_SHARE * before
+    !track.noise_is_measured || after < MUCH_UNSEEN * track.force_noise || after < MIRRORED_RESIDUAL_SHARE * before
 }
-
-/// Ratio of residual to noise up to which the recorded axes are plausible.
-const PLAUSIBLE: f64 = 1.8;
 
 /// The rows, with an axis of the force mirrored back if only that makes them plausible.
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
@@ -133,7 +126,7 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
     // The motion does not depend on the axes of the force.
     let mut blurred = as_recorded.clone();
     let (before, resists) = one_coordinate::plain_rms(&mut blurred, &model)?;
-    if resists && before < PLAUSIBLE * as_recorded.force_noise {
+    if resists && before < MUCH * as_recorded.force_noise {
         return Ok((as_recorded, None));
     }
     let mut best: Option<(f64, Axes, &str)> = None;
@@ -152,7 +145,7 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
         let better = if both {
             resists_then && !resists
         } else {
-            resists_then && after < MIRRORED_SHARE * before && makes_sense((before, after), &track)
+            resists_then && after < HALF * before && makes_sense((before, after), &track)
         };
         if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
             best = Some((after, axes, name));

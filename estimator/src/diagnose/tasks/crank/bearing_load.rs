@@ -5,25 +5,22 @@
 
 use crate::diagnose::answer::cause::unexplained;
 use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::{PlainFit, weights};
 use crate::diagnose::data::regression_data::{Bearing, Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
+use crate::diagnose::selection::rules::{AS_GOOD, THRESHOLD_SLOW};
 use crate::diagnose::tasks::one_coordinate;
 use estimation::regression::linear::least_squares_values;
 use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
-/// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
-const LIKELIER: f64 = 60.0;
 /// Rounds in which weight and load converge.
 const LOAD_ROUNDS: usize = 3;
-/// Evidence by which a free force of gravity, of any direction, may beat the weight on the bearing. On a load in one
-/// direction only, that weight acts like a force of gravity a quarter turn ahead.
-const AS_LIKELY: f64 = 25.0;
 
 /// Adds the weight on the bearing to the load if the data favour it, and returns that weight, N. `gravity_m_s2` turns
 /// it into a mass, whose centripetal force the bearing carries.
@@ -41,7 +38,7 @@ pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) 
     }
     let rows = track.along().count() as f64;
     let likelier = |a: f64, b: f64| 2.0 * rows * (a / b.max(1e-300)).ln();
-    if weight_n <= 0.0 || (likelier(before, after) < LIKELIER && !one_way(track, &other, model, fixed, &likelier)?) {
+    if weight_n <= 0.0 || (likelier(before, after) < SURE && !one_way(track, &other, model, fixed, &likelier)?) {
         return Ok(None);
     }
     put(track, weight_n, gravity_m_s2);
@@ -57,10 +54,10 @@ fn one_way(
     likelier: &dyn Fn(f64, f64) -> f64,
 ) -> Result<bool, EstimateError> {
     let after = simply(other, model, fixed, false)?;
-    if likelier(simply(track, model, fixed, false)?, after) <= LIKELIER {
+    if likelier(simply(track, model, fixed, false)?, after) <= SURE {
         return Ok(false);
     }
-    Ok(likelier(after, simply(track, model, fixed, true)?) < AS_LIKELY)
+    Ok(likelier(after, simply(track, model, fixed, true)?) < THRESHOLD_SLOW)
 }
 
 /// Residual RMS of the model with friction of every kind and a mass, N. `free` adds gravity of any direction.
@@ -134,14 +131,6 @@ fn without_bias(track: &mut Track) {
 
 /// Causes that resemble a weight on the bearing if another cause hides it.
 const MISTAKEN: [&str; 4] = [eccentric_mass::ID, gravity_tilt::ID, force_bias::ID, force_cross_axis::ID];
-/// Margin by which the comparison with the weight on the bearing must win: −2 ln(likelihood) plus a penalty of ln(rows)
-/// for each parameter of a cause.
-const SIMPLER: f64 = 40.0;
-/// Largest ratio of residuals, with the weight on the bearing over with the causes alone, for which the full comparison
-/// is made.
-const NEARLY: f64 = 1.25;
-/// Rounds in which the weight converges beside the causes.
-const CONFOUNDING_ROUNDS: usize = 2;
 
 /// Comparison with the weight on the bearing, and that weight, N, if its residual is smaller or it needs fewer causes.
 /// `looked_at`: rows and result of the first comparison; `track`: rows as measured. Other hidden causes can keep
@@ -158,7 +147,7 @@ pub fn beside_causes(
         return Ok(None);
     }
     let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);
-    for _ in 0..CONFOUNDING_ROUNDS {
+    for _ in 0..LOAD_ROUNDS {
         if weight_n <= 0.0 {
             return Ok(None);
         }
@@ -171,7 +160,7 @@ pub fn beside_causes(
         let put_n = std::mem::replace(&mut weight_n, weight_of(&again, model, fixed));
         found = Some((put_n, other, again));
     }
-    Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
+    Ok(found.filter(|(_, other, again)| price(other, again) + SURE < price(looked_at, study)))
 }
 
 /// Quick test before the full comparison, which is slow: true if the weight on the bearing explains about as much as
@@ -194,7 +183,7 @@ fn may_be(
     };
     let with_causes = left(track, &|_| true)?;
     let on_bearing = left(&other, &|id| !MISTAKEN.contains(&id))?;
-    Ok(on_bearing < NEARLY * with_causes)
+    Ok(on_bearing < AS_GOOD * with_causes)
 }
 
 /// Weight that a comparison estimates, N.

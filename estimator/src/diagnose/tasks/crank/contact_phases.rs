@@ -1,6 +1,7 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{FEWEST, HAND_CLOSES_S, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
 use estimation::segment::segment;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
@@ -9,17 +10,8 @@ use haptics::recording::{Recording, Task};
 
 /// Distance from a change between free and held within which held samples belong to neither, s.
 const MARGIN_S: f64 = 0.06;
-/// The same for free samples, s.
-const GROWING_S: f64 = 0.25;
-/// Least duration of a free rest, s: a shorter one may be a zero crossing of the force.
-const LEAST_FREE_REST_S: f64 = 0.25;
 /// Ratio of a rest's force scatter to that of the quietest one from which it is no rest.
 const WANDERS: f64 = 2.5;
-/// Length of the parts in which a rest is followed outwards from its middle, s, and their least number of samples.
-const PIECE_S: f64 = 0.05;
-const LEAST_PIECE: usize = 4;
-/// Number of samples of a rest that determine the noise without touch.
-const TELLING: usize = 24;
 
 /// Flags of samples that are certainly held, and of those that are certainly free.
 pub fn held_and_free(
@@ -33,7 +25,7 @@ pub fn held_and_free(
     let rests: Vec<std::ops::Range<usize>> = segmentation
         .states
         .iter()
-        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_REST_S)
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= HAND_CLOSES_S)
         .map(|i| i.first..i.end)
         .collect();
     let unrest: Vec<f64> = rests
@@ -48,7 +40,7 @@ pub fn held_and_free(
         let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
         long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
     };
-    let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
+    let quietest = Some(quietest(LEAST_PHASE_SAMPLES)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
     for (range, unrest) in rests.iter().zip(&unrest) {
         // A hand that holds lightly is not away: its force wanders.
         if *unrest <= WANDERS * quietest {
@@ -57,12 +49,12 @@ pub fn held_and_free(
     }
     let period_s = mean_step_s(time_s);
     let samples = |s: f64| (s / period_s).ceil() as usize;
-    let (margin, piece) = (samples(MARGIN_S), samples(PIECE_S).max(LEAST_PIECE));
+    let (margin, piece) = (samples(MARGIN_S), samples(REST_WINDOW_S).max(FEWEST));
     let mut near = vec![false; n];
     let mut surely_free = free.clone();
     for interval in rests.iter().filter(|i| free[i.start]) {
         // A grasp grows slowly: its beginning is below every threshold.
-        let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
+        let growing = samples(HAND_CLOSES_S).min((interval.end - interval.start) / 3);
         if interval.start > 0 {
             near[interval.start.saturating_sub(margin)..interval.start].fill(true);
             surely_free[interval.start..interval.start + growing].fill(false);

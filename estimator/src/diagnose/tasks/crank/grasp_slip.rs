@@ -2,22 +2,19 @@
 //! slip.
 
 use super::path::{Path, PathPoint};
+use crate::diagnose::data::limits::SURE;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::normal_equations::LEAST_BLOCK;
 use haptics::Vec2;
 
-/// Number of tried starts of a slip.
-pub const SLIP_STARTS: usize = 24;
+/// Tried starts of a slip, in shares of the recording.
+pub const SLIP_STARTS: Axis = Axis::even(1.0 / 24.0, 23.0 / 24.0, 23);
 /// Starts and durations of a creep of the grasp, in shares of the recording.
-const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
-const CREEP_DURATIONS: [f64; 3] = [0.25, 0.5, 1.0];
-/// Ratio of the spacing of creeps to that of slips.
-const CREEPS_APART: f64 = 4.0;
-/// Number of tried times of a jump, margin at either end as a part of the rows, and least evidence in 2 ln(likelihood)
-/// of white rows.
-const JUMPS: usize = 240;
-const JUMP_MARGIN: usize = 50;
-const JUMPED: f64 = 100.0;
+const CREEP_STARTS: Axis = Axis::even(0.0, 0.75, 4);
+const CREEP_DURATIONS: Axis = Axis::geometric(0.25, 1.0, 3);
 /// Small ridge that keeps the normal equations regular for equal regressors.
+/// Derived: far above the rounding of a sum of squares (1e-16) and far below any power of a regressor.
 const JUMP_RIDGE: f64 = 1e-9;
 
 /// Time course of a grasp's slip: start and duration. A slip without a duration is a jump.
@@ -42,10 +39,11 @@ impl Course {
     pub fn coarse(path: &Path) -> Vec<Self> {
         let first = path.points.first().map_or(0.0, |p| p.time_s);
         let span_s = path.span_s();
-        let slips = (1..SLIP_STARTS)
-            .map(|k| Self { start_s: first + span_s * k as f64 / SLIP_STARTS as f64, duration_s: None });
-        let creeps = CREEP_STARTS.iter().flat_map(|start| {
-            CREEP_DURATIONS.map(|d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) })
+        let slips = SLIP_STARTS.values().map(|start| Self { start_s: first + span_s * start, duration_s: None });
+        let creeps = CREEP_STARTS.values().flat_map(|start| {
+            CREEP_DURATIONS
+                .values()
+                .map(move |d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) })
         });
         slips.chain(creeps).collect()
     }
@@ -53,7 +51,8 @@ impl Course {
     /// Neighbours of a found course, and the course itself.
     pub fn around(self, step_s: f64) -> Vec<Self> {
         // Creeps were tried farther apart.
-        let wide_s = if self.duration_s.is_some() { CREEPS_APART * step_s } else { step_s };
+        let wide_s =
+            if self.duration_s.is_some() { step_s * CREEP_STARTS.spacing() / SLIP_STARTS.spacing() } else { step_s };
         let starts = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| self.start_s + s * wide_s);
         let Some(duration_s) = self.duration_s else {
             return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
@@ -92,13 +91,11 @@ pub fn jump(path: &Path, center_m: Vec2) -> Option<Course> {
         Some(whole[(3, 3)] - solved.dot(&right))
     };
     let n = path.points.len();
-    let every = n.div_ceil(JUMPS).max(1);
     let mut after = whole;
     let mut best: Option<(f64, usize)> = None;
     for (k, point) in path.points.iter().enumerate() {
-        let inside = k * JUMP_MARGIN > n && (n - k) * JUMP_MARGIN > n;
-        if k % every == 0
-            && inside
+        let inside = k.min(n - k) >= LEAST_BLOCK;
+        if inside
             && let Some(left) = left(&after)
             && best.is_none_or(|(least, _)| left < least)
         {
@@ -110,5 +107,5 @@ pub fn jump(path: &Path, center_m: Vec2) -> Option<Course> {
     let right = whole.fixed_view::<3, 1>(0, 3).into_owned();
     let plain = whole[(3, 3)] - whole.fixed_view::<3, 3>(0, 0).into_owned().cholesky()?.solve(&right).dot(&right);
     let much = n as f64 * (plain / least.max(1e-300)).ln();
-    (much > JUMPED).then(|| Course { start_s: path.points[k].time_s, duration_s: None })
+    (much > SURE).then(|| Course { start_s: path.points[k].time_s, duration_s: None })
 }

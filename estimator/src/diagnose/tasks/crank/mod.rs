@@ -12,6 +12,7 @@ use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
 use crate::diagnose::answer::build::{Evidence, Named};
 use crate::diagnose::contract::{Cause, Validation};
+use crate::diagnose::data::limits::AMBIGUOUS;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
 use crate::diagnose::findings::Findings;
@@ -138,9 +139,6 @@ pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validatio
     Ok(on_other_recordings::validate(&mut track, &before, &after, &known, &diagnosis.kept))
 }
 
-/// Evidence by which the first link's angle must be favoured over the second's, in 2 ln(likelihood).
-const TURNED: f64 = 10.0;
-
 /// Rows of a crank whose path shows an angle error of the finger.
 struct Turned {
     /// With that link's angle put right which is the likelier one.
@@ -179,7 +177,7 @@ fn turned(
     let (after, _) = one_coordinate::plain_rms(&mut other.clone(), &model)?;
     let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
     let link =
-        if likelier.abs() < TURNED { None } else { Some(if likelier > 0.0 { Link::First } else { Link::Second }) };
+        if likelier.abs() < AMBIGUOUS { None } else { Some(if likelier > 0.0 { Link::First } else { Link::Second }) };
     let (rows, other) = if link == Some(Link::First) { (other, rows) } else { (rows, other) };
     Ok(Turned { rows, other: Some(other), link })
 }

@@ -3,12 +3,14 @@
 //! Unexplained residual of a crank's path, and arcs that are too short to determine their circle.
 
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
+use crate::diagnose::data::limits::MOST_ROUNDS;
+use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
-use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::rules::{MUCH, Rules};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -21,9 +23,6 @@ const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-/// Rounds of the linearised circle fit, and rounds after which the time of a slip is known well enough.
-const CIRCLE_ROUNDS: usize = 8;
-const TIME_REFINEMENT_ROUNDS: usize = 5;
 
 /// One held sample.
 pub struct PathPoint {
@@ -115,8 +114,8 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
     let mut coarse = Course::coarse(path);
     coarse.extend(jump(path, center_m));
     let mut courses = coarse.clone();
-    let mut step_s = path.span_s() / SLIP_STARTS as f64;
-    for round in 0..CIRCLE_ROUNDS {
+    let mut step_s = path.span_s() * SLIP_STARTS.spacing();
+    for round in 0..MOST_ROUNDS {
         let made = compare(path, (center_m, &bent), &courses, rules)?;
         let solved = made.solved.as_ref().ok_or_else(no_circle)?;
         radius_m = solved.values[0];
@@ -127,7 +126,7 @@ pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, E
         step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
-        let settled = step.norm() < 1e-8 && (finer.is_empty() || round > TIME_REFINEMENT_ROUNDS);
+        let settled = step.norm() < 1e-8 && finer.is_empty();
         courses = [coarse.as_slice(), &finer].concat();
         study = Some(made);
         if settled && round > 1 {
@@ -260,14 +259,7 @@ fn corrections(path: &Path, study: &ChannelFit, shift_m: &mut [Vec2], center_m: 
     all
 }
 
-/// Generic waves round a turn, and slow ones over the recording.
-const PATH_WAVES: u32 = 4;
-const SLOW_PATH_WAVES: u32 = 4;
-/// Ratio of the path's residual to its noise from which a reason is expected.
-const STRANGE_PATH_RATIO: f64 = 2.0;
-/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
-/// than this share, is short.
-const BULGE: f64 = 12.0;
+/// Relative error of the radius from which an arc is short.
 const UNSURE: f64 = 0.05;
 
 /// Generic terms of a path: waves around the turn (those of first order belong to the circle's centre) and slow
@@ -275,12 +267,12 @@ const UNSURE: f64 = 0.05;
 fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     let angle = |i: usize| outward[i].y.atan2(outward[i].x);
     let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
-    let waves = (2..=PATH_WAVES).map(|n| {
+    let waves = (2..=FEW_WAVES).map(|n| {
         let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
         Candidate::term(format!("cos({n} theta + phi) of the path"), "m", vec![wave(f64::cos), wave(f64::sin)])
     });
     let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
-    let slow = (1..=SLOW_PATH_WAVES).map(|k| {
+    let slow = (1..=FEW_WAVES).map(|k| {
         let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
         Candidate::term(format!("cos({k} pi t/T) of the path"), "m", vec![column(&wave)])
     });
@@ -291,7 +283,7 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
     let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
-    if rms < STRANGE_PATH_RATIO * white_noise(&study.target) {
+    if rms < MUCH * white_noise(&study.target) {
         return None;
     }
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
@@ -313,7 +305,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let noise_m = white_noise(&study.target);
     let variance = solved.variance(study.system.rows);
     let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
-    (bulge_m < BULGE * noise_m || error_m > UNSURE * arm.radius_m).then(|| {
+    (error_m > UNSURE * arm.radius_m).then(|| {
         format!(
             "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \
              a circle may well come out too small; a centre that seems to wander in so slow or short a motion need not move: turn further",

@@ -5,6 +5,7 @@ use super::path::{Arm, Path, PathPoint, unwrapped};
 use crate::diagnose::data::interpolation;
 use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, mean_step_s, offsets};
 use crate::diagnose::data::known_weight::Hung;
+use crate::diagnose::data::limits::{FAST_ROW_S, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::savitzky_golay;
@@ -15,12 +16,8 @@ use haptics::hand::JointAngles;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 
-/// Approximate rate of the rows, Hz: no motion of a hand is faster than half of it.
-const ROW_HZ: f64 = 100.0;
 /// Window of the acceleration, s.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
-/// Fewer rows carry no diagnosis.
-const LEAST_CRANK_ROWS: usize = 60;
 
 /// Signals at the rate of the rows, each the mean of the same samples.
 pub struct Signals {
@@ -104,7 +101,7 @@ impl Signals {
             (held[i], free[i]) = (held[i] && !bad, free[i] && !bad);
         }
         let period_s = mean_step_s(&time_s);
-        let every = (1.0 / (ROW_HZ * period_s)).round().max(1.0) as usize;
+        let every = (FAST_ROW_S / period_s).round().max(1.0) as usize;
         let groups = n / every;
         let mean = |values: &[Vec2]| -> Vec<Vec2> {
             (0..groups).map(|g| values[g * every..(g + 1) * every].iter().sum::<Vec2>() / every as f64).collect()
@@ -197,12 +194,12 @@ impl Signals {
             rows.extend(made);
             stretch_number += 1;
         }
-        if rows.len() < LEAST_CRANK_ROWS {
+        if rows.len() < LEAST_ROWS_OF_A_FIT {
             return Err(EstimateError::TooFewSamples {
                 recording: recording.name.clone(),
                 samples: rows.len(),
                 what: " in which the handle is held".to_owned(),
-                needed: LEAST_CRANK_ROWS,
+                needed: LEAST_ROWS_OF_A_FIT,
             });
         }
         rows.extend(self.free_rows(stretch_number));
@@ -335,9 +332,6 @@ impl Signals {
     }
 }
 
-/// Least number of free rows for an estimate of the noise.
-const FREE_ROWS: usize = 40;
-
 /// Noise of one row's force, N, and true if it was measured without touch.
 fn force_noise(rows: &[Row]) -> (f64, bool) {
     let (mut square, mut count) = (0.0, 0_usize);
@@ -347,7 +341,7 @@ fn force_noise(rows: &[Row]) -> (f64, bool) {
         square += rows.iter().map(|r| (r.target - mean).powi(2)).sum::<f64>();
         count += rows.len();
     }
-    let is_measured = count > FREE_ROWS;
+    let is_measured = count > LEAST_ROWS_OF_A_FIT;
     let along = || rows.iter().filter(|r| r.place == Place::Along).map(|r| r.target).collect::<Vec<f64>>();
     let noise = if is_measured { (square / count as f64).sqrt() } else { white_noise(&along()) };
     (noise.max(1e-9), is_measured)

@@ -18,6 +18,7 @@ use crate::diagnose::contract;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::data::covariates;
+use crate::diagnose::data::limits::{HALF, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::all::with_both_ways;
@@ -33,13 +34,6 @@ use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, 
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
-
-/// Least share of backward travel of a swing.
-const BACK: f64 = 0.1;
-/// Least share of the acceleration's power that gravity of any phase explains in a swing.
-const SWINGS: f64 = 0.5;
-/// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
-const SCALE_STD_ERRORS: f64 = 3.0;
 
 /// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
 ///
@@ -142,14 +136,13 @@ pub(crate) fn gravity(track: &Track, first: &Recording) -> Model {
 /// True if the motion swings back and forth under gravity.
 fn swings(track: &Track) -> bool {
     let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
-    let [forward, backward] = track.ways();
     let acceleration = along(&|r| r.motion.acceleration);
     let mean = |of: &dyn Fn(f64) -> f64| along(&|r| track.mean(r, &|m| of(m.position)));
     let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; acceleration.len()]];
     let power = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len().max(1) as f64;
     let explains =
-        least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - SWINGS) * power);
-    explains && forward.min(backward) > BACK * (forward + backward)
+        least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - HALF) * power);
+    explains && !track.goes_one_way()
 }
 
 /// Source of the inertia.
@@ -228,7 +221,7 @@ fn inertia_by(stated: Stated, model: &Model, study: &ChannelFit) -> Option<(f64,
     let pairs = of.iter().flat_map(|a| of.iter().map(move |b| (*a, *b)));
     let spread: f64 = pairs.map(|(a, b)| solved.values[a] * solved.values[b] * solved.inverse[(a, b)]).sum();
     let error = (variance * spread.max(0.0)).sqrt() / ratio.max(1e-300);
-    (ratio > SCALE_STD_ERRORS * error).then(|| (known / ratio, error / ratio))
+    (ratio > SIGNIFICANT * error).then(|| (known / ratio, error / ratio))
 }
 
 /// Causes that a motion without a force sensor never shows.

@@ -6,8 +6,8 @@
 //! between the rows and averaged with the same weights.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between};
+use crate::diagnose::data::limits::{FEWEST, LEAST_PIECES, LONGEST_BLOCK_S, SHORTEST_S, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Fine, Freely, Row, Span, Track, Weighing};
-use crate::diagnose::tasks::mechanism::rows::{LEAST_BLOCKS, SHORTEST_S};
 use estimation::identify::mechanism;
 use estimation::identify::mechanism::Raw;
 use foundation::estimate::EstimateError;
@@ -20,8 +20,6 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::ops::Range;
 
-/// Longest block, s.
-const LONGEST_FREE_BLOCK_S: f64 = 0.1;
 /// Longest block as a share of a radian of the swing. A longer one would blur effects at a place or a reversal.
 const LONGEST_RAD: f64 = 0.3;
 /// Ratio of noise to acceleration below which a block need not be longer.
@@ -33,13 +31,8 @@ const RATE_BETTER: f64 = 0.3;
 const ROUNDED: f64 = 0.03;
 /// Order of the local polynomials between the rows, and their least number of samples on either side.
 const ORDER: usize = 4;
+/// Derived: the least window with more samples than the five coefficients of a polynomial of order four.
 const LEAST_HALF: usize = 3;
-/// Limit of velocity and acceleration of a standing object, in standard deviations of their noise, and the least number
-/// of such rows.
-const STANDING_NOISES: f64 = 3.0;
-const STANDING_ROWS: usize = 3;
-/// Time over which accelerations are estimated for a first look, s.
-const ROUGH_S: f64 = 0.06;
 
 /// The rows of one recording, with forces of zero and an inertia of one.
 ///
@@ -60,7 +53,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
             recording: recording.name.clone(),
             samples: raw.time_s.len(),
             what: " in one uninterrupted piece".to_owned(),
-            needed: LEAST_BLOCKS * plan.block,
+            needed: LEAST_PIECES * plan.block,
         });
     }
     Ok(made.track(&raw, &plan, recording.meta.gravity()))
@@ -134,7 +127,7 @@ impl Plan {
         let [speed, acceleration] = usual(pieces, period_s);
         let step = skip(period_s);
         let whole = |length_s: f64| (length_s / (period_s * step as f64)).round().max(1.0) as usize * step;
-        let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_FREE_BLOCK_S);
+        let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_BLOCK_S);
         let (shortest, longest) = (whole(SHORTEST_S), whole(longest_s).max(whole(SHORTEST_S)));
         let by_place = |block: usize| {
             let length_s = block as f64 * period_s;
@@ -190,7 +183,7 @@ impl Plan {
 
 /// Root mean square of speed and acceleration.
 fn usual(pieces: &[Piece], period_s: f64) -> [f64; 2] {
-    let half = ((0.5 * ROUGH_S / period_s).round() as usize).max(LEAST_HALF);
+    let half = ((0.5 * LONGEST_BLOCK_S / period_s).round() as usize).max(LEAST_HALF);
     let (mut sums, mut count) = ([0.0; 2], 0.0);
     for piece in pieces {
         let Derivatives { first, second, .. } = savitzky_golay(&piece.time_s, &piece.position, half, 2);
@@ -215,7 +208,7 @@ struct Made {
 impl Made {
     fn piece(&mut self, piece: &Piece, plan: &Plan) {
         let (n, block) = (piece.position.len(), plan.block);
-        if n < LEAST_BLOCKS * block + 3 {
+        if n < LEAST_PIECES * block + 3 {
             return;
         }
         let stretch = self.fine.last().map_or(0, |f| f.segment + 1);
@@ -303,13 +296,12 @@ impl Made {
 /// velocity and acceleration.
 fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
     let still = |row: &Row| {
-        row.motion.velocity.abs() < STANDING_NOISES * noise[0]
-            && row.motion.acceleration.abs() < STANDING_NOISES * noise[1]
+        row.motion.velocity.abs() < SIGNIFICANT * noise[0] && row.motion.acceleration.abs() < SIGNIFICANT * noise[1]
     };
     let (mut moving, mut number) = (Vec::with_capacity(rows.len()), 0);
     for stretch in rows.chunk_by(|a, b| a.segment == b.segment) {
         for part in stretch.chunk_by(|a, b| still(a) == still(b)) {
-            if still(&part[0]) && part.len() >= STANDING_ROWS {
+            if still(&part[0]) && part.len() >= FEWEST {
                 number += 1;
             } else {
                 moving.extend(part.iter().map(|row| Row { segment: number, ..*row }));

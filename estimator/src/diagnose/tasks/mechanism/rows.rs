@@ -5,6 +5,7 @@
 //! two blocks. The mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use crate::diagnose::data::interpolation::{FINE_HZ, between, calmed_line};
+use crate::diagnose::data::limits::{LEAST_PIECES, LONGEST_BLOCK_S, SHORTEST_S};
 use crate::diagnose::data::regression_data::{Fine, Row, Span, Track, Weighing};
 use estimation::identify::mechanism;
 use estimation::identify::mechanism::Raw;
@@ -16,12 +17,6 @@ use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
-
-/// Shortest and longest block, s: every motion of a hand lasts longer than the longest.
-pub(crate) const SHORTEST_S: f64 = 0.02;
-const LONGEST_BLOCK_S: f64 = 0.06;
-/// Least length of a segment, in blocks.
-pub(crate) const LEAST_BLOCKS: usize = 8;
 
 /// The rows of one recording. `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is
 /// measured, its own if `None`.
@@ -59,7 +54,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
             recording: recording.name.clone(),
             samples: raw.time_s.len(),
             what: " in one uninterrupted piece".to_owned(),
-            needed: LEAST_BLOCKS * block,
+            needed: LEAST_PIECES * block,
         });
     }
     Ok(made.track(&raw))
@@ -110,7 +105,7 @@ struct Made {
 impl Made {
     fn stretch(&mut self, raw: &Raw, rate: &[f64], force: &[f64], range: std::ops::Range<usize>) {
         let block = self.block;
-        if range.len() < LEAST_BLOCKS * block + 1 {
+        if range.len() < LEAST_PIECES * block + 1 {
             return;
         }
         let number = self.fine.last().map_or(0, |f| f.segment + 1);

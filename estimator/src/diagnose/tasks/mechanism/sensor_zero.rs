@@ -6,8 +6,10 @@
 
 use crate::diagnose::answer::build::Named;
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment};
+use crate::diagnose::data::limits::{FEWEST, REST_WINDOW_S, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{force_bias, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -15,12 +17,7 @@ use foundation::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 
-/// Window of a rest, s, its least number of samples, and the number of windows that make a rest at either end.
-const REST_WINDOW_S: f64 = 0.1;
-const LEAST_REST_SAMPLES: usize = 4;
-const LEAST_REST_WINDOWS: usize = 4;
-/// Agreement of a rest with a value, in standard errors and as a share of the constant.
-const AGREEMENT_STD_ERRORS: f64 = 4.0;
+/// Agreement of a rest with a value, as a share of the constant.
 const SHARE: f64 = 0.15;
 
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
@@ -36,7 +33,7 @@ pub fn told(study: &ChannelFit, recordings: &[Recording]) -> Zero {
 }
 
 fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
-    let near = |value: f64| (mean - value).abs() <= (AGREEMENT_STD_ERRORS * error).max(SHARE * constant.abs());
+    let near = |value: f64| (mean - value).abs() <= (SIGNIFICANT * error).max(SHARE * constant.abs());
     match (near(0.0), near(constant)) {
         (true, false) => Zero::OfThePlant,
         (false, true) => Zero::OfTheSensor,
@@ -47,7 +44,6 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
 /// Adds the question that stays open about a constant force after the rests, and the experiment for it.
 pub fn ask(found: &mut Named, track: &Track) {
     const LEAST_POWER: f64 = 0.05;
-    const SENSOR_REST_S: f64 = 2.0;
     let by_direction = |c: &&Cause| c.id == friction_asymmetry::ID && c.parameters.iter().any(|p| p.name == "dFc");
     if track.zero == Zero::OfThePlant && track.coordinate == Coordinate::Linear {
         let Some(posterior) = found.causes.iter().find(by_direction).map(|c| 0.5 * c.posterior) else { return };
@@ -68,7 +64,7 @@ pub fn ask(found: &mut Named, track: &Track) {
     let (Some(next), Some(size)) = (&mut found.next, constant) else { return };
     let of_both = [force_bias::ID, friction_asymmetry::ID].iter().all(|id| next.separates.iter().any(|s| s == id));
     if of_both && next.expected_power < LEAST_POWER {
-        let lambda = 2.0 * SENSOR_REST_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);
+        let lambda = 2.0 * FREE_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);
         "let go of it for two seconds before and after moving it: a bias of the sensor is read then as well"
             .clone_into(&mut next.motion);
         next.expected_power = SURE_HUNG * power(lambda);
@@ -83,7 +79,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let (place, force, time) = (place?, force?, recording.time_s.as_ref()?);
     let n = time.len().min(force.len()).min(place.len());
     let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
-    let length = ((REST_WINDOW_S / period_s).round() as usize).max(LEAST_REST_SAMPLES);
+    let length = ((REST_WINDOW_S / period_s).round() as usize).max(FEWEST);
     // The noise is autocorrelated, so means of windows stay within the noise of a single sample.
     let noise = |values: &[f64]| white_noise(values).max(quantum(values));
     let (still, quiet) = (noise(place), noise(force));
@@ -101,7 +97,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
         let count = (0..place.len()).take_while(|k| stays(*k)).count();
         // The last window may be partly in motion.
         let rest = &force[..count.saturating_sub(1)];
-        if rest.len() < LEAST_REST_WINDOWS {
+        if rest.len() < FEWEST {
             return None;
         }
         let mean = rest.iter().sum::<f64>() / rest.len() as f64;
@@ -110,7 +106,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     };
     let ((a, da), (b, db)) = (end(false)?, end(true)?);
     let error = da.hypot(db).max(0.1 * quiet);
-    ((a - b).abs() <= AGREEMENT_STD_ERRORS * error).then_some((0.5 * (a + b), 0.5 * error))
+    ((a - b).abs() <= SIGNIFICANT * error).then_some((0.5 * (a + b), 0.5 * error))
 }
 
 #[cfg(test)]

@@ -2,23 +2,23 @@
 //! made yet.
 
 use super::hole::Shaft;
-use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
+use super::rows::{AT_SURFACE_M, Needle, Phase, Row};
 use super::sheet;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::data::limits::GAP_IN_PERIODS;
 use crate::diagnose::data::regression_data::Span;
 use crate::diagnose::experiment::proposal;
-use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
+use crate::diagnose::experiment::strokes::FREE_S;
+use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
 use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
-/// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
+/// Half of a stroke in the hole, m.
 const HALF_STROKE_M: f64 = 2.5e-3;
-const NEEDLE_SPEEDS_M_S: (f64, f64) = (0.03, 0.1);
 /// Time without touch before and after, s.
-const NEEDLE_FREE_S: f64 = 2.0;
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
                      draw out";
 
@@ -46,10 +46,10 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     let mut asked = Experiment {
         id: PIERCE.to_owned(),
         seconds: f64::MIN_POSITIVE,
-        free_s: if needle.two_fingered { NEEDLE_FREE_S } else { 0.0 },
+        free_s: if needle.two_fingered { FREE_S } else { 0.0 },
         middle: deep_m + HALF_STROKE_M,
         half_range: HALF_STROKE_M,
-        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(NEEDLE_SPEEDS_M_S.0, NEEDLE_SPEEDS_M_S.1),
+        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(HAND_SPEEDS_M_S.0, HAND_SPEEDS_M_S.1),
         ..Experiment::default()
     };
     let one_s = Insertions::of(&asked)?.duration_s();
@@ -77,8 +77,8 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
         }
         let phase = match depth {
             _ if !is_held => Some(Phase::Empty),
-            d if d < -OUTSIDE_M => Some(Phase::Outside),
-            d if d < INSIDE_M => None,
+            d if d < -AT_SURFACE_M => Some(Phase::Outside),
+            d if d < AT_SURFACE_M => None,
             _ if through => Some(Phase::Hole),
             d if d > deepest => Some(Phase::Loading),
             _ => Some(Phase::Unloading),
@@ -86,7 +86,7 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
         deepest = deepest.max(depth);
         through |= depth > motion.puncture_m();
         let Some(phase) = phase else { continue };
-        let is_new = rows.last().is_none_or(|r| r.phase != phase || time_s - r.time_s > 1.5 * period_s);
+        let is_new = rows.last().is_none_or(|r| r.phase != phase || time_s - r.time_s > GAP_IN_PERIODS * period_s);
         let stretch = rows.last().map_or(0, |r| r.stretch + usize::from(is_new));
         rows.push(Row {
             recording: 0,

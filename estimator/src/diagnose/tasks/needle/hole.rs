@@ -5,10 +5,12 @@ use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::limits::{FILTER_REACH_S, LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::experiment::separation::Imagined;
-use crate::diagnose::hypotheses::basis_functions::generic_of;
+use crate::diagnose::hypotheses::axis::Axis;
+use crate::diagnose::hypotheses::basis_functions::{FEW_WAVES, generic_of};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
@@ -20,7 +22,7 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
-use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::rules::{MUCH_UNSEEN, Rules};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -28,11 +30,6 @@ use haptics::Vec2;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Coordinate, Kind, Motion};
 
-/// Least number of rows in a hole.
-const LEAST_HOLE_ROWS: usize = 60;
-/// Half of the filter's window with some margin, s, and certainty of a direction.
-const FILTER_HALF_WINDOW_S: f64 = 0.018;
-const HOLE_NOISES: f64 = 3.0;
 /// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
 /// needle, because its position between their pads is not known well enough.
 const POSSIBLE: [&str; 9] = [
@@ -52,10 +49,7 @@ const CLOSELY: [&str; 3] = [stribeck::ID, backlash::ID, local_resistance::ID];
 /// it.
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
 /// Step sizes of the refinement around the values found: those of the first grid, and half of them.
-const HOLE_REFINEMENT_STEPS: [f64; 2] = [1.0, 0.5];
-/// Generic waves over the depth and in time, to detect unexplained terms. Few, because a recording has few rows in its
-/// holes.
-const HOLE_WAVES: u32 = 3;
+const HOLE_REFINEMENT: Axis = Axis::geometric(1.0, 0.5, 2);
 /// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
 pub const RIM_SHARE: f64 = 0.05;
 
@@ -126,7 +120,7 @@ fn rows(needle: &Needle) -> Vec<Row> {
 
 /// True if the path may reverse within a filter's window around a row.
 fn turns(needle: &Needle, row: &Row) -> bool {
-    row.rate_m_s.abs() < FILTER_HALF_WINDOW_S * row.acceleration_m_s2.abs() + HOLE_NOISES * needle.rate_noise_m_s
+    row.rate_m_s.abs() < FILTER_REACH_S * row.acceleration_m_s2.abs() + SIGNIFICANT * needle.rate_noise_m_s
 }
 
 /// The same rows as a track, with the uncertainty of their direction.
@@ -196,13 +190,9 @@ fn candidates(
             candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
         }
     }
-    candidates.extend(generic_of(track, HOLE_WAVES, HOLE_WAVES));
+    candidates.extend(generic_of(track, FEW_WAVES, FEW_WAVES));
     candidates
 }
-
-/// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
-/// reversals.
-const SHAFT_RESIDUAL_RATIO: f64 = 4.0;
 
 /// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 pub fn shaft<'a>(
@@ -212,7 +202,7 @@ pub fn shaft<'a>(
 ) -> Result<Option<Shaft<'a>>, EstimateError> {
     let rows = rows(needle);
     // Reversals alone cannot separate presliding from friction, nor determine the size of either.
-    if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_HOLE_ROWS {
+    if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS_OF_A_FIT {
         return Ok(None);
     }
     let track = seen(needle, &rows);
@@ -235,7 +225,7 @@ pub fn shaft<'a>(
     let coarse = Grid::coarse(&track);
     let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
     let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
-    let rules = Rules { much: Some(SHAFT_RESIDUAL_RATIO), ..rules.with_friction(law.is_some()) };
+    let rules = Rules { much: Some(MUCH_UNSEEN), ..rules.with_friction(law.is_some()) };
     let channel = Channel::new(y, base, asked(&coarse, dry_n), layout, rules);
     let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, dry_n)?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
@@ -256,7 +246,7 @@ fn closely(
 ) -> Result<(ChannelFit, f64), EstimateError> {
     let mut study = channel.clone().fit()?;
     let (mut grid, mut dry_n) = (coarse.clone(), first_n);
-    for step in HOLE_REFINEMENT_STEPS {
+    for step in HOLE_REFINEMENT.values() {
         let picks = study.picks();
         let found: Vec<&Candidate> =
             picks.iter().map(|p| &study.candidates[*p]).filter(|c| !c.searched.is_empty()).collect();

@@ -30,15 +30,13 @@ use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
-use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::rules::{Rules, THRESHOLD_SLOW};
 use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Needle, Puncture};
 
-/// Scatter of puncture forces (χ² less its degrees of freedom) from which they are not of one sheet.
-const UNEVEN: f64 = 25.0;
 /// Relative scatter of the puncture forces of one sheet.
 const PUNCTURE_SHARE: f64 = 0.03;
 
@@ -130,7 +128,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
     let mean = all.iter().map(|p| p.force_n).sum::<f64>() / n;
     let error = |p: &Puncture| (PUNCTURE_SHARE * mean).hypot(p.error_n);
     let scatter: f64 = all.iter().map(|p| ((p.force_n - mean) / error(p)).powi(2)).sum();
-    if n < 2.0 || scatter < UNEVEN {
+    if n < 2.0 || scatter < THRESHOLD_SLOW {
         return None;
     }
     let (first, last) = (all.first()?, all.last()?);

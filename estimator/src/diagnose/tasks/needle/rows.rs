@@ -5,6 +5,7 @@
 
 use super::interpolation::Between;
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSES_S, PAUSE_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
@@ -18,19 +19,10 @@ use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Depth from which the needle is in the hole, m: at the surface the sheet lets go.
-pub const INSIDE_M: f64 = 5e-4;
-/// Height above the surface from which a needle is outside, m.
-pub const OUTSIDE_M: f64 = 3e-4;
-/// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
+/// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, m.
+pub(crate) const AT_SURFACE_M: f64 = 5e-4;
+/// Distance from the surface, m, within which a row belongs to both sides.
 const EDGE_M: f64 = 1e-4;
-const NEEDLE_WINDOW_S: f64 = 0.02;
-/// Duration of a sheet's swinging after the puncture, s.
-const SHEET_SWINGS_S: f64 = 0.1;
-/// Margin at either end of a hold, s, in which fingers close or open slowly: it is neither held nor free.
-const HOLD_MARGIN_S: f64 = 0.25;
-/// Time between recordings that are joined, s: no row follows across it.
-const BETWEEN_S: f64 = 1.0;
 
 /// Contact phase of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +119,7 @@ impl Needle {
     pub fn then(&mut self, later: Self) {
         let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
         let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
-        let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + BETWEEN_S;
+        let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + PAUSE_S;
         self.rows.extend(later.rows.into_iter().map(|row| Row {
             recording,
             start_s: end_s,
@@ -257,7 +249,7 @@ fn phases(
     surface_m: f64,
 ) -> Vec<Of> {
     let mut found: Vec<Of> = vec![None; time.len()];
-    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > HOLD_MARGIN_S;
+    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > HAND_CLOSES_S;
     let mut empty = |range: Range<usize>| {
         for i in range.clone() {
             if (range.start == 0 || far(i, range.start)) && (range.end == time.len() || far(i, range.end)) {
@@ -277,7 +269,7 @@ fn phases(
         for i in hold.clone() {
             let inner = whole || (far(i, hold.start) && far(i, hold.end));
             let now = of.iter().rev().find(|(_, p)| p.samples.start <= i);
-            if depth_m[i] < surface_m - OUTSIDE_M {
+            if depth_m[i] < surface_m - AT_SURFACE_M {
                 if inner {
                     found[i] = Some((Phase::Outside, h, now.map_or(0, |n| n.0), f64::MIN));
                 }
@@ -285,16 +277,16 @@ fn phases(
             }
             let Some((k, push)) = now else { continue };
             // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
-            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + NEEDLE_WINDOW_S * rate_m_s[i].abs();
-            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < NEEDLE_WINDOW_S);
+            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + FILTER_REACH_S * rate_m_s[i].abs();
+            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < FILTER_REACH_S);
             if meets || falls {
                 continue;
             }
             let deepest = depth_m[push.samples.start..=i].iter().copied().fold(f64::MIN, f64::max);
             let phase = match push.puncture {
                 Some(at) if i > at => {
-                    let settled = time[i] - time[at] > SHEET_SWINGS_S;
-                    (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
+                    let settled = time[i] - time[at] > CONTACT_MARGIN_S;
+                    (settled && depth_m[i] > surface_m + AT_SURFACE_M).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
                 // Pushed in again above the dent, or drawn back.
@@ -306,12 +298,9 @@ fn phases(
     found
 }
 
-/// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
-/// change their contact phase.
-const NEAR_S: f64 = 0.06;
 /// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
 /// the plain model and correlate with some delay by chance.
-const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: 60.0 };
+const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: SURE };
 
 /// The smoothed forces of a recording, one per sample, to which every row refers.
 pub struct Forces<'a> {
@@ -337,8 +326,8 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
 /// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
 /// shaft at a reversal is not known well enough.
 fn is_compared(needle: &Needle, row: &Row) -> bool {
-    let at_surface = row.depth_m.abs() < NEAR_S * row.rate_m_s.abs();
-    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * NEAR_S);
+    let at_surface = row.depth_m.abs() < CONTACT_MARGIN_S * row.rate_m_s.abs();
+    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * CONTACT_MARGIN_S);
     !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
 }
 

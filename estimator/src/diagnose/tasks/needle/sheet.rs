@@ -1,10 +1,12 @@
 //! Sheet before the puncture, and sensors: force over depth against a linear spring.
 
 use super::held_needle::Pressed;
-use super::rows::{Needle, Phase, Puncture, Row};
+use super::rows::{AT_SURFACE_M, Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
+use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -21,14 +23,8 @@ use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
-/// Largest distance of consecutive rows, in their usual distances.
-const CONSECUTIVE_DISTANCES: f64 = 1.5;
-/// Largest distance of pushes at one place of the sheet, m.
-const OTHER_PLACE_M: f64 = 5e-4;
-/// Standard errors from which a sheet is inclined to the needle.
-const CLEARLY_ASKEW: f64 = 3.0;
 /// Tried shares of the deepest indentation that stay as a dent.
-const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
+const DENTS: Axis = Axis::geometric(0.04, 0.66, 16);
 
 /// Rows of the sheet, with the base model and all candidates.
 pub struct Columns {
@@ -58,7 +54,7 @@ fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
     let (low, high) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)));
     let middle_m = 0.5 * (low + high);
-    if high - low > OTHER_PLACE_M
+    if high - low > AT_SURFACE_M
         && let Some(slope) = slope_across(needle, rows.iter().filter(|r| r.recording == recording), middle_m)
     {
         for row in rows.iter_mut().filter(|r| met(r)) {
@@ -81,7 +77,7 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     columns.push(of(&|r| r.time_s - r.start_s));
     columns.extend((0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.phase != Phase::Empty && r.hold == h)))));
     let fit = least_squares(&columns, &of(&|r| r.force_n), None).ok()?;
-    (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
+    (fit.identified[0] && fit.values[0].abs() > SIGNIFICANT * fit.std_errors[0]).then_some(fit.values[0])
 }
 
 /// Names of the two forms of hardening.
@@ -188,7 +184,7 @@ fn candidates(
         let drift = Candidate::one(force_drift::ID, Kind::Instrument, "rate", "N/s", since);
         if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
     }));
-    for dent in DENTS {
+    for dent in DENTS.values() {
         candidates.push(acts(Law::Dent(dent), hysteresis::ID, "share", "1").at("dent", dent, "1"));
     }
     if law.is_some_and(|l| l.give > 0.0) {
@@ -275,8 +271,6 @@ fn said_by_a_row(
     base: &[Vec<f64>],
     candidates: &[Candidate],
 ) -> Result<f64, EstimateError> {
-    /// Standard errors from which a correlation is significant.
-    const SIGNIFICANT_STD_ERRORS: f64 = 3.0;
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == force_drift::ID || c.expression.is_some());
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
@@ -293,8 +287,7 @@ fn said_by_a_row(
     in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Correlation of rows at this distance, and number of pairs.
     let correlation = |lag: usize| {
-        let near =
-            |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + CONSECUTIVE_DISTANCES - 1.0) * needle.period_s;
+        let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + GAP_IN_PERIODS - 1.0) * needle.period_s;
         let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));
         let sums = pairs.fold((0.0, 0.0, 0.0_f64), |(product, square, n), (a, b)| {
             (product + a * b, square + 0.5 * (a * a + b * b), n + 1.0)
@@ -304,7 +297,7 @@ fn said_by_a_row(
     let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
     // Inflation of a mean's error over many rows: white noise plus noise with an exponential autocorrelation.
     let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
-    let is_clear = first * pairs.sqrt() > SIGNIFICANT_STD_ERRORS;
+    let is_clear = first * pairs.sqrt() > SIGNIFICANT;
     Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
 }
 

@@ -5,13 +5,16 @@
 
 use super::held_knob::Captured;
 use super::model::Known;
-use super::rows::direction;
+use super::rows::{CORNER_M, direction};
 use super::throw::Push;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
+use crate::diagnose::data::limits::{LEAST_PHASE_SAMPLES, LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::experiment::strokes::PEAK;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::local_resistance::PLACES;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
@@ -24,18 +27,10 @@ use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
-/// Least size of a named cause, in standard errors of the world.
-const WORLD_STD_ERRORS: f64 = 3.0;
-/// Distance from a corner of the world's curve within which rows are left out, m.
-const CURVE_CORNER_M: f64 = 0.8e-3;
-/// Number of tried places of a local resistance, and its widths as shares of the travel.
-const CURVE_PLACES: usize = 24;
-const CURVE_WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
-const LEAST_CURVE_ROWS: usize = 40;
-/// Least number of rows in a local resistance.
-const LEAST_ON: usize = 20;
 /// Least evidence of an unexplained term, as a multiple of a cause's threshold.
 const STRANGE_CURVE_RATIO: f64 = 2.0;
+/// Tried widths of a local resistance, as shares of the travel.
+const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
 
 /// One row on the travel of a throw.
 #[derive(Clone, Copy)]
@@ -70,7 +65,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     for (row, found_n) in &push.rows {
         let Some(side) = row.side() else { continue };
         let at_m = known.at_m(row, side);
-        if known.bends_near(at_m, CURVE_CORNER_M) || known.switch.curve.is_stopped(at_m) {
+        if known.bends_near(at_m, CORNER_M) || known.switch.curve.is_stopped(at_m) {
             continue;
         }
         let (asked_n, slope_n_m) = known.asked_n(at_m, side);
@@ -79,7 +74,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
         times.push((row.recording, row.time_s));
         points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), left_n, asked_n, slope_n_m });
     }
-    if points.len() < LEAST_CURVE_ROWS {
+    if points.len() < LEAST_ROWS_OF_A_FIT {
         return Ok(None);
     }
     let time: Vec<f64> = times.iter().map(|t| t.1).collect();
@@ -155,7 +150,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
             // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
             // The knob leaves the finger half way.
-            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CURVE_CORNER_M) {
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
                 continue;
             }
             let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
@@ -193,11 +188,10 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
     let names = vec![("k", "N/m"), ("f0", "N")];
     found.push(Candidate::several(return_spring::ID, Kind::Plant, spring, names).shaped(Shape::Spring { half }));
-    for k in 1..CURVE_PLACES {
-        let place = half * (2.0 * k as f64 / CURVE_PLACES as f64 - 1.0);
-        for width in CURVE_WIDTHS.map(|share| 2.0 * half * share) {
+    for place in PLACES.values().map(|share| half * (2.0 * share - 1.0)) {
+        for width in CURVE_WIDTHS.values().map(|share| 2.0 * half * share) {
             let bind = one(local_resistance::ID, "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
-            if bind.regressors[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
+            if bind.regressors[0].iter().filter(|v| **v > 0.3).count() >= LEAST_PHASE_SAMPLES {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
             }
         }
@@ -211,7 +205,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
             found.push(Candidate::term(format!("cos({k} pi x/X) {words}"), "N", vec![column]));
         }
     }
-    found.into_iter().map(|c| seen(c, WORLD_STD_ERRORS * known.error_n)).collect()
+    found.into_iter().map(|c| seen(c, SIGNIFICANT * known.error_n)).collect()
 }
 
 /// A cause that must reach some force, N, where it acts.

@@ -7,18 +7,15 @@ use super::rows::{FREE_EVERY, Place, Row, Seen, direction};
 use super::throw::Push;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::experiment::proposal;
+use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::experiment::waypoints;
-use crate::diagnose::experiment::waypoints::{THROW, Throws};
+use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, THROW, Throws};
 use crate::diagnose::selection::comparison::Compared;
 use estimation::segment::threshold::percentile;
 use haptics::Vec2;
 
 /// Numbers of throws. The least that is likely to suffice is proposed.
 const THROWS: [usize; 3] = [6, 12, 18];
-/// Lowest and highest speed of a finger, m/s.
-const THROW_SPEEDS_M_S: (f64, f64) = (0.06, 0.15);
-/// Time without touch before and after, s.
-const THROW_FREE_S: f64 = 2.0;
 /// Travel between a finger's release and the next push, m: that of the spring and the gap.
 const GAP_M: f64 = 6e-3;
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
@@ -59,10 +56,10 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     let mut asked = Experiment {
         id: THROW.to_owned(),
         seconds: f64::MAX,
-        free_s: THROW_FREE_S,
+        free_s: FREE_S,
         middle: middles.iter().sum::<f64>() / middles.len().max(1) as f64,
         half_range,
-        fast: percentile(&mut speeds, 0.95).clamp(THROW_SPEEDS_M_S.0, THROW_SPEEDS_M_S.1),
+        fast: percentile(&mut speeds, 0.95).clamp(HAND_SPEEDS_M_S.0, HAND_SPEEDS_M_S.1),
         ..Experiment::default()
     };
     // Long enough for that many throws: one begins as long as there is time.
@@ -99,18 +96,18 @@ fn imagine(seen: &Seen, push: &Push, motion: &Throws) -> Seen {
         for (k, (gone, speed)) in curve::pushed(throw.fast_m_s, way_m, seen.period_s).enumerate() {
             let travel = low - GAP_M + gone;
             if (low..high).contains(&travel) {
-                let time_s = THROW_FREE_S + throw.begins_s + k as f64 * seen.period_s;
+                let time_s = FREE_S + throw.begins_s + k as f64 * seen.period_s;
                 rows.push(row(time_s, Place::Push(side), direction(side) * travel, direction(side) * speed));
                 stretch.push(number);
             }
         }
     }
-    let end_s = THROW_FREE_S + motion.duration_s();
+    let end_s = FREE_S + motion.duration_s();
     for (finger, axis) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         number += 1;
         for from_s in [0.0, end_s] {
             let every_s = FREE_EVERY as f64 * seen.period_s;
-            for k in 0..(THROW_FREE_S / every_s) as usize {
+            for k in 0..(FREE_S / every_s) as usize {
                 rows.push(row(from_s + k as f64 * every_s, Place::Free(finger, axis), 0.0, 0.0));
                 stretch.push(number);
             }

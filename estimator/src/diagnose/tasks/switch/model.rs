@@ -1,19 +1,17 @@
 //! Switch of a world as the model of a recording: position of the knob under a fingertip, and its predicted force.
 
 use super::rows::{Row, direction};
+use crate::diagnose::data::limits::ASSUMED_ERROR;
 use estimation::identify::switch::OBJECT;
 use haptics::Vec2;
 use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
-/// Relative standard error of a world's curve that states none, as a share of its peak.
-const UNKNOWN_CURVE_ERROR: f64 = 0.03;
-/// The same for its stops, m.
+/// Uncertainty of a world's stop that states none, and least uncertainty of one: a tip meets a round knob, m.
 const UNKNOWN_END_M: f64 = 0.2e-3;
-/// Least uncertainty of a stop, m, due to a tip on a round knob.
-const LEAST_END_M: f64 = 0.13e-3;
 /// Halvings of the search for the knob's position.
+/// Derived: 40 halvings of 2.8 levers leave 3e-12 levers, far below the noise of any position.
 const KNOB_HALVINGS: usize = 40;
 
 /// Force of a curve along the travel of a side, N, and its derivative by the position on the arc, N/m.
@@ -61,12 +59,9 @@ impl<'a> Known<'a> {
             switch,
             pad: world.pad.elastic(),
             gravity_m_s2: world.gravity_m_s2,
-            error_n: if error_n.is_nan() { UNKNOWN_CURVE_ERROR * most_n } else { error_n },
-            end_error_m: ends.fold(if sides.is_empty() { UNKNOWN_END_M } else { LEAST_END_M }, f64::max),
-            give_error_m_n: give(
-                pad,
-                stated("pad", "stiffness_N_m").map_or(UNKNOWN_CURVE_ERROR, |e| e / pad.max(1e-9)),
-            ),
+            error_n: if error_n.is_nan() { ASSUMED_ERROR * most_n } else { error_n },
+            end_error_m: ends.fold(UNKNOWN_END_M, f64::max),
+            give_error_m_n: give(pad, stated("pad", "stiffness_N_m").map_or(ASSUMED_ERROR, |e| e / pad.max(1e-9))),
             damping_n_s_m: if assumed { 0.0 } else { switch.damping_n_s_m },
         })
     }

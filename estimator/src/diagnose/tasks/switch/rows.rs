@@ -2,33 +2,26 @@
 //! that touch nothing.
 
 use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
+use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
 use estimation::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
-use foundation::signal::task::{TipSeries, is_two_fingered, tip_series};
+use foundation::signal::task::{DERIVATIVE_WINDOW_S, TipSeries, is_two_fingered, tip_series};
 use foundation::tasks::SystemState;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Averaging time of samples, s, for forces and positions alike.
-const BLOCK_S: f64 = 0.01;
-/// Least force of a touching finger, as a share of its strongest force and in standard deviations of a block's noise.
+/// Least force of a touching finger, as a share of its strongest force.
 const TOUCH_SHARE: f64 = 0.03;
-const TOUCH_NOISES: f64 = 6.0;
-/// Number of windows in each of which a finger is free at some time, and share of their blocks taken as free.
-const WINDOWS: usize = 8;
+/// Share of the blocks that are taken as free in each part of a recording, because a finger is free at some time.
 const FREE_SHARE: f64 = 0.15;
-/// Travel after a reversal within which the force changes from one branch to the other, m.
-const SETTLED_M: f64 = 0.8e-3;
-/// Time within which a knob that snaps over leaves the finger, s. Touch begins and ends slowly, too.
-const LEAVING_S: f64 = 0.03;
-const TOUCHING_S: f64 = 0.1;
+/// Way of a switch within which its curve is not resolved, m: at a corner, and after a reversal.
+pub(crate) const CORNER_M: f64 = 0.8e-3;
 /// Speed below which the knob may rest, m/s.
-const KNOB_REST_M_S: f64 = 2e-3;
-/// Least force against a stop, as a share of its maximum.
-const STOP_SHARE: f64 = 0.4;
+pub(crate) const KNOB_REST_M_S: f64 = 2e-3;
 /// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
 const BACK_M_S: f64 = -5e-4;
 /// Spacing of free rows, in blocks: neighbours share their noise.
@@ -137,7 +130,7 @@ pub fn seen(recordings: &[Recording], bad: &[Vec<bool>]) -> Result<Seen, Estimat
     let rows = &all.rows;
     let free = |p: Place| matches!(p, Place::Free(..));
     let period = |i: usize| if free(rows[i].place) { FREE_EVERY as f64 } else { 1.0 } * all.period_s;
-    let apart = |i: usize| time[i] - time[i - 1] > 1.6 * period(i) || time[i] <= time[i - 1];
+    let apart = |i: usize| time[i] - time[i - 1] > GAP_IN_PERIODS * period(i) || time[i] <= time[i - 1];
     let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording || apart(i);
     all.stretch = segments(&time, f64::INFINITY, other);
     Ok(all)
@@ -168,7 +161,7 @@ fn one(recording: &Recording, number: usize, bad: &[bool], all: &mut Seen) -> Re
     }
     let n = time_s.len();
     let step_s = mean_step_s(time_s);
-    let block = (BLOCK_S / step_s).round().max(1.0) as usize;
+    let block = (FAST_ROW_S / step_s).round().max(1.0) as usize;
     let usable = |k: usize| !(k * block..(k + 1) * block).any(|i| bad.get(i).copied().unwrap_or(false));
     let blocks = n / block;
     let time: Vec<f64> = (0..blocks).map(|k| mean(&time_s[k * block..(k + 1) * block]) - time_s[0]).collect();
@@ -195,7 +188,7 @@ fn one(recording: &Recording, number: usize, bad: &[bool], all: &mut Seen) -> Re
     }
     found.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     for (number, finger) in fingers.iter().enumerate() {
-        let margin = (TOUCHING_S / all.period_s).ceil() as usize;
+        let margin = (CONTACT_MARGIN_S / all.period_s).ceil() as usize;
         let away = |k: usize| {
             let near = k.saturating_sub(margin)..(k + margin + 1).min(blocks);
             !near.clone().any(|i| finger.touches[i]) && near.len() == 2 * margin + 1
@@ -231,7 +224,7 @@ fn finger(recording: &Recording, name: &str, block: usize, side: usize) -> Resul
         (0..force.len()).map(|k| Vec2::from_fn(|axis, _| lines[axis][0] + lines[axis][1] * k as f64)).collect();
     let above: Vec<f64> = (0..force.len()).map(|k| along[k] - direction(side) * zero[k].x).collect();
     let strongest = above.iter().fold(0.0_f64, |most, f| most.max(*f));
-    let least_n = (TOUCH_SHARE * strongest).max(TOUCH_NOISES * noise_n);
+    let least_n = (TOUCH_SHARE * strongest).max(CERTAIN * noise_n);
     let touches = above.iter().map(|f| *f > least_n).collect();
     Ok(Finger { tip, velocity, force, zero, touches, noise_n })
 }
@@ -239,7 +232,7 @@ fn finger(recording: &Recording, name: &str, block: usize, side: usize) -> Resul
 /// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is
 /// none.
 fn free_blocks(along: &[f64]) -> Vec<usize> {
-    let long = along.len().div_ceil(WINDOWS).max(1);
+    let long = along.len().div_ceil(PARTS).max(1);
     (0..along.len())
         .step_by(long)
         .flat_map(|first| {
@@ -280,16 +273,16 @@ fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
         }
         let end = (first..time.len()).find(|k| !finger.touches[*k]).unwrap_or(time.len());
         let way_m = along(end - 1) - along(first);
-        if way_m > 2.0 * SETTLED_M && end < time.len() {
-            let settled = (first..end).find(|k| along(*k) > along(first) + SETTLED_M).unwrap_or(end);
-            let leaving = (settled..end).find(|k| time[end] - time[*k] <= LEAVING_S).unwrap_or(end);
+        if way_m > 2.0 * CORNER_M && end < time.len() {
+            let settled = (first..end).find(|k| along(*k) > along(first) + CORNER_M).unwrap_or(end);
+            let leaving = (settled..end).find(|k| time[end] - time[*k] <= DERIVATIVE_WINDOW_S).unwrap_or(end);
             let moves = |k: &usize| direction(side) * finger.velocity[*k].x > KNOB_REST_M_S;
             let last = (settled..leaving).rev().find(moves).map_or(settled, |k| k + 1);
             found.push(Touch { blocks: settled..last, throws: true });
             thrown_to = Some(along(end - 1));
-        } else if thrown_to.is_some_and(|to| along(first) > to + SETTLED_M) {
+        } else if thrown_to.is_some_and(|to| along(first) > to + CORNER_M) {
             let most = (first..end).map(pressed).fold(0.0, f64::max);
-            let hard = |k: &usize| pressed(*k) > STOP_SHARE * most;
+            let hard = |k: &usize| pressed(*k) > PRESSING * most;
             let stays = |k: &usize| direction(side) * finger.velocity[*k].x > BACK_M_S;
             let start = (first..end).find(hard).unwrap_or(end);
             let last = (start..end).find(|k| !hard(k) || !stays(k)).unwrap_or(end);

@@ -5,6 +5,7 @@ use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
+use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
@@ -19,12 +20,10 @@ use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
-const LEAST_STOP_ROWS: usize = 40;
-/// Least size of a named cause, in standard errors of the world.
-const STOP_STD_ERRORS: f64 = 3.0;
 /// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
 const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
+/// Derived: 1 − 1/10, because the stiffest pads are taken as ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
 /// The comparison.
@@ -36,7 +35,7 @@ pub struct Pressed {
 /// Compares the causes that move the tip while it presses the knob against a stop. `None` if that was hardly done.
 pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Option<Pressed>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
-    if indices.len() < LEAST_STOP_ROWS {
+    if indices.len() < LEAST_ROWS_OF_A_FIT {
         return Ok(None);
     }
     let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
@@ -106,8 +105,8 @@ fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<
         most: f64::INFINITY,
     };
     let give = plant(pad_compliance::ID, "give", "m/N", force);
-    let mut found = vec![give.at_least(STOP_STD_ERRORS * known.give_error_m_n).shaped(shape)];
-    let least_m = STOP_STD_ERRORS * known.end_error_m;
+    let mut found = vec![give.at_least(SIGNIFICANT * known.give_error_m_n).shaped(shape)];
+    let least_m = SIGNIFICANT * known.end_error_m;
     let names = [
         ("right stop is nearer by", "the right stop, farther away"),
         ("left stop is nearer by", "the left stop, farther away"),

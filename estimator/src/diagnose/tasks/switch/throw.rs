@@ -3,10 +3,12 @@
 //! with the world's is a separate channel.
 
 use super::held_knob::Thrown;
-use super::rows::{Place, Row, Seen, direction};
+use super::rows::{KNOB_REST_M_S, Place, Row, Seen, direction};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
+use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
@@ -22,15 +24,11 @@ use haptics::law::Kind;
 /// Spacing of the nodes of the estimated curve, m, and their largest number.
 const APART_M: f64 = 0.7e-3;
 const MOST_PLACES: usize = 24;
-/// Least number of rows on the travel of throws.
-const LEAST_THROW_ROWS: usize = 30;
 /// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
 /// ones.
 const TOP_CORNER_M: f64 = 0.6e-3;
-/// Speed below which a finger rests with the knob, m/s.
-const FINGER_REST_M_S: f64 = 2e-3;
-/// Number of tried times of a sudden change of friction.
-const CHANGES: usize = 20;
+/// Tried times of a sudden change of friction, in shares of the recording.
+const CHANGES: Axis = Axis::even(0.05, 0.95, 19);
 /// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
 const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 
@@ -139,7 +137,7 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
 
 /// Compares the causes that depend on speed and time.
 pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
-    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > FINGER_REST_M_S;
+    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > KNOB_REST_M_S;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
     let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
     let rough = curves(&all);
@@ -165,9 +163,9 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
         })
         .collect();
     let pushed = rows.iter().filter(|r| matches!(r.place, Place::Push(_))).count();
-    if pushed < LEAST_THROW_ROWS {
+    if pushed < LEAST_ROWS_OF_A_FIT {
         return Err(EstimateError::Other(format!(
-            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_THROW_ROWS} are needed: throw the switch over more often"
+            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_ROWS_OF_A_FIT} are needed: throw the switch over more often"
         )));
     }
     let curves = curves(&rows);
@@ -243,8 +241,7 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
     let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     if seen.recordings == 1 {
         found.push(Candidate::one(friction_change::ID, Kind::Plant, "rate", "N/s", pushed(&|r| r.time_s)));
-        for k in 1..CHANGES {
-            let t0 = span_s * k as f64 / CHANGES as f64;
+        for t0 in CHANGES.values().map(|share| span_s * share) {
             let column = pushed(&|r| f64::from(u8::from(r.time_s >= t0)));
             found.push(Candidate::one(friction_change::ID, Kind::Plant, "change", "N", column).at("t0", t0, "s"));
         }

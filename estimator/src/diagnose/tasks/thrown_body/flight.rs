@@ -1,9 +1,11 @@
 //! Scale of the lengths from free fall, whose acceleration is g.
 
 use crate::diagnose::contract::{Alternative, Cause, Gain, RolloutOf, parameter};
+use crate::diagnose::data::limits::ASSUMED_ERROR;
 use crate::diagnose::free_run::windows::{Compared, Errors, told};
 use crate::diagnose::hypotheses::{channel_fault, length_scale};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
+use crate::diagnose::selection::normal_equations::LOCKED_EVERY;
 use crate::diagnose::selection::rules::THRESHOLD;
 use crate::diagnose::tasks::thrown_body::powers;
 use estimation::identify::tossed::Tossed;
@@ -12,12 +14,8 @@ use estimation::identify::tossed::pose::Track;
 use haptics::law::Kind;
 use nalgebra::DVector;
 
-/// Every so many-th throw is held out.
-const HELD_OUT_THROWS: usize = 4;
-/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously),
-/// and lengths that a person put in by this one.
+/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously).
 const CLOCKS: f64 = 1e-3;
-const LENGTHS: f64 = 2e-2;
 
 /// The scale as a cause, with a clock error as its alternative; `None` if the fall agrees with gravity.
 pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
@@ -29,7 +27,7 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     // A relative clock error δ changes the acceleration by 2 δ.
     let likely =
         |spread: f64, at: f64| (-0.5 * at * at / (spread * spread + error * error)).exp() / spread.hypot(error);
-    let (length, clock) = (likely(LENGTHS, value), likely(CLOCKS, 0.5 * value));
+    let (length, clock) = (likely(ASSUMED_ERROR, value), likely(CLOCKS, 0.5 * value));
     let posterior = length / (length + clock);
     let cause = Cause {
         id: length_scale::ID.to_owned(),
@@ -85,7 +83,7 @@ fn squares(tracks: &[Track], [first, second]: [f64; 2]) -> Vec<[f64; 4]> {
 fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     let (mut others, mut tested) = (Vec::new(), Vec::new());
     for (k, track) in tracks.iter().enumerate() {
-        if k % HELD_OUT_THROWS == HELD_OUT_THROWS - 1 { &mut tested } else { &mut others }.push(track.clone());
+        if k % LOCKED_EVERY == LOCKED_EVERY - 1 { &mut tested } else { &mut others }.push(track.clone());
     }
     let Some(fall) = Fall::of(&others) else { return Gain::default() };
     let squares = squares(&tested, [gravity_m_s2, fall.down_m_s2]);

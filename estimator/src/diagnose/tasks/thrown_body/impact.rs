@@ -4,6 +4,7 @@
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::data::limits::{LEAST_PIECES, SIGNIFICANT};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{candidate, velocity_loss};
@@ -22,31 +23,27 @@ use nalgebra::{DVector, Rotation3, Vector3};
 use std::ops::Range;
 
 /// Longest time before and after a blow that is evaluated, s.
+/// Derived: eight samples of the recorded tosses at 148 Hz.
 const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
+/// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
-/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall,
-/// m/s.
+/// Change of the velocity there from which a blow begins, m/s.
 const BLOW_M_S: f64 = 0.15;
+/// Least speed of a blow, m/s: the scatter of a slower one is as large as its restitution.
+const SLOW_M_S: f64 = 0.4;
+/// Change of the velocity up to which a blow is over, and up to which two velocities are equal, m/s.
 const STILL_M_S: f64 = 0.10;
-const FREE_M_S: f64 = 0.06;
-/// Difference of two velocities below which their meeting time is undetermined, m/s.
-const SAME_M_S: f64 = 0.1;
 /// Height within which a second corner hits at the same time, in half widths.
 const SECOND_CORNER_HEIGHT: f64 = 0.1;
-/// Least speed of a blow, m/s.
-const SLOW_M_S: f64 = 0.4;
-/// Fewer blows show nothing.
-const LEAST_BLOWS: usize = 8;
-/// Deviation of a blow from the usual ones, in units of their scatter, from which it was two blows: a second corner hit
-/// before the next sample.
-const TWO: f64 = 4.0;
-/// Deviation of the usual blow from one restitution, as a share of its speed, above which most were several blows. They
+/// Scatter of the blows about one restitution, as a share of their speed, above which most were several blows. They
 /// then determine none.
 const MIXED: f64 = 0.25;
 /// Ratio of a normal distribution's standard deviation to its median absolute value.
+/// Derived: 1/0.6745, the inverse median absolute deviation of a standard normal distribution (Hampel 1974).
 const OVER_MEDIAN: f64 = 1.4826;
 /// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
+/// Derived: 1/√12, the standard deviation of an even spread over one step.
 const UNSEEN: f64 = 0.29;
 
 /// The comparison.
@@ -61,7 +58,7 @@ pub struct Blows {
 pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Blows>, EstimateError> {
     let pairs: Vec<(f64, f64)> =
         seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
-    if pairs.len() < LEAST_BLOWS {
+    if pairs.len() < LEAST_PIECES {
         return Ok(None);
     }
     let (pairs, scatter_m_s) = without_second_blows(pairs);
@@ -109,8 +106,8 @@ impl Told for Blows {
     }
 }
 
-/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one
-/// restitution, m/s.
+/// Pairs of speeds before and after, but those that are far off the rest: there, a second corner hit before the next
+/// sample. The scatter of the rest, m/s, is returned beside them.
 fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -119,7 +116,7 @@ fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let kept = median(&mut pairs.iter().map(|(before, after)| after / before).collect());
     let off = |(before, after): &(f64, f64)| (after - kept * before).abs();
     let scatter_m_s = OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
-    (pairs.into_iter().filter(|pair| off(pair) <= TWO * scatter_m_s).collect(), scatter_m_s)
+    (pairs.into_iter().filter(|pair| off(pair) <= SIGNIFICANT * scatter_m_s).collect(), scatter_m_s)
 }
 
 /// Upward velocity of the corner that hits first, before and after, m/s.
@@ -180,7 +177,7 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     let noise = first.get(first.len() / 2)?;
     let hit = (reach..n - reach).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
     let over = (hit + 1..n - reach).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
-    let free = (over..n - reach).take_while(|i| kick(*i) < FREE_M_S.max(2.5 * noise)).count();
+    let free = (over..n - reach).take_while(|i| kick(*i) < STILL_M_S.max(2.5 * noise)).count();
     let beside = track.steps(BESIDE_S).max(4);
     (hit >= least && free > 0).then(|| Beside {
         hit,
@@ -193,7 +190,7 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
 /// Time at which two free flights met, s after `at_s`. A blow changes the velocity, not the position.
 fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 {
     let faster = falls.speed_m_s - rises.speed_m_s;
-    if faster.abs() < SAME_M_S {
+    if faster.abs() < STILL_M_S {
         return 0.0;
     }
     let since = (rises.at_zero_m() - falls.at_zero_m()) / faster;

@@ -3,16 +3,18 @@
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
+use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::data::row_means::spread;
 use crate::diagnose::free_run::channel::{Fit, Forward};
 use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::stribeck::SPEEDS;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{load_friction, quadratic_drag, stribeck, viscous_friction};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::Layout;
-use crate::diagnose::selection::rules::Rules;
+use crate::diagnose::selection::rules::{Rules, THRESHOLD_SLOW};
 use crate::diagnose::tasks::thrown_body::powers;
 use estimation::identify::tossed::Tossed;
 use estimation::identify::tossed::pose::Track;
@@ -22,15 +24,6 @@ use foundation::signal::derive::polynomial;
 use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use nalgebra::{DVector, Vector3};
-
-/// Fewer slides show nothing.
-const LEAST_SLIDES: usize = 4;
-/// Least evidence of a cause.
-const SLIDE_THRESHOLD: f64 = 25.0;
-/// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
-const LEAST_MU: f64 = 2e-3;
-/// Tried decay speeds of static friction, as shares of the usual speed.
-const STRIBECK_SHARES: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
 /// One slide: times, distance along its direction, speed, and the share of friction against it.
 struct Way {
@@ -42,7 +35,7 @@ struct Way {
 
 /// Compares the causes that slow the body. `mu`: friction of the model; `scatter`: as in [`Slides`].
 pub fn sliding(seen: &Tossed, mu: f64, scatter: f64) -> Result<Option<Slides>, EstimateError> {
-    if seen.slides.len() < LEAST_SLIDES {
+    if seen.slides.len() < FEWEST {
         return Ok(None);
     }
     let ways: Vec<Way> = seen.slides.iter().filter_map(|s| way(seen, s)).collect();
@@ -72,11 +65,11 @@ pub fn sliding(seen: &Tossed, mu: f64, scatter: f64) -> Result<Option<Slides>, E
         Candidate::one(id, Kind::Plant, name, unit, all(of)).positive().at_least(least(of))
     };
     let mut candidates = vec![
-        Candidate::one(load_friction::ID, Kind::Plant, "mu", "1", dry).at_least(LEAST_MU),
+        Candidate::one(load_friction::ID, Kind::Plant, "mu", "1", dry),
         follows(viscous_friction::ID, "c/m", "1/s", &|v| v),
         follows(quadratic_drag::ID, "k/m", "1/m", &|v| v * v),
     ];
-    for share in STRIBECK_SHARES {
+    for share in SPEEDS.values() {
         let vs = share * usual;
         let falls_off = |v: f64| fall * (-(v / vs).powi(2)).exp();
         let bent = Candidate::one(stribeck::ID, Kind::Plant, "dmu", "1", all_dry(&falls_off));
@@ -89,7 +82,7 @@ pub fn sliding(seen: &Tossed, mu: f64, scatter: f64) -> Result<Option<Slides>, E
     let along = vec![true; n];
     let layout = Layout::of(stretch, &along, period_s);
     // Friction that rises as the body stops requires dry friction.
-    let rules = Rules { threshold: SLIDE_THRESHOLD, ..Rules::of_channel(period_s) }.with_friction(mu > 0.0);
+    let rules = Rules { threshold: THRESHOLD_SLOW, ..Rules::of_channel(period_s) }.with_friction(mu > 0.0);
     let study = Channel::new(y, Vec::new(), candidates, layout, rules).fit()?;
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];

@@ -1,11 +1,11 @@
 //! Regressors of laws with memory or a jump, computed at the recording's own rate and then passed through the filter of
 //! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
+use crate::diagnose::data::limits::SIGNIFICANT;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, smooth_value};
 
-/// Speed below which its sign is uncertain, in multiples of its noise and as a share of the largest speed.
-const SPEED_NOISES: f64 = 2.0;
+/// Speed below which its sign is uncertain, as a share of the largest speed.
 const LEAST_SPEED: f64 = 1e-3;
 
 /// The input of one recording at its own rate.
@@ -30,7 +30,7 @@ impl Fine {
         // Noise of the slope of a line over the filter's window.
         let rate_noise = white_noise(input) / (step_s * (half * (half + 1.0) * (2.0 * half + 1.0) / 3.0).sqrt());
         let fastest = through.slope.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let blur = (SPEED_NOISES * rate_noise).max(LEAST_SPEED * fastest).max(f64::MIN_POSITIVE);
+        let blur = (SIGNIFICANT * rate_noise).max(LEAST_SPEED * fastest).max(f64::MIN_POSITIVE);
         Self { time_s: time_s.to_vec(), input: through.value, rate: through.slope, rate_noise, blur, every }
     }
 

@@ -8,10 +8,11 @@
 
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
-use super::rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, constants, stretches_of};
+use super::rows::{Columns, Row, Seen, constants, stretches_of};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::{Alternative, CauseParameter, RolloutOf};
+use crate::diagnose::data::limits::{HALF, SHORTEST_S};
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Side, over, remembered};
 use crate::diagnose::free_run::windows::{Errors, NO_LAW};
@@ -116,12 +117,8 @@ impl Told for Force {
     }
 }
 
-/// Noise share of the load's own part from which load and dry friction count as one regressor.
-const LOAD_NOISE_SHARE: f64 = 0.5;
 /// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
 const SHAPE: f64 = 0.03;
-/// Least mean square of the load's own part, to avoid division by zero.
-const LEAST_OWN_MEAN_SQUARE: f64 = 1e-6;
 
 /// Separability of a load from dry friction.
 pub struct Confounding {
@@ -149,7 +146,7 @@ impl Confounding {
         let beside: Vec<usize> = (0..columns.len() - 1).collect();
         let solved = solve(&gram, &beside, columns.len() - 1)?;
         let loads: Vec<f64> = rows.iter().map(|r| r.load.unwrap_or(0.0)).collect();
-        let own = (solved.rss / used.len().max(1) as f64).max(LEAST_OWN_MEAN_SQUARE * f64::MIN_POSITIVE);
+        let own = (solved.rss / used.len().max(1) as f64).max(f64::MIN_POSITIVE);
         let weight = *study.solved.as_ref()?.values.get(load)?;
         let slope = *solved.values.last()?;
         let noise = ((white_noise(&loads).powi(2) + (SHAPE * slope).powi(2)) / own).min(1.0);
@@ -158,7 +155,7 @@ impl Confounding {
 
     /// True if load and dry friction are equivalent in this recording.
     pub fn is_one(&self) -> bool {
-        self.noise > LOAD_NOISE_SHARE
+        self.noise > HALF
     }
 
     /// Error of this dry friction due to the load, N or N m. Noise of a regressor biases its coefficient towards zero,
@@ -247,9 +244,7 @@ impl Forward for Input {
 
     fn windows(&self) -> Vec<Vec<usize>> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
-        consecutive(&all, &|i| self.rows[i].time_s, 1.0 / TRANSMISSION_ROW_HZ, &|a, b| {
-            self.stretch[a] == self.stretch[b]
-        })
+        consecutive(&all, &|i| self.rows[i].time_s, SHORTEST_S, &|a, b| self.stretch[a] == self.stretch[b])
     }
 
     fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {

@@ -6,8 +6,9 @@ use super::rows::{Columns, Row, Seen, constants, ratio};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
 use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::data::row_means::spread;
-use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
@@ -16,11 +17,9 @@ use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
-const LOST_MOTION_SHARES: [f64; 2] = [0.1, 2.0];
-/// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
-/// distinguished from the steps: an output at rest reads one and the same step.
-const OUTPUT_NOISES: f64 = 2.0;
+/// Least effect on the output, as a share of its sensor's steps. A smaller one cannot be distinguished
+/// from the steps: an output at rest reads one and the same step.
+/// Derived: half a step is the largest rounding error of a reading.
 const STEPS_OF_SENSOR: f64 = 0.5;
 
 /// The comparison.
@@ -40,14 +39,10 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
-    let share = Shape::Share {
-        least: LOST_MOTION_SHARES[0] * lever,
-        whole: f64::NEG_INFINITY,
-        most: LOST_MOTION_SHARES[1] * lever,
-    };
+    let share = Shape::Share { least: LEAST_SHARE * lever, whole: f64::NEG_INFINITY, most: LARGEST_SHARE * lever };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let smallest = (OUTPUT_NOISES * noise).max(STEPS_OF_SENSOR * seen.step);
+    let smallest = (SIGNIFICANT * noise).max(STEPS_OF_SENSOR * seen.step);
     let least = |column: &[f64]| smallest / spread(column).max(f64::MIN_POSITIVE);
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {

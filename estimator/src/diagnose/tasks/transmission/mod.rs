@@ -11,6 +11,7 @@ use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::NotExcited;
+use crate::diagnose::data::limits::{CERTAIN, PARTS, SHORTEST_S};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -28,13 +29,9 @@ use crate::diagnose::selection::rules::Rules;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
 use haptics::recording::Recording;
-use rows::{Columns, Row, Seen, TRANSMISSION_ROW_HZ, columns, stretches_of};
+use rows::{Columns, Row, Seen, columns, stretches_of};
 
-/// Number of equal parts of a recording in which the work of the input is evaluated.
-const WORK_PARTS: usize = 10;
-/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
-/// the parts.
-const WORK_STD_ERRORS: f64 = 6.0;
+/// Least share of the parts in which work is taken, if it is taken and not given for certain.
 const PARTS_OF_ONE_SIGN: f64 = 0.9;
 
 /// True if [`driven`] handles these recordings.
@@ -106,7 +103,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Evidence<'_>) {
         let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
         ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
         let force = mean(&|r| r.force.unwrap_or(0.0));
-        let parts = own.chunks(own.len().div_ceil(WORK_PARTS).max(1));
+        let parts = own.chunks(own.len().div_ceil(PARTS).max(1));
         work.extend(parts.map(|part| part.iter().map(|r| (r.force.unwrap_or(0.0) - force) * r.rate).sum::<f64>()));
     }
     if ratio < 0.0 {
@@ -124,7 +121,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Evidence<'_>) {
     let mean = work.iter().sum::<f64>() / n;
     let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
     let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
-    if work.len() >= WORK_PARTS && mean < -WORK_STD_ERRORS * error && taken > PARTS_OF_ONE_SIGN * n {
+    if work.len() >= PARTS && mean < -CERTAIN * error && taken > PARTS_OF_ONE_SIGN * n {
         for row in rows.iter_mut() {
             row.force = row.force.map(|f| -f);
         }
@@ -142,9 +139,8 @@ fn best_seen(id: &str) -> Variable {
 }
 
 fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<ChannelFit, EstimateError> {
-    const PERIOD_S: f64 = 1.0 / TRANSMISSION_ROW_HZ;
-    let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], PERIOD_S);
-    Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(PERIOD_S)).fit()
+    let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], SHORTEST_S);
+    Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(SHORTEST_S)).fit()
 }
 
 fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {

@@ -1,6 +1,7 @@
 //! Rows of a transmission's recordings.
 
 use super::filtered_columns::Fine;
+use crate::diagnose::data::limits::{HALF, SHORTEST_S};
 use crate::diagnose::selection::layout::segments;
 use foundation::signal::noise::quantum;
 use foundation::signal::task::smooth;
@@ -69,7 +70,7 @@ impl Seen {
             let all = first..first + own.len();
             first = all.end;
             let some: Vec<usize> = all.clone().filter(|i| wanted[*i]).collect();
-            kept.extend(if (some.len() as f64) < FEW * own.len() as f64 { all.collect() } else { some });
+            kept.extend(if (some.len() as f64) < HALF * own.len() as f64 { all.collect() } else { some });
         }
         kept
     }
@@ -94,7 +95,7 @@ fn rows(recording: &Recording, number: usize, names: &Columns) -> Option<(Vec<Ro
     let force = recording.channel(names.force).map(|f| through(f).value);
     let load = load(recording, names).map(|f| through(f).value);
     let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1).max(1) as f64;
-    let every = (1.0 / (TRANSMISSION_ROW_HZ * step_s)).round().max(1.0) as usize;
+    let every = (SHORTEST_S / step_s).round().max(1.0) as usize;
     let row = |i: usize| Row {
         recording: number,
         time_s: time[i],
@@ -126,7 +127,7 @@ pub fn constants(rows: &[Row]) -> Vec<Vec<f64>> {
 /// Rows that follow each other.
 pub fn stretches_of(rows: &[Row]) -> Vec<usize> {
     let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-    segments(&time, 1.0 / TRANSMISSION_ROW_HZ, |i| rows[i].recording != rows[i - 1].recording)
+    segments(&time, SHORTEST_S, |i| rows[i].recording != rows[i - 1].recording)
 }
 
 /// Slope of the output over the input, about the means of each recording.
@@ -140,8 +141,3 @@ pub fn ratio(rows: &[Row]) -> f64 {
     }
     product / square.max(f64::MIN_POSITIVE)
 }
-
-/// Approximate rate of the rows, Hz.
-pub const TRANSMISSION_ROW_HZ: f64 = 50.0;
-/// Least share of rows that still represents a recording.
-const FEW: f64 = 0.5;
