@@ -73,6 +73,14 @@ impl Axis {
     }
 }
 
+/// A varied axis has as many times the values over the same range, but at least two.
+#[cfg(feature = "ablation")]
+impl foundation::ablation::Scale for Axis {
+    fn scaled(self, factor: f64) -> Self {
+        Self { count: foundation::ablation::Scale::scaled(self.count, factor).max(2), ..self }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

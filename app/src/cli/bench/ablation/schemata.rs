@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Folders below the workspace whose constants vary.
 pub(super) const FOLDERS: [&str; 2] = ["estimator/src/diagnose", "estimator/estimation/src/identify"];
 /// Numeric types of constants that can be multiplied.
-const TYPES: [&str; 9] = ["f64", "usize", "u64", "u32", "u16", "u8", "isize", "i64", "i32"];
+const TYPES: [&str; 10] = ["Axis", "f64", "usize", "u64", "u32", "u16", "u8", "isize", "i64", "i32"];
 /// Text in front of the unit tests of a file.
 const TESTS: &str = "#[cfg(test)]\nmod tests {";
 
