@@ -53,7 +53,7 @@ fn scripted_operator_in_every_world() {
 
 #[test]
 fn every_law_of_the_catalogue_and_of_contacts() {
-    for law in CATALOGUE {
+    for &law in CATALOGUE {
         let mut world = presets::crank();
         let crank = world.crank.as_mut().expect("there is one");
         crank.constraint_stiffness_n_m = Some(5000.0);

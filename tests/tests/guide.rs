@@ -135,6 +135,51 @@ fn every_page_and_every_file_that_the_guide_names_is_there() {
     }
 }
 
+/// Files of the causes' laws, and the names of their types.
+macro_rules! causes {
+    (causes { $($file:ident: $law:ident,)* } models { $($model_file:ident: $model:ident,)* }) => {
+        [$((stringify!($file), stringify!($law))),*]
+    };
+}
+
+/// Share of the laws from which on a file that names so many is a list of them. A new law would need a line there.
+///
+/// Choice: the list names all, the next file two thirds.
+const IS_A_LIST: f64 = 0.75;
+
+#[test]
+fn a_new_law_is_two_files_and_a_line_in_one_list() {
+    let laws = haptics::laws!(causes);
+    for (file, _) in laws {
+        for folder in ["haptics/src/law", "estimator/src/diagnose/hypotheses"] {
+            assert!(workspace().join(folder).join(file).with_extension("rs").is_file(), "{folder}/{file}.rs");
+        }
+    }
+    let mut folders: Vec<PathBuf> =
+        ["haptics", "estimator", "render", "app", "tests"].map(|folder| workspace().join(folder)).to_vec();
+    let mut lists = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()) {
+            // The blind battery writes every law a second time, on purpose.
+            if path.is_dir() && !path.ends_with("tests/blind") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(&path).expect("a source");
+                let is_named = |(file, law): &&(&str, &str)| {
+                    text.contains(file) || text.contains(law) || text.contains(&file.replace('_', "-"))
+                };
+                let share = laws.iter().filter(is_named).count() as f64 / laws.len() as f64;
+                lists.extend((share > IS_A_LIST).then_some(path));
+            }
+        }
+    }
+    lists.sort();
+    // The first says which causes are tried first: a new law is not among them.
+    let known =
+        ["estimator/src/diagnose/hypotheses/all.rs", "haptics/src/law/list.rs"].map(|file| workspace().join(file));
+    assert_eq!(lists, known, "a new law would need a line in each");
+}
+
 #[test]
 fn an_ellipsis_stands_for_what_differs_and_nothing_else_does() {
     assert!(line_is("took … ms", "took 12 ms") && line_is("a…b…c", "a1b2c") && line_is("same", "same"));

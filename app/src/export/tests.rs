@@ -100,7 +100,7 @@ fn every_part_of_every_world_is_accounted_for() {
                 assert_eq!(block.guide.is_some(), said(&block.name, "guide"));
             }
             if world.crank.is_some() {
-                for law in CATALOGUE {
+                for &law in CATALOGUE {
                     assert!(said("crank", law.id()), "{} in {}", law.id(), format.name());
                 }
             }

@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(one("other:moves"), "something without a name");
         let bare = |s: &&String| !["a ", "an ", "the "].iter().any(|article| s.starts_with(article));
         let bare: Vec<&String> = spoken.iter().filter(bare).collect();
-        assert!(bare.len() <= 12, "only what is not counted goes without: {bare:?}");
+        assert!(2 * bare.len() < spoken.len(), "only what is not counted goes without: {bare:?}");
     }
 
     #[test]

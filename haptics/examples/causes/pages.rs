@@ -1,11 +1,25 @@
 //! Every file of `docs/causes/`, as it should be: the catalogue's words and the docstrings of the laws' files.
 
-use haptics::law::{causes, page};
+use haptics::law::{Entry, Kind, causes, page};
 use std::path::{Path, PathBuf};
 
 /// Where the pages lie.
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/causes")
+}
+
+/// The vocabulary: kind and id of every cause, in the order in which they came.
+pub fn vocabulary_file() -> PathBuf {
+    folder().join("ids.txt")
+}
+
+/// A line of the vocabulary.
+pub fn vocabulary_line(entry: &Entry) -> String {
+    let kind = match entry.kind {
+        Kind::Plant => "plant",
+        Kind::Instrument => "instrument",
+    };
+    format!("{kind} {}", entry.id)
 }
 
 /// Names and contents.

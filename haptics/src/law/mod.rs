@@ -18,73 +18,35 @@
 //! Laws of contacts, which act on no coordinate, are in [`contact`], those of captured objects in [`object`]; every cause, law or
 //! not, is in [`entries`].
 
-mod added_constraint;
-mod backlash;
-mod cable;
 mod catalogue;
 pub mod contact;
 mod coordinate;
-mod coulomb_friction;
-mod eccentric_mass;
 mod effect;
 mod entry;
-mod force_bias;
-mod force_drift;
 mod force_law;
-mod friction_asymmetry;
-mod friction_change;
-mod gravity_tilt;
-mod hysteresis;
-mod inertia;
 mod instrument;
-mod load_friction;
-mod load_friction_change;
-mod load_hysteresis;
-mod local_push;
-mod local_resistance;
-mod mass_change;
+mod list;
 mod memory;
 pub mod object;
 pub mod page;
-mod position_ripple;
-mod quadratic_drag;
-mod return_spring;
-mod stribeck;
 #[cfg(test)]
 mod tests;
-mod viscous_friction;
-mod weight;
 
-pub use added_constraint::AddedConstraint;
-pub use backlash::Backlash;
-pub use cable::Cable;
 pub use catalogue::{CATALOGUE, cause, causes, entries, law};
 pub use coordinate::{
     Resistance, advance, drive_force, drive_force_with, drive_forces, explicit_stiffness, inertia, resistance,
     resistance_with, step_coordinate, step_coordinate_with,
 };
-pub use coulomb_friction::CoulombFriction;
-pub use eccentric_mass::EccentricMass;
 pub use effect::Effect;
 pub use entry::{Coordinate, Enters, Entry, Kind, ParameterSpec};
-pub use force_bias::ForceBias;
-pub use force_drift::ForceDrift;
 pub use force_law::{Law, MAX_PARAMETERS, Motion, Role};
-pub use friction_asymmetry::FrictionAsymmetry;
-pub use friction_change::FrictionChange;
-pub use gravity_tilt::GravityTilt;
-pub use hysteresis::Hysteresis;
-pub use inertia::Inertia;
-pub use load_friction::LoadFriction;
-pub use load_friction_change::LoadFrictionChange;
-pub use load_hysteresis::LoadHysteresis;
-pub use local_push::LocalPush;
-pub use local_resistance::LocalResistance;
-pub use mass_change::MassChange;
 pub use memory::{MAX_EFFECTS, Memories, Memory};
-pub use position_ripple::PositionRipple;
-pub use quadratic_drag::QuadraticDrag;
-pub use return_spring::ReturnSpring;
-pub use stribeck::Stribeck;
-pub use viscous_friction::ViscousFriction;
-pub use weight::Weight;
+
+macro_rules! modules {
+    (causes { $($cause_file:ident: $cause:ident,)* } models { $($model_file:ident: $model:ident,)* }) => {
+        $(mod $cause_file; pub use $cause_file::$cause;)*
+        $(mod $model_file; pub use $model_file::$model;)*
+    };
+}
+
+crate::laws!(modules);

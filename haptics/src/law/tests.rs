@@ -18,26 +18,6 @@ fn ids_are_unique_and_bounds_are_ordered() {
 }
 
 #[test]
-fn every_instrument_cause_has_its_page() {
-    let ids = "force-bias force-drift force-gain force-cross-axis force-saturation time-delay joint-offset length-scale \
-        axis-sign channel-fault";
-    for id in ids.split_whitespace() {
-        assert!(entries().any(|e| e.id == id && e.kind == Kind::Instrument), "{id}");
-    }
-}
-
-/// The plant causes of the vocabulary.
-#[test]
-fn every_plant_cause_is_there() {
-    let ids = "coulomb-friction load-friction viscous-friction friction-asymmetry stribeck quadratic-drag hysteresis inertia \
-        eccentric-mass gravity-tilt return-spring position-ripple local-resistance backlash pad-compliance \
-        stiffness-hardening mass-change friction-change fingertip-slip added-constraint velocity-loss";
-    for id in ids.split_whitespace() {
-        assert!(entries().any(|e| e.id == id && e.kind == Kind::Plant), "{id}");
-    }
-}
-
-#[test]
 fn linear_means_linear_and_the_columns_sum_to_the_force() {
     let motion = Motion {
         time_s: 7.0,
@@ -48,7 +28,7 @@ fn linear_means_linear_and_the_columns_sum_to_the_force() {
         normal_force_n: 1.5,
         up_along: 0.6,
     };
-    for law in CATALOGUE {
+    for &law in CATALOGUE {
         let effect = Effect::new(law, &[0.3, 0.2, 0.1, 0.05, 0.4]);
         let columns = effect.columns(&motion, &[0.0; 2]);
         let linear = |spec: &&ParameterSpec| spec.enters == Enters::Linear;
@@ -71,7 +51,7 @@ fn what_goes_with_the_path_alone_says_so() {
         normal_force_n,
         up_along,
     };
-    for law in CATALOGUE {
+    for &law in CATALOGUE {
         let goes = |place: f64, third: f64| {
             let effect = Effect::new(law, &[0.3, 0.2, third, 0.05, 0.4]);
             let others = [[0.3, 1.5, 0.6], [-0.7, 1.5, 0.6], [0.3, -4.0, 0.6], [0.3, 1.5, -0.2]];
@@ -111,7 +91,7 @@ fn what_goes_with_the_load_says_so() {
         normal_force_n,
         up_along: 0.6,
     };
-    for law in CATALOGUE {
+    for &law in CATALOGUE {
         let effect = Effect::new(law, &[0.3, 0.2, 0.1, 0.05, 0.4]);
         let goes = |place: f64| (effect.force(&at(place, 1.5)) - effect.force(&at(place, -4.0))).abs() > 1e-12;
         let places = || (-20..20).map(|k| 0.01 * f64::from(k));
@@ -178,7 +158,7 @@ proptest! {
         let [time_s, position, velocity, acceleration, direction, normal_force_n, up_along] = state;
         let direction = direction.clamp(-1.0, 1.0);
         let mut motion = Motion { time_s, position, velocity, acceleration, direction, normal_force_n, up_along };
-        for law in CATALOGUE {
+        for &law in CATALOGUE {
             let effects = [Effect::new(&Inertia, &[0.1]), Effect::new(&CoulombFriction, &[0.1]), Effect::new(law, &values)];
             let mut memories = Memories::default();
             for velocity in &steps {

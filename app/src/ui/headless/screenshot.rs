@@ -152,7 +152,7 @@ static PAGES: [&Picture; 13] = [
 ];
 
 static ALL: LazyLock<Vec<PictureName>> = LazyLock::new(|| {
-    let of_panels = panel_list::PANELS.iter().flat_map(|panel| panel.pictures.iter().copied());
+    let of_panels = panel_list::panels().flat_map(|panel| panel.pictures.iter().copied());
     let mut all: Vec<PictureName> = of_panels.chain(PAGES).map(PictureName).collect();
     all.sort_by_key(|PictureName(picture)| picture.place);
     all

@@ -14,7 +14,7 @@ pub trait Panel {
     fn ui(&mut self, ui: &mut egui::Ui, session: &mut Session);
 }
 
-/// Everything that the window knows of a panel before it is drawn. The list is in `panel_list.rs`.
+/// Everything that the window knows of a panel before it is drawn. Each feature lists its own in `panels/mod.rs`.
 pub struct Registration {
     /// Its name in layout files.
     pub id: PanelId,

@@ -1,46 +1,31 @@
-//! The list of all panels: a new one is added here.
+//! All panels, from the lists of the features.
 
-use crate::ui::calibrate::panels::{log, recording, results, scene, segments, sensitivity, video};
-use crate::ui::devices::panels::{device_detail, devices};
-use crate::ui::diagnose::panels::{causes, residuals};
 use crate::ui::shell::panel::Registration;
 use crate::ui::shell::panel_id::PanelId;
 use crate::ui::shell::workspace::Workspace;
-use crate::ui::train::panels::{progress, trainer_side, trainer_view};
+use crate::ui::{calibrate, devices, diagnose, train};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-/// All panels.
-pub static PANELS: [&Registration; 14] = [
-    &recording::REGISTRATION,
-    &scene::REGISTRATION,
-    &log::REGISTRATION,
-    &results::REGISTRATION,
-    &segments::REGISTRATION,
-    &sensitivity::REGISTRATION,
-    &video::REGISTRATION,
-    &trainer_view::REGISTRATION,
-    &trainer_side::REGISTRATION,
-    &progress::REGISTRATION,
-    &residuals::REGISTRATION,
-    &causes::REGISTRATION,
-    &devices::REGISTRATION,
-    &device_detail::REGISTRATION,
-];
+/// All panels. The list of a feature is in the root of its folder `panels`.
+pub fn panels() -> impl Iterator<Item = &'static Registration> {
+    let lists = [calibrate::panels::PANELS, train::panels::PANELS, diagnose::panels::PANELS, devices::panels::PANELS];
+    lists.into_iter().flatten().copied()
+}
 
 /// The names of all panels.
 pub fn ids() -> impl Iterator<Item = PanelId> {
-    PANELS.iter().map(|panel| panel.id)
+    panels().map(|panel| panel.id)
 }
 
 /// The registration of a panel; none where no panel has this name.
 pub fn registration(id: PanelId) -> Option<&'static Registration> {
-    PANELS.iter().copied().find(|panel| panel.id == id)
+    panels().find(|panel| panel.id == id)
 }
 
 /// The panels that make sense in a workspace, in the order of its menu.
 pub fn of(workspace: Workspace) -> Vec<PanelId> {
     let place = |panel: &Registration| panel.workspaces.iter().find(|(w, _)| *w == workspace).map(|(_, place)| *place);
-    let mut found: Vec<_> = PANELS.iter().filter_map(|panel| Some((place(panel)?, panel.id))).collect();
+    let mut found: Vec<_> = panels().filter_map(|panel| Some((place(panel)?, panel.id))).collect();
     found.sort_unstable();
     found.into_iter().map(|(_, id)| id).collect()
 }
@@ -66,8 +51,8 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_neighbours_exist() {
-        assert_eq!(ids().collect::<BTreeSet<_>>().len(), PANELS.len());
-        for panel in PANELS {
+        assert_eq!(ids().collect::<BTreeSet<_>>().len(), panels().count());
+        for panel in panels() {
             assert!(panel.neighbours.iter().all(|(id, ..)| registration(*id).is_some()), "{}", panel.title);
             assert!(!panel.workspaces.is_empty(), "{}", panel.title);
         }

@@ -11,7 +11,7 @@ use crate::ui::kit::theme;
 use crate::ui::session::Session;
 use crate::ui::shell::dispatch;
 use crate::ui::shell::panel::Panel;
-use crate::ui::shell::panel_list::PANELS;
+use crate::ui::shell::panel_list::panels;
 use crate::ui::tests::picture;
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
@@ -22,7 +22,7 @@ fn every_panel_draws_every_kind_of_session() {
     let sessions: [fn() -> Session; 5] =
         [empty, || session(STACK.clone()), || session(CRANK.clone()), || session(cart()), || session(clockless_path())];
     for make in sessions {
-        for registration in PANELS {
+        for registration in panels() {
             let (title, mut panel) = (registration.title, (registration.new)());
             let mut harness = harness(make(), [420.0, 700.0], move |ui, session: &mut Session| panel.ui(ui, session));
             // Tiny windows too.

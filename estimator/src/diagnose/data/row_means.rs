@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn laws_looked_at_once_are_to_the_bit_what_they_are_row_by_row() {
         let track = track();
-        for law in CATALOGUE {
+        for &law in CATALOGUE {
             let effect = Effect::new(law, &[1.0, 0.02, 0.15, 0.0, 0.4]);
             let plain = |row: &Row| {
                 if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 }

@@ -20,37 +20,28 @@ use super::stiffness_hardening::STIFFNESS_HARDENING;
 use super::time_delay::TimeDelay;
 use super::variable::Variable;
 use super::velocity_loss::VELOCITY_LOSS;
+use super::{
+    added_constraint, backlash, coulomb_friction, eccentric_mass, force_gain, friction_asymmetry, friction_change,
+    gravity_tilt, hysteresis, inertia, load_friction, local_resistance, mass_change, position_ripple, quadratic_drag,
+    return_spring, stribeck, time_delay, viscous_friction,
+};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::regression_data::{Row, Track};
-use haptics::law::{
-    AddedConstraint, Backlash, CoulombFriction, EccentricMass, ForceBias, ForceDrift, FrictionAsymmetry,
-    FrictionChange, GravityTilt, Hysteresis, Inertia, LoadFriction, LocalResistance, MassChange, PositionRipple,
-    QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction,
-};
+use std::sync::LazyLock;
 
-/// All hypotheses. Their order is that of their candidates: of two equally good ones the first is chosen.
-pub(crate) static ALL: [&dyn Hypothesis; 31] = [
-    &CoulombFriction,
-    &ViscousFriction,
-    &LoadFriction,
-    &FrictionAsymmetry,
-    &Stribeck,
-    &QuadraticDrag,
-    &Inertia,
+macro_rules! of_laws {
+    (causes { $($cause_file:ident: $cause:ident,)* } models { $($model_file:ident: $model:ident,)* }) => {
+        /// Hypotheses of laws of a coordinate.
+        static OF_LAWS: &[&dyn Hypothesis] = &[$(&haptics::law::$cause),*];
+    };
+}
+
+haptics::laws!(of_laws);
+
+/// Hypotheses of faults of the measurement and of contacts.
+static OF_OTHERS: [&dyn Hypothesis; 12] = [
     &TimeDelay,
-    &EccentricMass,
-    &GravityTilt,
-    &PositionRipple,
-    &ReturnSpring,
-    &LocalResistance,
-    &AddedConstraint,
-    &Hysteresis,
-    &Backlash,
-    &MassChange,
-    &FrictionChange,
     &ForceGain,
-    &ForceBias,
-    &ForceDrift,
     &ForceCrossAxis,
     &FORCE_SATURATION,
     &CHANNEL_FAULT,
@@ -62,6 +53,36 @@ pub(crate) static ALL: [&dyn Hypothesis; 31] = [
     &FINGERTIP_SLIP,
     &VELOCITY_LOSS,
 ];
+
+/// Causes whose candidates come before those of all others, in this order: of two equally good ones the first is chosen.
+const FIRST: [&str; 19] = [
+    coulomb_friction::ID,
+    viscous_friction::ID,
+    load_friction::ID,
+    friction_asymmetry::ID,
+    stribeck::ID,
+    quadratic_drag::ID,
+    inertia::ID,
+    time_delay::ID,
+    eccentric_mass::ID,
+    gravity_tilt::ID,
+    position_ripple::ID,
+    return_spring::ID,
+    local_resistance::ID,
+    added_constraint::ID,
+    hysteresis::ID,
+    backlash::ID,
+    mass_change::ID,
+    friction_change::ID,
+    force_gain::ID,
+];
+
+/// All hypotheses: those of [`FIRST`], then laws in the order of their list, then the others.
+static ALL: LazyLock<Vec<&dyn Hypothesis>> = LazyLock::new(|| {
+    let mut all: Vec<&dyn Hypothesis> = OF_LAWS.iter().chain(&OF_OTHERS).copied().collect();
+    all.sort_by_key(|hypothesis| FIRST.iter().position(|id| *id == hypothesis.id()).unwrap_or(FIRST.len()));
+    all
+});
 
 /// The hypothesis of a cause; none for a regressor of the base model or a generic term.
 pub(crate) fn hypothesis(id: &str) -> Option<&'static dyn Hypothesis> {
@@ -128,7 +149,7 @@ impl Grid {
     pub fn coarse(track: &Track) -> Self {
         let ranges = Ranges::of(track);
         let mut grid = Self::empty(&ranges);
-        for hypothesis in ALL {
+        for hypothesis in ALL.iter() {
             grid.add(hypothesis.id(), hypothesis.coarse(&ranges));
         }
         grid
@@ -139,7 +160,7 @@ impl Grid {
         let found = found.iter().map(|candidate| (*candidate, relations(candidate.id))).collect();
         let near = Near { ranges: Ranges::of(track), found, step };
         let mut grid = Self::empty(&near.ranges);
-        for hypothesis in ALL {
+        for hypothesis in ALL.iter() {
             grid.add(hypothesis.id(), hypothesis.around(&near));
         }
         grid

@@ -1,48 +1,37 @@
 //! Hypotheses: everything that a diagnosis knows of a cause, one file a law or sensor fault. `all` lists them;
 //! `hypothesis` is their trait; `library`, `grid` and `candidate` are that from which they make regressors.
 
-pub(crate) mod added_constraint;
 pub(crate) mod all;
 pub(crate) mod axis;
 pub(crate) mod axis_sign;
-pub(crate) mod backlash;
 pub(crate) mod basis_functions;
 pub(crate) mod candidate;
 pub(crate) mod channel_fault;
-pub(crate) mod coulomb_friction;
 pub(crate) mod dictionary;
 pub(crate) mod dry_share;
-pub(crate) mod eccentric_mass;
 pub(crate) mod fingertip_slip;
-pub(crate) mod force_bias;
 pub(crate) mod force_cross_axis;
-pub(crate) mod force_drift;
 pub(crate) mod force_gain;
 pub(crate) mod force_saturation;
 pub(crate) mod free_motion;
-pub(crate) mod friction_asymmetry;
-pub(crate) mod friction_change;
-pub(crate) mod gravity_tilt;
 pub(crate) mod grid;
 pub(crate) mod hypothesis;
-pub(crate) mod hysteresis;
-pub(crate) mod inertia;
 pub(crate) mod joint_offset;
 pub(crate) mod law_forces;
 pub(crate) mod length_scale;
-pub(crate) mod load_friction;
-pub(crate) mod local_resistance;
-pub(crate) mod mass_change;
 pub(crate) mod pad_compliance;
-pub(crate) mod position_ripple;
-pub(crate) mod quadratic_drag;
 pub(crate) mod regressor_cache;
 pub(crate) mod relations;
-pub(crate) mod return_spring;
 pub(crate) mod sensor_fault;
 pub(crate) mod stiffness_hardening;
-pub(crate) mod stribeck;
 pub(crate) mod time_delay;
 pub(crate) mod variable;
 pub(crate) mod velocity_loss;
-pub(crate) mod viscous_friction;
+
+macro_rules! modules {
+    (causes { $($cause_file:ident: $cause:ident,)* } models { $($model_file:ident: $model:ident,)* }) => {
+        $(pub(crate) mod $cause_file;)*
+    };
+}
+
+haptics::laws!(modules);

@@ -18,3 +18,16 @@ pub mod task_choice;
 pub mod transport;
 pub mod video;
 pub mod xy;
+
+use crate::ui::shell::panel::Registration;
+
+/// Panels that the window offers; a new one is added here.
+pub static PANELS: &[&Registration] = &[
+    &recording::REGISTRATION,
+    &scene::REGISTRATION,
+    &log::REGISTRATION,
+    &results::REGISTRATION,
+    &segments::REGISTRATION,
+    &sensitivity::REGISTRATION,
+    &video::REGISTRATION,
+];

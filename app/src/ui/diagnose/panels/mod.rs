@@ -8,3 +8,8 @@ pub mod next_experiment;
 pub mod residuals;
 pub mod validation;
 pub mod why_not;
+
+use crate::ui::shell::panel::Registration;
+
+/// Panels that the window offers; a new one is added here.
+pub static PANELS: &[&Registration] = &[&residuals::REGISTRATION, &causes::REGISTRATION];

@@ -3,7 +3,7 @@
 use crate::ui::session::Session;
 use crate::ui::shell::panel::Panel;
 use crate::ui::shell::panel_id::PanelId;
-use crate::ui::shell::panel_list::PANELS;
+use crate::ui::shell::panel_list::panels;
 use egui::Ui;
 
 /// One of every panel.
@@ -13,7 +13,7 @@ pub struct Panels {
 
 impl Default for Panels {
     fn default() -> Self {
-        Self { all: PANELS.iter().map(|panel| (panel.id, (panel.new)())).collect() }
+        Self { all: panels().map(|panel| (panel.id, (panel.new)())).collect() }
     }
 }
 

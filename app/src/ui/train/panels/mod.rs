@@ -16,3 +16,9 @@ pub mod touch_and_keys;
 pub mod trainer_side;
 pub mod trainer_timing;
 pub mod trainer_view;
+
+use crate::ui::shell::panel::Registration;
+
+/// Panels that the window offers; a new one is added here.
+pub static PANELS: &[&Registration] =
+    &[&trainer_view::REGISTRATION, &trainer_side::REGISTRATION, &progress::REGISTRATION];

@@ -9,6 +9,7 @@
 //! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
 pub(crate) mod rows;
+mod unit_per_inertia;
 
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::explain;
@@ -34,6 +35,7 @@ use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, 
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
+use unit_per_inertia::per_inertia;
 
 /// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
 ///
@@ -235,7 +237,7 @@ pub fn put_right(found: &mut Named, track: &Track) {
         if parameter.unit.starts_with('N') {
             parameter.std_error = parameter.std_error.hypot(parameter.value * free.relative_error);
             if !free.is_known {
-                parameter.unit = per_inertia(&parameter.unit).to_owned();
+                parameter.unit = per_inertia(&parameter.unit);
             }
         }
     }
@@ -263,24 +265,6 @@ pub fn model_name(model: &Model) -> String {
         }
     }
     names.join("+")
-}
-
-/// A unit of the laws per kg m² or kg.
-fn per_inertia(unit: &str) -> &str {
-    const UNITS: [(&str, &str); 11] = [
-        ("N m", "rad/s²"),
-        ("N m s", "1/s"),
-        ("N m s²", "1/rad"),
-        ("N m/rad", "1/s²"),
-        ("N m/rad³", "1/(rad² s²)"),
-        ("N", "m/s²"),
-        ("N s/m", "1/s"),
-        ("N s²/m²", "1/m"),
-        ("N/m", "1/s²"),
-        ("N/m³", "1/(m² s²)"),
-        ("N/m^1.5", "1/(m^0.5 s²)"),
-    ];
-    UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
 }
 
 /// Sentence on the source of the scale of all values; `None` for a driven motion.
@@ -330,8 +314,6 @@ mod tests {
 
     #[test]
     fn units_are_per_unit_of_inertia() {
-        assert_eq!(per_inertia("N m"), "rad/s²");
-        // Every law that a free motion can show has its units in the table.
         let laws = entries().filter(|e| can_show(e.id, true));
         for spec in laws.flat_map(|e| e.parameters) {
             for unit in [spec.unit, spec.unit_angular] {
