@@ -3,7 +3,7 @@
 pub mod barrel;
 pub mod block;
 pub mod crank;
-mod limits;
+pub mod limits;
 pub mod mechanism;
 pub mod needle;
 mod pads;

@@ -61,9 +61,6 @@ pub(crate) const CONTACT_MARGIN_S: f64 = 0.1;
 /// Window in which a rest is followed, s.
 /// Choice: no data.
 pub(crate) const REST_WINDOW_S: f64 = 0.1;
-/// Time in which a hand closes or opens, and least duration of free motion, s.
-/// Choice: no data.
-pub(crate) const HAND_CLOSES_S: f64 = 0.25;
 /// Pause, s: between joined recordings, over a change of place, and least duration of empty fingers.
 /// Choice: no data.
 pub(crate) const PAUSE_S: f64 = 1.0;

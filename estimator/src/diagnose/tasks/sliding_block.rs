@@ -14,7 +14,7 @@ use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{CERTAIN, HAND_CLOSES_S, HAND_REST_M_S, PAUSE_S};
+use crate::diagnose::data::limits::{CERTAIN, HAND_REST_M_S, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::experiment::proposal;
@@ -29,6 +29,7 @@ use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain;
 use crate::diagnose::validation::on_other_recordings;
+use estimation::identify::limits::LEAST_FREE_S;
 use estimation::segment::slid::{LIFTED_M, LIFTED_S};
 use estimation::segment::threshold::{Levels, percentile};
 use foundation::estimate::EstimateError;
@@ -234,7 +235,7 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
     if (levels.free.len() as f64) * step_s < PAUSE_S {
         return None;
     }
-    let part = (HAND_CLOSES_S / step_s).round().max(1.0) as usize;
+    let part = (LEAST_FREE_S / step_s).round().max(1.0) as usize;
     let means: Vec<f64> = levels
         .free
         .chunks_exact(part)

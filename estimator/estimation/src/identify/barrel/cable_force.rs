@@ -92,18 +92,14 @@ pub struct Pull {
     pub taut: usize,
 }
 
-/// Index of the mass.
-/// Derived: column of the fit: mass, growth, offset, stiffness, damping, then the geometry.
-pub const MASS: usize = 0;
-/// Index of the growth of the mass.
-/// Derived: column of the fit, as for [`MASS`].
-pub const GROWTH: usize = 1;
-/// Index of the cable's stiffness.
-/// Derived: column of the fit, as for [`MASS`].
-pub const STIFFNESS: usize = 3;
-/// Index of angle, taut place and bend.
-/// Derived: column of the fit, as for [`MASS`].
-pub const GEOMETRY: usize = 5;
+/// Columns of the fit: mass, growth of the mass, offset, stiffness, damping, then the geometry (angle, taut place, bend).
+#[derive(Clone, Copy)]
+pub enum Column {
+    Mass,
+    Growth,
+    Stiffness = 3,
+    Geometry = 5,
+}
 
 impl Pull {
     /// Fits the rows, first without a cable, then with one.
@@ -117,15 +113,16 @@ impl Pull {
         for (turns, held) in [true, false].into_iter().zip(held) {
             let Ok(held) = held else { continue };
             let shown = |k: usize| held.around.identified.get(k).copied().unwrap_or(false);
-            let known = held.around.std_errors.get(GEOMETRY + 2).map_or(0.0, |e| held.bend() / e);
-            if turns && !(shown(GEOMETRY + 2) && known > TURNS) {
+            let known = held.around.std_errors.get(Column::Geometry as usize + 2).map_or(0.0, |e| held.bend() / e);
+            if turns && !(shown(Column::Geometry as usize + 2) && known > TURNS) {
                 continue;
             }
-            let stiffness = held.values[STIFFNESS];
+            let stiffness = held.values[Column::Stiffness as usize];
             let strongest_n =
                 rows.place_m.iter().filter_map(|p| Some(stiffness * held.cable?.stretch(*p).0)).fold(0.0, f64::max);
-            let weight_n = held.values[MASS] * rows.gravity;
-            let clear = shown(STIFFNESS) && stiffness > CABLE_SEEN * held.around.std_errors[STIFFNESS];
+            let weight_n = held.values[Column::Mass as usize] * rows.gravity;
+            let clear = shown(Column::Stiffness as usize)
+                && stiffness > CABLE_SEEN * held.around.std_errors[Column::Stiffness as usize];
             if clear && strongest_n > LEAST_PULL * weight_n {
                 return Ok(held);
             }
@@ -193,7 +190,7 @@ fn geometry_column(rows: &Rows, cable: &Cable, values: &[f64], which: usize) -> 
     let step = [1e-5, 1e-7, 1e-3][which];
     let force = |cable: &Cable, p: Vec2| {
         let (stretch_m, away) = cable.stretch(p);
-        away * (values[STIFFNESS] * stretch_m)
+        away * (values[Column::Stiffness as usize] * stretch_m)
     };
     let taut = |p: &Vec2| cable.stretch(*p).0 > 0.0;
     let change = |p: &Vec2| {
@@ -224,8 +221,8 @@ fn search(rows: &Rows) -> Option<Cable> {
         let (low, high) = (*along.first()?, *along.last()?);
         for place in 0..PLACES {
             let cable = Cable { taut_m: low + (high - low) * place as f64 / PLACES as f64, ..straight };
-            if let Some((values, cost)) = solve(rows, &cable, STIFFNESS + 1)
-                && values[STIFFNESS] > 0.0
+            if let Some((values, cost)) = solve(rows, &cable, Column::Stiffness as usize + 1)
+                && values[Column::Stiffness as usize] > 0.0
                 && best.as_ref().is_none_or(|(least, _)| cost < *least)
             {
                 best = Some((cost, cable));
@@ -263,9 +260,9 @@ fn solve(rows: &Rows, cable: &Cable, count: usize) -> Option<(Vec<f64>, f64)> {
 fn refine(rows: &Rows, start: Cable, bent: bool) -> Cable {
     let which = if bent { 3 } else { 2 };
     let mut cable = start;
-    let Some((_, mut cost)) = solve(rows, &cable, GEOMETRY) else { return start };
+    let Some((_, mut cost)) = solve(rows, &cable, Column::Geometry as usize) else { return start };
     for _ in 0..NEWTON_STEPS {
-        let Some((values, _)) = solve(rows, &cable, GEOMETRY) else { return cable };
+        let Some((values, _)) = solve(rows, &cable, Column::Geometry as usize) else { return cable };
         let (mut columns, target) = columns(rows, Some(&cable));
         columns.extend((0..which).map(|k| geometry_column(rows, &cable, &values, k)));
         let Ok(fit) = least_squares(&columns, &target, Some(&rows.weights())) else { return cable };
@@ -273,11 +270,13 @@ fn refine(rows: &Rows, start: Cable, bent: bool) -> Cable {
         let better = loop {
             let mut next = cable;
             for k in 0..which {
-                next = next.shifted(k, share * fit.values[GEOMETRY + k]);
+                next = next.shifted(k, share * fit.values[Column::Geometry as usize + k]);
             }
             next.bend_1_m = next.bend_1_m.max(0.0);
-            match solve(rows, &next, GEOMETRY) {
-                Some((values, less)) if less < cost && values[STIFFNESS] > 0.0 => break Some((next, less)),
+            match solve(rows, &next, Column::Geometry as usize) {
+                Some((values, less)) if less < cost && values[Column::Stiffness as usize] > 0.0 => {
+                    break Some((next, less));
+                }
                 _ if share < 1e-3 => break None,
                 _ => share *= 0.5,
             }

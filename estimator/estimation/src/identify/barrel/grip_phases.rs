@@ -1,7 +1,7 @@
 //! The cable that holds a barrel, as parameters and as a constraint from one side.
 
 use super::cable::Cable;
-use super::cable_force::{GEOMETRY, Pull, STIFFNESS};
+use super::cable_force::{Column, Pull};
 use super::report::{CABLE, OBJECT, Seen, Value, error_of};
 use crate::constraint::{Carry, carried};
 use crate::identify::pads::HAND_N_M;
@@ -51,9 +51,9 @@ impl Seen<'_> {
             let value = |c: &DMatrix<f64>| self.of_cable(own(c), |_, cable| Some(of(cable)));
             found.extend(self.of_covariance(name, value, how));
         };
-        let taut = |c: &DMatrix<f64>| error_of(c, GEOMETRY + 1).hypot(self.signals.resolution_m);
+        let taut = |c: &DMatrix<f64>| error_of(c, Column::Geometry as usize + 1).hypot(self.signals.resolution_m);
         let how = "direction in which it holds back, from the horizontal, where it was taut";
-        push("direction_rad", &|c| error_of(c, GEOMETRY), &|cable| cable.angle_rad, how);
+        push("direction_rad", &|c| error_of(c, Column::Geometry as usize), &|cable| cable.angle_rad, how);
         let how = "where it gets taut, straight away from where it is tied";
         for (name, k) in [("taut_x_m", 0), ("taut_y_m", 1)] {
             let own = |c: &DMatrix<f64>| (taut(c) * u[k]).hypot(self.signals.resolution_m);
@@ -63,7 +63,11 @@ impl Seen<'_> {
         found.extend(self.of_covariance("stiffness_N_m", |c| self.stiffness_by(c), how));
         let strongest = self.strongest_n();
         let tension = |c: &DMatrix<f64>| {
-            Some((strongest, strongest * error_of(c, STIFFNESS) / self.taken.pull.values[STIFFNESS]))
+            Some((
+                strongest,
+                strongest * error_of(c, Column::Stiffness as usize)
+                    / self.taken.pull.values[Column::Stiffness as usize],
+            ))
         };
         let how = "stiffness times the farthest way beyond that place";
         found.extend(self.of_covariance("largest_tension_N", tension, how));
@@ -90,15 +94,15 @@ impl Seen<'_> {
         let model_m = SWINGS_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m);
         let anchor_error = |k: usize, c: &DMatrix<f64>| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
-            let square = (by_angle * error_of(c, GEOMETRY)).powi(2)
-                + (by_bend * error_of(c, GEOMETRY + 2)).powi(2)
-                + 2.0 * by_angle * by_bend * c[(GEOMETRY, GEOMETRY + 2)];
+            let square = (by_angle * error_of(c, Column::Geometry as usize)).powi(2)
+                + (by_bend * error_of(c, Column::Geometry as usize + 2)).powi(2)
+                + 2.0 * by_angle * by_bend * c[(Column::Geometry as usize, Column::Geometry as usize + 2)];
             square.max(0.0).sqrt().hypot(self.signals.resolution_m).hypot(model_m)
         };
         let length_error = |c: &DMatrix<f64>| {
-            let taut = error_of(c, GEOMETRY + 1).hypot(self.signals.resolution_m);
-            let square = (far * far * error_of(c, GEOMETRY + 2)).powi(2) + taut * taut
-                - 2.0 * far * far * c[(GEOMETRY + 1, GEOMETRY + 2)];
+            let taut = error_of(c, Column::Geometry as usize + 1).hypot(self.signals.resolution_m);
+            let square = (far * far * error_of(c, Column::Geometry as usize + 2)).powi(2) + taut * taut
+                - 2.0 * far * far * c[(Column::Geometry as usize + 1, Column::Geometry as usize + 2)];
             square.max(0.0).sqrt().hypot(model_m)
         };
         let anchor = |k: usize| {
@@ -119,11 +123,11 @@ impl Seen<'_> {
     }
 
     fn stiffness_by(&self, covariance: &DMatrix<f64>) -> Option<Value> {
-        let stiffness = self.taken.pull.values.get(STIFFNESS)?;
+        let stiffness = self.taken.pull.values.get(Column::Stiffness as usize)?;
         let stretch_m = self.strongest_n() / stiffness;
         let model = stiffness * SWINGS_AS_PULLED_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m) / stretch_m;
-        let own = error_of(covariance, STIFFNESS).hypot(model);
-        self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
+        let own = error_of(covariance, Column::Stiffness as usize).hypot(model);
+        self.of_cable(own, |p, _| Some(p.values[Column::Stiffness as usize]))
     }
 
     pub(super) fn strongest_n(&self) -> f64 {
@@ -132,7 +136,7 @@ impl Seen<'_> {
         let give = Vec2::new(give[0].0, give[1].0);
         let place = |i: usize| self.signals.position[i] - self.signals.net_n[i].component_mul(&give);
         let stretch = self.signals.hanging().concat().into_iter().map(|i| cable.stretch(place(i)).0);
-        self.taken.pull.values[STIFFNESS] * stretch.fold(0.0, f64::max)
+        self.taken.pull.values[Column::Stiffness as usize] * stretch.fold(0.0, f64::max)
     }
 
     /// The cable as a constraint from one side; without one, whether anything else guides the barrel.

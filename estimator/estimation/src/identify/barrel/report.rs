@@ -1,7 +1,7 @@
 //! Report of a barrel's parameters from its recording, as a fit.
 
 use super::cable::Cable;
-use super::cable_force::{GROWTH, MASS, Pull, STIFFNESS};
+use super::cable_force::{Column, Pull};
 use super::sensor_zero::SensorZero;
 use super::signals::Signals;
 use super::wall_stiffness::Grip;
@@ -94,7 +94,7 @@ impl Seen<'_> {
         let zero_kg = if self.gravity > 0.0 { self.taken.zero.error_n / self.gravity } else { f64::INFINITY };
         let change = |other: &Pull| other.values[0] - self.taken.pull.values[0];
         let pull_kg = if self.gravity > 0.0 { PULL_SHARE * self.strongest_n() / self.gravity } else { 0.0 };
-        let own = error_of(covariance, MASS).hypot(zero_kg).hypot(pull_kg);
+        let own = error_of(covariance, Column::Mass as usize).hypot(zero_kg).hypot(pull_kg);
         (self.taken.pull.values[0], self.taken.others.iter().map(change).fold(own, f64::hypot))
     }
 
@@ -203,16 +203,21 @@ impl Seen<'_> {
                        after the last";
             return self.missing(OBJECT, LEAK, why);
         };
-        if !self.taken.pull.around.identified[GROWTH] {
+        if !self.taken.pull.around.identified[Column::Growth as usize] {
             return self.missing(OBJECT, LEAK, "it did not hang long enough to change its weight");
         }
-        let value = drift / self.gravity - self.taken.pull.values[GROWTH];
+        let value = drift / self.gravity - self.taken.pull.values[Column::Growth as usize];
         // From slack to taut and back within the time that it hung.
         let pull_n_s = PULL_SHARE * self.strongest_n() / self.hung_s();
         let systematic = drift_error.hypot(pull_n_s) / self.gravity;
-        let change = |other: &Pull| other.values[GROWTH] - self.taken.pull.values[GROWTH];
+        let change =
+            |other: &Pull| other.values[Column::Growth as usize] - self.taken.pull.values[Column::Growth as usize];
         let error = |c: &DMatrix<f64>| {
-            self.taken.others.iter().map(change).fold(error_of(c, GROWTH).hypot(systematic), f64::hypot)
+            self.taken
+                .others
+                .iter()
+                .map(change)
+                .fold(error_of(c, Column::Growth as usize).hypot(systematic), f64::hypot)
         };
         let words = self.verdict().unwrap_or_default();
         let how = format!("how its weight falls while it hangs, less the drift of the sensors' zero; {words}");
@@ -228,7 +233,7 @@ impl Seen<'_> {
             let place = signals.position[i] - signals.net_n[i].component_mul(&Vec2::new(give[0].0, give[1].0));
             let pull = |c: &Cable| {
                 let (stretch_m, away) = c.stretch(place);
-                self.taken.pull.values[STIFFNESS] * stretch_m.max(0.0) * away.y
+                self.taken.pull.values[Column::Stiffness as usize] * stretch_m.max(0.0) * away.y
             };
             self.taken.pull.values[0] * signals.acceleration[i].y + self.taken.pull.cable.as_ref().map_or(0.0, pull)
         };

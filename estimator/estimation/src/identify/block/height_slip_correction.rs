@@ -4,15 +4,12 @@ use super::placement_time::stands_from;
 use super::rests::Rest;
 use super::signals::{Blocks, MAIN, object};
 use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
+use crate::identify::limits::{CERTAIN, LEAST_LINE_ROWS};
 use crate::regression::linear::least_squares;
 use foundation::signal::task::half_width;
 
-/// Least number of rows of a rest that show a slip.
-const LEAST_REST_ROWS: usize = 8;
 /// Least decrease of −2 ln(likelihood) by a slip: no rows can be held out of so few, so it must be beyond doubt.
 const SURE: f64 = 50.0;
-/// Least size of a slip in its own standard errors.
-const ERRORS: f64 = 5.0;
 
 /// A slip of the grip at one end of a carry.
 pub(super) struct HeightSlip {
@@ -85,7 +82,7 @@ pub(super) fn height_slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<HeightSli
         let own = fit.std_errors[model.len() - 1];
         let (way_m, open_m) = heights.way_m(&left, best, variance_m2);
         let score = n as f64 * (squares / after).ln();
-        if score < SURE || best.way_m.abs() < LEAST_M.max(ERRORS * own) {
+        if score < SURE || best.way_m.abs() < LEAST_M.max(CERTAIN * own) {
             break;
         }
         let (rest, slip) = (rows.numbers[best.slip.rest], best.slip);
@@ -127,7 +124,7 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
     for (number, rest) in rests.iter().enumerate() {
         let (from_s, samples) = standing(blocks, rest, number % 2 == 1);
         let picked: Vec<usize> = samples.into_iter().step_by(2 * half).collect();
-        if picked.len() < LEAST_REST_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i])) {
+        if picked.len() < LEAST_LINE_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i])) {
             continue;
         }
         let first = rows.time_s.len();

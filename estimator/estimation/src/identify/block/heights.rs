@@ -16,14 +16,12 @@
 use super::height_slip_correction::{HeightSlip, height_slips};
 use super::rests::{Rest, rests};
 use super::signals::{Blocks, object};
-use crate::identify::limits::SIGNIFICANT;
+use crate::identify::limits::{LEAST_OF_PARABOLA, SIGNIFICANT};
 use crate::regression::bootstrap::{Resampled, block_bootstrap_within};
 use crate::regression::linear::{LinearFit, least_squares};
 use foundation::estimate::{EstimateError, Parameter};
 use std::ops::Range;
 
-/// Least number of samples of a block at rest in the grip that show a height.
-const LEAST_REST_SAMPLES: usize = 5;
 /// Relative difference of the give of the floor's contact from that between blocks, one standard deviation. They cannot
 /// be told apart, because the floor's give looks like the pads' shear.
 const CONTACTS_DIFFER: f64 = 0.33;
@@ -96,7 +94,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
     let rows = rows(seen, &at);
     let rests = || seen.iter().flat_map(|one| &one.rests);
     let mut parameters = Vec::new();
-    let shown = |rest: &Rest| rest.samples.len() >= LEAST_REST_SAMPLES;
+    let shown = |rest: &Rest| rest.samples.len() >= LEAST_OF_PARABOLA;
     if !rests().any(shown) || rows.height.len() <= rows.columns.len() {
         let why = "no block was held still on the ground";
         parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)));
@@ -114,7 +112,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
         let column = at.blocks + number - 1;
         let below = rests().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
         let samples = rests().map(|r| r.samples.len()).sum::<usize>();
-        if below < LEAST_REST_SAMPLES || !fit.identified[column] {
+        if below < LEAST_OF_PARABOLA || !fit.identified[column] {
             let why =
                 "it was never clearly below a block that was carried to or from a known height; unstack and restack it";
             parameters.push(Parameter::unidentified(&object(number), "height_m", below, why));
@@ -160,7 +158,7 @@ fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
     let columns = vec![Vec::new(); at.contact + 1];
     let mut rows = Rows { columns, height: Vec::new(), floor: Vec::new(), slipped: Vec::new(), stretches: Vec::new() };
     for (Stacked { blocks, weights_n, rests, slips }, grasp) in seen.iter().zip(&at.grasps) {
-        for (number, rest) in rests.iter().enumerate().filter(|(_, r)| r.samples.len() >= LEAST_REST_SAMPLES) {
+        for (number, rest) in rests.iter().enumerate().filter(|(_, r)| r.samples.len() >= LEAST_OF_PARABOLA) {
             let slip = slips.iter().find(|slip| slip.rest == number);
             let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
             let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();

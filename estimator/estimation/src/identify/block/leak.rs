@@ -1,15 +1,12 @@
 //! Change of a block's weight while it was carried: a leak or the sensors (see [`crate::online::leak`]).
 
 use super::signals::Blocks;
-use crate::identify::limits::LEAST_FREE_S;
+use crate::identify::limits::{FREE_ENDS_S, LEAST_FREE_S};
 use crate::online::block::leak_parameter;
 use crate::online::leak::{LeakAnswer, Series, Verdict, Weighing, leak_or_drift};
 use foundation::estimate::Parameter;
 use foundation::signal::task::smooth;
 use foundation::tasks::SystemState;
-
-/// Time at either end of free motion that may touch already, s.
-const ENDS_S: f64 = 0.05;
 
 /// Times and forces.
 type Reading = (Vec<f64>, Vec<f64>);
@@ -65,7 +62,8 @@ fn free(blocks: &Blocks<'_>) -> Vec<usize> {
     let time = &blocks.signals.time_s;
     let states = blocks.segmentation.states.iter();
     let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S);
-    let samples: Vec<usize> =
-        long.flat_map(|i| (i.first..i.end).filter(|k| time[*k] > i.t0 + ENDS_S && time[*k] < i.t1 - ENDS_S)).collect();
+    let samples: Vec<usize> = long
+        .flat_map(|i| (i.first..i.end).filter(|k| time[*k] > i.t0 + FREE_ENDS_S && time[*k] < i.t1 - FREE_ENDS_S))
+        .collect();
     blocks.rows(&samples)
 }

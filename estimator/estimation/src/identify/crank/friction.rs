@@ -1,7 +1,7 @@
 //! Weighted regression of the tangential force on the laws, and the identifiability of their parameters.
 
 use super::geometry::Geometry;
-use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
+use super::laws::{LAWS, NAMES, Place, is_friction, missing_motion};
 use super::path_coordinate::{Along, Rows};
 use super::signals::Held;
 use crate::identify::limits::{HELD_OUT, SIGNIFICANT};
@@ -43,7 +43,7 @@ impl Sensed {
 
     /// From a law's own parameter to the one in the fit: inertia is reported about the axis.
     fn scale(&self, law: usize) -> f64 {
-        if law == INERTIA { self.radius_m.powi(2) } else { 1.0 }
+        if law == Place::Inertia as usize { self.radius_m.powi(2) } else { 1.0 }
     }
 }
 
@@ -74,7 +74,6 @@ impl Friction {
             covariance[(column, other)].abs() > SAME_THING * scale
         };
         // If one kind of friction is not shown, another one near zero may only have lost its share to it.
-        let is_friction = |law: usize| FRICTION.contains(&law);
         let doubtful = is_friction(self.used[column])
             && self.fit.t_value(column).abs() < SIGNIFICANT
             && (0..self.used.len()).any(|o| is_friction(self.used[o]) && !self.certain(o, rows, load_n));
@@ -94,7 +93,7 @@ impl Friction {
         // A force that is off by the log's resolution shifts every parameter by that share of the load.
         let resolution = self.fit.values[column].abs() * seen.resolution_n / load_n.max(1e-9);
         // A vertical bias acts just as the weight does.
-        let bias = if self.used[column] == WEIGHT { seen.bias_error_n } else { 0.0 };
+        let bias = if self.used[column] == Place::Weight as usize { seen.bias_error_n } else { 0.0 };
         self.geometry_errors[column].hypot(resolution).hypot(bias)
     }
 
@@ -169,11 +168,11 @@ pub(super) fn friction(recording: &Recording, rows: &Rows) -> Result<Friction, E
     let mut used: Vec<usize> = (0..LAWS.len()).filter(|law| !known.contains_key(law)).collect();
     let mut fit = regress(rows, &used, &known)?;
     // Laws that this recording cannot separate are left out, the least essential first; the rest keeps its meaning.
-    for law in [INERTIA, COULOMB] {
+    for law in [Place::Inertia, Place::Coulomb] {
         if fit.identified.iter().all(|i| *i) {
             break;
         }
-        used.retain(|l| *l != law);
+        used.retain(|l| *l != law as usize);
         fit = regress(rows, &used, &known)?;
     }
     let geometry_errors = vec![0.0; used.len()];

@@ -2,7 +2,7 @@
 
 use super::friction::Friction;
 use super::geometry::{Drawn, Geometry};
-use super::laws::WEIGHT;
+use super::laws::Place;
 use super::signals::{Held, Smooth};
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
@@ -133,7 +133,7 @@ pub(super) fn constraint(
     friction: &Friction,
     parameters: &[Parameter],
 ) -> Constraint {
-    let weight = friction.value(WEIGHT);
+    let weight = friction.value(Place::Weight as usize);
     // Fc = Fn − (mg)n, the weight's part along the outward normal being mg sin θ (eq. 5.1).
     let angle = |m: &Motion| m.position / geometry.radius_m;
     let force = motions.iter().map(|m| m.normal_force_n - weight * angle(m).sin()).sum::<f64>() / motions.len() as f64;

@@ -1,16 +1,13 @@
 //! Moving parts of a free motion: a mechanism at rest is held by dry friction, anywhere up to its level, and tells
 //! nothing of the laws.
 
-use super::signals::{MIN_SAMPLES, Raw};
+use super::signals::Raw;
+use crate::identify::limits::{CLEARLY_SIGNIFICANT, LEAST_LINE_ROWS, LEAST_SEGMENT_ROWS};
 use foundation::signal::noise::{quantum, white_noise_under_fast_motion};
 use std::ops::Range;
 
 /// Length of the windows in which samples are looked at, s.
 const STANDING_WINDOW_S: f64 = 0.1;
-/// Least number of samples of such a window.
-const LEAST_WINDOW: usize = 8;
-/// Largest difference between the halves of a window that stands, and between its samples, in multiples of their noise.
-const STANDING_NOISES: f64 = 4.0;
 /// Least number of windows in a row that are a standstill; fewer are a turn of the motion.
 const LEAST_WINDOWS: usize = 3;
 
@@ -22,7 +19,7 @@ pub(super) fn split_by_motion(raws: &[Raw]) -> (Vec<Raw>, bool) {
     for raw in raws {
         let ranges = ranges(raw);
         stood |= ranges.len() != 1 || ranges.first().is_some_and(|r| r.len() < raw.time_s.len());
-        parts.extend(ranges.into_iter().filter(|r| r.len() >= MIN_SAMPLES).map(|range| part(raw, range)));
+        parts.extend(ranges.into_iter().filter(|r| r.len() >= LEAST_SEGMENT_ROWS).map(|range| part(raw, range)));
     }
     if parts.is_empty() { (raws.to_vec(), false) } else { (parts, stood) }
 }
@@ -44,7 +41,7 @@ fn part(raw: &Raw, range: Range<usize>) -> Raw {
 fn ranges(raw: &Raw) -> Vec<Range<usize>> {
     let n = raw.position.len();
     let period_s = (raw.time_s[n - 1] - raw.time_s[0]) / n.saturating_sub(1).max(1) as f64;
-    let length = ((STANDING_WINDOW_S / period_s).round() as usize).max(LEAST_WINDOW);
+    let length = ((STANDING_WINDOW_S / period_s).round() as usize).max(LEAST_LINE_ROWS);
     let noise = white_noise_under_fast_motion(&raw.position).max(0.5 * quantum(&raw.position));
     let stands: Vec<bool> = raw.position.chunks_exact(length).map(|window| is_still(window, noise)).collect();
     let mut moving = Vec::new();
@@ -72,9 +69,9 @@ fn is_still(window: &[f64], noise: f64) -> bool {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (early, late) = window.split_at(window.len() / 2);
     let middle = mean(window);
-    let allowed = STANDING_NOISES * noise * (4.0 / window.len() as f64).sqrt();
+    let allowed = CLEARLY_SIGNIFICANT * noise * (4.0 / window.len() as f64).sqrt();
     (mean(early) - mean(late)).abs() <= allowed
-        && window.iter().all(|q| (q - middle).abs() <= (STANDING_NOISES + 1.0) * noise)
+        && window.iter().all(|q| (q - middle).abs() <= (CLEARLY_SIGNIFICANT + 1.0) * noise)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! From a recording to the coordinate of a mechanism, its derivatives and the force along it: one zero-phase filter for all.
 
 use super::resampling::Resampled;
+use crate::identify::limits::LEAST_SEGMENT_ROWS;
 use crate::regression::linear::COLUMN_NOISE_UNCERTAINTY;
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::{central_differences, stencil};
@@ -11,8 +12,6 @@ use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
 use std::f64::consts::TAU;
 
-/// Least number of samples of a segment without a gap.
-pub const MIN_SAMPLES: usize = 24;
 /// Step in periods above which a segment ends.
 const GAP_PERIODS: f64 = 10.0;
 /// Noise that a filter lets through on a derivative, as a share of the derivative: the noise biases the inertia by the
@@ -181,7 +180,7 @@ pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
 pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>, f64), EstimateError> {
     let n = time_s.len();
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    if steps.len() + 1 < MIN_SAMPLES {
+    if steps.len() + 1 < LEAST_SEGMENT_ROWS {
         return Err(too_few(name, n));
     }
     let middle = steps.len() / 2;
@@ -189,7 +188,7 @@ pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>,
     let mut cuts = vec![0];
     cuts.extend((1..n).filter(|&i| time_s[i] - time_s[i - 1] > GAP_PERIODS * median));
     cuts.push(n);
-    let spans: Vec<_> = cuts.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| b - a >= MIN_SAMPLES).collect();
+    let spans: Vec<_> = cuts.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| b - a >= LEAST_SEGMENT_ROWS).collect();
     if spans.is_empty() { Err(too_few(name, n)) } else { Ok((spans, median)) }
 }
 
@@ -198,7 +197,7 @@ fn too_few(name: &str, samples: usize) -> EstimateError {
         recording: name.to_owned(),
         samples,
         what: " in one uninterrupted piece".to_owned(),
-        needed: MIN_SAMPLES,
+        needed: LEAST_SEGMENT_ROWS,
     }
 }
 

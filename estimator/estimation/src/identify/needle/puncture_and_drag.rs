@@ -4,12 +4,11 @@
 use super::sheet::{HELD, OBJECT, Sheet};
 use super::signals::Along;
 use super::strokes::Push;
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::regression::bootstrap::median_error;
 use foundation::estimate::Parameter;
 use haptics::recording::Recording;
 
-/// Largest distance of a force on the loading curve, in multiples of its noise.
-const ON_CURVE_NOISES: f64 = 4.0;
 /// Largest distance of a force on the loading curve, as a share of it: slow filters bend the curve a little.
 const ON_CURVE: f64 = 0.02;
 /// Delay of a filter that force and place may have gone through, s: it makes the puncture lead on the curve.
@@ -60,7 +59,7 @@ impl Sheet {
         let (peak, fallen) = (push.puncture?, push.fallen?);
         let is_on_curve = |i: &usize| {
             let curve = self.loading.force_n(depth(*i));
-            measured(*i) > curve - (ON_CURVE_NOISES * along.noise_n).max(ON_CURVE * curve)
+            measured(*i) > curve - (CLEARLY_SIGNIFICANT * along.noise_n).max(ON_CURVE * curve)
         };
         let at = (peak..fallen).rev().find(is_on_curve).unwrap_or(peak);
         let back = ((SPEED_BEFORE_S / along.period_s.max(1e-9)) as usize).max(1);

@@ -1,6 +1,6 @@
 //! Signals of a needle recording along the needle's way: depth, force, and the segments in which it is held.
 
-use crate::identify::limits::CONTACT_NOISES;
+use crate::identify::limits::{CONTACT_NOISES, LEAST_OF_PARABOLA, PUSH_SHARE};
 use crate::identify::pads::SHEAR_GIVE;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::{quantum, resolution_error, white_noise};
@@ -9,12 +9,8 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least grip of a hold, as a share of the strongest grip.
-const GRIP_SHARE: f64 = 0.15;
 /// Share of the largest forces whose mean direction is that of the needle.
 const STRONGEST: f64 = 0.02;
-/// Least number of the samples of that mean direction.
-const LEAST_STRONG: usize = 5;
 /// Least force that shows the needle's direction, in multiples of its noise.
 const DIRECTION_NOISES: f64 = 12.0;
 /// Time over which points of the loading curve are averaged, s: a hand moves on by a tenth of a millimetre meanwhile.
@@ -114,7 +110,7 @@ fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f
 /// Segments of samples with a grip.
 fn holds(grip: &[f64]) -> Vec<Range<usize>> {
     let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
-    let least = (GRIP_SHARE * most).max(CONTACT_NOISES * white_noise(grip));
+    let least = (PUSH_SHARE * most).max(CONTACT_NOISES * white_noise(grip));
     let mut found: Vec<Range<usize>> = Vec::new();
     for (i, _) in grip.iter().enumerate().filter(|(_, g)| **g > least) {
         match found.last_mut() {
@@ -138,9 +134,10 @@ fn direction(force: &[Vec2], held: &dyn Fn(usize) -> bool) -> Option<Vec2> {
     let axis = |pick: fn(&Vec2) -> f64| white_noise(&force.iter().map(pick).collect::<Vec<_>>());
     let noise = axis(|f| f.x).max(axis(|f| f.y));
     let mean = |count: usize| sizes[..count].iter().map(|&(_, i)| force[i]).sum::<Vec2>() / count as f64;
-    let most = ((STRONGEST * sizes.len() as f64) as usize).max(LEAST_STRONG);
+    let most = ((STRONGEST * sizes.len() as f64) as usize).max(LEAST_OF_PARABOLA);
     // A stiff sheet that is pressed fast, or once among many strokes, is felt in fewer samples.
-    let counts = std::iter::successors(Some(most), |count| Some(count / 2)).take_while(|count| *count >= LEAST_STRONG);
+    let counts =
+        std::iter::successors(Some(most), |count| Some(count / 2)).take_while(|count| *count >= LEAST_OF_PARABOLA);
     let stands_out = |mean: &Vec2| mean.norm() > DIRECTION_NOISES * noise && mean.norm() > 0.0;
     counts.map(mean).find(stands_out).map(|mean| mean.normalize())
 }

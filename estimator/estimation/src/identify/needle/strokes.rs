@@ -2,7 +2,7 @@
 //! puncture.
 
 use super::signals::Along;
-use crate::identify::limits::CONTACT_NOISES;
+use crate::identify::limits::{CONTACT_NOISES, PUSH_SHARE};
 use std::ops::Range;
 
 /// Least reversal of the motion, as a share of its whole range.
@@ -20,8 +20,6 @@ const FALLEN: f64 = 0.6;
 const DRAWN_BACK: f64 = 0.1;
 /// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 const LAST_PART: usize = 4;
-/// Least peak of a push, as a share of the strongest force.
-const PUSH_SHARE: f64 = 0.15;
 
 /// One push.
 #[derive(Clone, Debug)]

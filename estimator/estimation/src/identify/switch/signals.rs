@@ -5,6 +5,7 @@
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
 use super::assumptions::Assumptions;
+use crate::identify::limits::{CERTAIN, SETTLED_M, TOUCH_SHARE};
 use crate::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::savitzky_golay;
@@ -21,16 +22,10 @@ const MOVING_HALF_S: f64 = 0.010;
 /// Least share of its speed along the arc with which a knob moves across.
 /// Derived: √(1 − 0.95²), the cosine at the farthest sine.
 const LEAST_COSINE: f64 = 0.31;
-/// Least force of a touching finger, as a share of its strongest force.
-const TOUCH_SHARE: f64 = 0.03;
-/// Least force of a touching finger, in multiples of the noise of the averaged force.
-const TOUCH_NOISES: f64 = 5.0;
 /// Least force on a stop, as a share of its largest value there: the knob lies there, and no friction carries it.
 const STOP_SHARE: f64 = 0.3;
 /// Force on a pressed stop, in multiples of the least force of a touch.
 const STOP_TOUCHES: f64 = 2.0;
-/// Way after a turn within which the force goes over from one curve to the other, m.
-const SETTLED_M: f64 = 0.8e-3;
 /// Least size of a turn of the motion, as a share of its range.
 const THROW_TURN_SHARE: f64 = 0.1;
 /// Share of the samples that are slower than a fast hand.
@@ -259,7 +254,7 @@ impl Finger {
         let force: Vec<Vec2> = fx.iter().zip(&fy).map(|(x, y)| Vec2::new(x - zero_x, y - zero_y)).collect();
         let x: Vec<f64> = tip.position.iter().map(|p| p.x).collect();
         let strongest = force.iter().fold(0.0_f64, |m, f| m.max(f.x.abs()));
-        let least_n = (TOUCH_SHARE * strongest).max(TOUCH_NOISES * noise_n / ((2 * half + 1) as f64).sqrt());
+        let least_n = (TOUCH_SHARE * strongest).max(CERTAIN * noise_n / ((2 * half + 1) as f64).sqrt());
         let touches: Vec<bool> = force.iter().map(|f| f.x.abs() > least_n).collect();
         let zero_error_n = 2.0 * noise_n / (quiet.len().max(1) as f64).sqrt();
         let heights: Vec<f64> = tip.position.iter().zip(&touches).filter(|(_, t)| **t).map(|(p, _)| p.y).collect();

@@ -1,7 +1,7 @@
 //! The way of a throw as a finger sees it: force rises to a peak and falls from there, linear on both sides; and the stop.
 
 use super::signals::{Sample, Seen};
-use crate::identify::limits::{GOLDEN_STEPS, LEAST_LINE_ROWS, SEARCH_STEPS};
+use crate::identify::limits::{GOLDEN_STEPS, LEAST_LINE_ROWS, LEAST_SEGMENT_ROWS, SEARCH_STEPS};
 use crate::regression::bootstrap::{Resampled, block_bootstrap};
 use crate::regression::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares};
 use foundation::estimate::EstimateError;
@@ -9,11 +9,6 @@ use nalgebra::{DMatrix, DVector};
 
 /// Largest number of samples in the fit.
 const MOST_THROW_ROWS: usize = 6000;
-/// Column of the rate, which that of the acceleration follows.
-/// Derived: the fifth column, after level, rise, fall, and place.
-const RATE: usize = 4;
-/// Least number of samples that show a rise and a fall.
-const LEAST_THROW_ROWS: usize = 24;
 /// Force by speed and mass of a knob on its way down that is not in the curve, N (one standard deviation).
 const FALLING_N: f64 = 0.025;
 /// Force by speed and mass of a slow knob up to the peak that is not in the curve, N (one standard deviation).
@@ -71,7 +66,7 @@ impl Throw {
 /// `None` when too little is seen, or no fall after a rise.
 pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
     let count = seen.way.len();
-    if count < LEAST_THROW_ROWS {
+    if count < LEAST_SEGMENT_ROWS {
         return Ok(None);
     }
     let rows: Vec<Sample> = seen.way.iter().copied().step_by(count.div_ceil(MOST_THROW_ROWS)).collect();
@@ -115,9 +110,9 @@ fn throw_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Throw>,
     let mut resampled = block_bootstrap(&columns, &force, None, &around);
     let mut values = [peak, rise, fall, place];
     if let Some(noise) = noise {
-        let count = around.values.len();
+        let (rate, count) = (values.len(), around.values.len());
         let mut power = DMatrix::zeros(count, count);
-        (0..2).for_each(|k| power[(RATE + k, RATE + k)] = rows.len() as f64 * noise[k] * noise[k]);
+        (0..2).for_each(|k| power[(rate + k, rate + k)] = rows.len() as f64 * noise[k] * noise[k]);
         let before = around.std_errors.clone();
         around = around.without_attenuation(&power, COLUMN_NOISE_UNCERTAINTY);
         // The correction enlarges both kinds of errors by the same factor.

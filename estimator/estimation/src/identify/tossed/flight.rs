@@ -1,18 +1,15 @@
 //! Free flight, from the first sample to the first blow.
 
-use super::pose::{LEAST_OF_PARABOLA, Track};
+use super::pose::Track;
+use crate::identify::limits::{CERTAIN, LEAST_OF_PARABOLA, SIGNIFICANT};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Time at the beginning that shows undisturbed flight, s.
 const FIRST_S: f64 = 0.068;
 /// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
 const BLOW_REACH_S: f64 = 0.020;
-/// Deviation of a flight from its parabola, in multiples of the usual one, above which it is left out.
-const BENT: f64 = 3.0;
-/// Least change of the second difference by a blow, in multiples of its usual scatter.
-const BLOW_NOISES: f64 = 5.0;
 /// Least change of the velocity by a blow, m/s.
-const BLOW_M_S: f64 = 0.15;
+pub const BLOW_M_S: f64 = 0.15;
 /// Number of samples left out before a blow.
 const GUARD: usize = 1;
 /// Least duration of a flight that is judged, s.
@@ -84,7 +81,7 @@ fn flights(tracks: &[Track]) -> Option<Vec<(&Track, usize)>> {
     let rms: Vec<f64> = flights.iter().map(|(t, n)| own_rms(t, *n)).collect();
     let mut sorted = rms.clone();
     sorted.sort_by(f64::total_cmp);
-    let most = BENT * sorted.get(sorted.len() / 2)?;
+    let most = SIGNIFICANT * sorted.get(sorted.len() / 2)?;
     Some(flights.into_iter().zip(&rms).filter(|(_, r)| **r <= most).map(|(f, _)| f).collect())
 }
 
@@ -149,7 +146,7 @@ pub fn end(track: &Track) -> usize {
     let usual = median_vector(&begin().map(bend).collect::<Vec<_>>());
     let mut scatter: Vec<f64> = begin().map(|i| (bend(i) - usual).norm()).collect();
     scatter.sort_by(f64::total_cmp);
-    let least = (BLOW_NOISES * scatter[scatter.len() / 2]).max(BLOW_M_S * track.step_s() * reach as f64);
+    let least = (CERTAIN * scatter[scatter.len() / 2]).max(BLOW_M_S * track.step_s() * reach as f64);
     let blow = (reach..points.len() - reach).find(|&i| (bend(i) - usual).norm() > least);
     blow.map_or(points.len(), |i| (i + 1).saturating_sub(GUARD))
 }

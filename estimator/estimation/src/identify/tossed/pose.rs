@@ -4,10 +4,6 @@ use crate::identify::mechanism::path;
 use haptics::recording::Recording;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// Least number of samples of a parabola that can be judged.
-/// Derived: its three numbers and two samples more.
-pub(super) const LEAST_OF_PARABOLA: usize = 5;
-
 /// One recording.
 #[derive(Clone, Debug)]
 pub struct Track {

@@ -1,6 +1,7 @@
 //! Sliding flat: height and orientation stay, the speed falls evenly.
 
-use super::pose::{LEAST_OF_PARABOLA, Track};
+use super::pose::Track;
+use crate::identify::limits::LEAST_OF_PARABOLA;
 use foundation::signal::derive::polynomial;
 use nalgebra::Vector3;
 

@@ -2,7 +2,7 @@
 
 use super::geometry::Circle;
 use super::laws::Laws;
-use crate::identify::crank::laws::{LAWS, NAMES, WEIGHT, column};
+use crate::identify::crank::laws::{LAWS, NAMES, Place, column};
 use crate::online::information::matrices::{collected, per_second, with_copy};
 use crate::online::information::motion::Motion;
 use crate::online::information::problem::Problem;
@@ -96,7 +96,7 @@ fn turning(seen: &Turned, way: Way<'_>) -> DMatrix<f64> {
             up_along: angle.cos(),
         };
         let mut columns: Vec<f64> = LAWS.iter().map(|law| column(*law, &along)).collect();
-        columns.push(columns[WEIGHT]);
+        columns.push(columns[Place::Weight as usize]);
         columns
     };
     let rows: Vec<Vec<f64>> = (0..STEPS).map(row).collect();
@@ -105,7 +105,7 @@ fn turning(seen: &Turned, way: Way<'_>) -> DMatrix<f64> {
 
 pub(super) fn rubbing(seen: &Turned) -> Problem {
     let variance = seen.variance;
-    let mut information = with_copy(&seen.information, WEIGHT);
+    let mut information = with_copy(&seen.information, Place::Weight as usize);
     let bias = NAMES.len();
     if let Some(error) = seen.bias_error {
         information[(bias, bias)] += error.powi(-2);
@@ -127,7 +127,7 @@ pub(super) fn rubbing(seen: &Turned) -> Problem {
         information,
         before: vec![10.0, 10.0, 100.0, 10.0, 10.0, 10.0],
         motions: vec![
-            (Motion::GoOn, with_copy(&(&seen.information / seconds), WEIGHT)),
+            (Motion::GoOn, with_copy(&(&seen.information / seconds), Place::Weight as usize)),
             (Motion::Reverse, turn(&|p| (way(p), 0.0, normal))),
             (Motion::OtherSpeeds, turn(&|p| (way(p) * speeds(p), 0.0, normal))),
             (

@@ -9,7 +9,7 @@ use super::super::recursive::Recursive;
 use super::super::settings::Settings;
 use super::geometry::Circle;
 use crate::identify::crank::frame::{Frame, Handled, LOW_PASS_HALF_S};
-use crate::identify::crank::laws::{INERTIA, LAWS, NAMES, WEIGHT, column, missing_motion};
+use crate::identify::crank::laws::{LAWS, NAMES, Place, column, missing_motion};
 use foundation::estimate::Parameter;
 use haptics::law::Motion;
 
@@ -226,13 +226,14 @@ impl Laws {
         let known = self.values(circle);
         let load = (self.load / self.weight.max(1e-12)).sqrt();
         let of = |(law, name): (usize, &str)| {
-            let scale = if law == INERTIA { radius * radius } else { 1.0 };
+            let scale = if law == Place::Inertia as usize { radius * radius } else { 1.0 };
             let size = (self.squares[law] / self.weight.max(1e-12)).sqrt();
             match known {
                 Some((values, errors))
-                    if errors[law] * size <= LARGEST_ERROR * load && (law != WEIGHT || bias.is_some()) =>
+                    if errors[law] * size <= LARGEST_ERROR * load
+                        && (law != Place::Weight as usize || bias.is_some()) =>
                 {
-                    let of_bias = if law == WEIGHT { bias.map_or(0.0, |(_, e)| e) } else { 0.0 };
+                    let of_bias = if law == Place::Weight as usize { bias.map_or(0.0, |(_, e)| e) } else { 0.0 };
                     let error = errors[law].hypot(of_bias) * scale;
                     let how = format!("{} in the tangential force (eq. 5.2)", LAWS[law].title());
                     Parameter::identified("crank", name, values[law] * scale, error, samples, &how)
@@ -240,7 +241,7 @@ impl Laws {
                 None => {
                     Parameter::unidentified("crank", name, samples, "the circle is not known well enough yet; turn on")
                 }
-                Some(_) if law == WEIGHT && bias.is_none() => Parameter::unidentified(
+                Some(_) if law == Place::Weight as usize && bias.is_none() => Parameter::unidentified(
                     "crank",
                     name,
                     samples,

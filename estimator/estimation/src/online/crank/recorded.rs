@@ -6,7 +6,7 @@ use super::candidates::{Round, Turned, round, rubbing};
 use super::geometry::Circle;
 use super::laws::Laws;
 use crate::identify::crank::frame::{Frame, Handled};
-use crate::identify::crank::laws::{INERTIA, LAWS, NAMES, WEIGHT, column};
+use crate::identify::crank::laws::{LAWS, NAMES, Place, column};
 use crate::online::information::problem::Problem;
 use foundation::estimate::Fit;
 use foundation::signal::task::{is_two_fingered, task_signals, tip_series};
@@ -61,7 +61,8 @@ pub(crate) fn crank_problems_of(recordings: &[Recording], fit: &Fit, free_row_s:
     }
     let error = |name: &str| fit.parameter("crank", name).filter(|p| p.identified).and_then(|p| p.std_error);
     let mut problems = Vec::new();
-    let of_law = |k: usize| error(NAMES[k]).map(|e| if k == INERTIA { e / (radius_m * radius_m) } else { e });
+    let of_law =
+        |k: usize| error(NAMES[k]).map(|e| if k == Place::Inertia as usize { e / (radius_m * radius_m) } else { e });
     if let Some((information, variance)) = laws.counted(&of_law) {
         let [normal_n, speed_m_s] = laws.mean();
         problems.push(rubbing(&Turned {
@@ -73,7 +74,7 @@ pub(crate) fn crank_problems_of(recordings: &[Recording], fit: &Fit, free_row_s:
             speed_m_s,
             radius_m,
             // The fit's error of the weight contains the bias already.
-            bias_error: of_law(WEIGHT).map(|e| 0.3 * e),
+            bias_error: of_law(Place::Weight as usize).map(|e| 0.3 * e),
             bias_noise_n: 0.0,
             free_row_s,
         }));

@@ -5,9 +5,10 @@
 pub(crate) mod tests;
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{HAND_CLOSES_S, HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
+use crate::diagnose::data::limits::{HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
 use estimation::identify::block::placement_time::{stands_from, usual_lift};
 use estimation::identify::block::signals::{Blocks, MAIN, object};
+use estimation::identify::limits::{FREE_ENDS_S, LEAST_FREE_S};
 use estimation::segment::Method;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -15,8 +16,6 @@ use foundation::signal::task::{half_width, smooth};
 use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 
-/// Margin at the ends of free motion, which may already touch, s.
-const ENDS_S: f64 = 0.05;
 /// Share of the usual lift below which part of the weight is supported.
 const WHOLE: f64 = 0.75;
 /// Duration for which a block swings behind its pads after the lift, s.
@@ -223,9 +222,9 @@ impl<'a> Seen<'a> {
     /// Rows of free motion.
     pub fn free(&self) -> Vec<usize> {
         let states = self.blocks.segmentation.states.iter();
-        let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= HAND_CLOSES_S);
+        let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S);
         self.every(long.flat_map(|s| {
-            (s.first..s.end).filter(|k| self.time_s(*k) > s.t0 + ENDS_S && self.time_s(*k) < s.t1 - ENDS_S)
+            (s.first..s.end).filter(|k| self.time_s(*k) > s.t0 + FREE_ENDS_S && self.time_s(*k) < s.t1 - FREE_ENDS_S)
         }))
     }
 

@@ -1,7 +1,8 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{FEWEST, HAND_CLOSES_S, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
+use crate::diagnose::data::limits::{FEWEST, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
+use estimation::identify::limits::LEAST_FREE_S;
 use estimation::segment::segment;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
@@ -25,7 +26,7 @@ pub fn held_and_free(
     let rests: Vec<std::ops::Range<usize>> = segmentation
         .states
         .iter()
-        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= HAND_CLOSES_S)
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
         .map(|i| i.first..i.end)
         .collect();
     let unrest: Vec<f64> = rests
@@ -54,7 +55,7 @@ pub fn held_and_free(
     let mut surely_free = free.clone();
     for interval in rests.iter().filter(|i| free[i.start]) {
         // A grasp grows slowly: its beginning is below every threshold.
-        let growing = samples(HAND_CLOSES_S).min((interval.end - interval.start) / 3);
+        let growing = samples(LEAST_FREE_S).min((interval.end - interval.start) / 3);
         if interval.start > 0 {
             near[interval.start.saturating_sub(margin)..interval.start].fill(true);
             surely_free[interval.start..interval.start + growing].fill(false);

@@ -5,10 +5,11 @@
 
 use super::interpolation::Between;
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, HAND_CLOSES_S, PAUSE_S, SURE};
+use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, PAUSE_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
+use estimation::identify::limits::LEAST_FREE_S;
 use estimation::identify::needle::sheet::Sheet;
 use estimation::identify::needle::signals::{Along, along};
 use estimation::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
@@ -249,7 +250,7 @@ fn phases(
     surface_m: f64,
 ) -> Vec<Of> {
     let mut found: Vec<Of> = vec![None; time.len()];
-    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > HAND_CLOSES_S;
+    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > LEAST_FREE_S;
     let mut empty = |range: Range<usize>| {
         for i in range.clone() {
             if (range.start == 0 || far(i, range.start)) && (range.end == time.len() || far(i, range.end)) {

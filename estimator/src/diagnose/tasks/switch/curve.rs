@@ -5,7 +5,7 @@
 
 use super::held_knob::Captured;
 use super::model::Known;
-use super::rows::{CORNER_M, direction};
+use super::rows::direction;
 use super::throw::Push;
 use crate::diagnose::answer::cause::Found;
 use crate::diagnose::answer::part::Told;
@@ -23,6 +23,7 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
+use estimation::identify::limits::SETTLED_M;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
@@ -65,7 +66,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     for (row, found_n) in &push.rows {
         let Some(side) = row.side() else { continue };
         let at_m = known.at_m(row, side);
-        if known.bends_near(at_m, CORNER_M) || known.switch.curve.is_stopped(at_m) {
+        if known.bends_near(at_m, SETTLED_M) || known.switch.curve.is_stopped(at_m) {
             continue;
         }
         let (asked_n, slope_n_m) = known.asked_n(at_m, side);
@@ -150,7 +151,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
             // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
             // The knob leaves the finger half way.
-            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, SETTLED_M) {
                 continue;
             }
             let (asked_n, slope_n_m) = known.asked_n(at_m, *side);

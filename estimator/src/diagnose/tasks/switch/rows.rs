@@ -5,6 +5,7 @@ use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
+use estimation::identify::limits::{SETTLED_M, TOUCH_SHARE};
 use estimation::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -14,12 +15,8 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least force of a touching finger, as a share of its strongest force.
-const TOUCH_SHARE: f64 = 0.03;
 /// Share of the blocks that are taken as free in each part of a recording, because a finger is free at some time.
 const FREE_SHARE: f64 = 0.15;
-/// Way of a switch within which its curve is not resolved, m: at a corner, and after a reversal.
-pub(crate) const CORNER_M: f64 = 0.8e-3;
 /// Speed below which the knob may rest, m/s.
 pub(crate) const KNOB_REST_M_S: f64 = 2e-3;
 /// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
@@ -273,14 +270,14 @@ fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
         }
         let end = (first..time.len()).find(|k| !finger.touches[*k]).unwrap_or(time.len());
         let way_m = along(end - 1) - along(first);
-        if way_m > 2.0 * CORNER_M && end < time.len() {
-            let settled = (first..end).find(|k| along(*k) > along(first) + CORNER_M).unwrap_or(end);
+        if way_m > 2.0 * SETTLED_M && end < time.len() {
+            let settled = (first..end).find(|k| along(*k) > along(first) + SETTLED_M).unwrap_or(end);
             let leaving = (settled..end).find(|k| time[end] - time[*k] <= DERIVATIVE_WINDOW_S).unwrap_or(end);
             let moves = |k: &usize| direction(side) * finger.velocity[*k].x > KNOB_REST_M_S;
             let last = (settled..leaving).rev().find(moves).map_or(settled, |k| k + 1);
             found.push(Touch { blocks: settled..last, throws: true });
             thrown_to = Some(along(end - 1));
-        } else if thrown_to.is_some_and(|to| along(first) > to + CORNER_M) {
+        } else if thrown_to.is_some_and(|to| along(first) > to + SETTLED_M) {
             let most = (first..end).map(pressed).fold(0.0, f64::max);
             let hard = |k: &usize| pressed(*k) > PRESSING * most;
             let stays = |k: &usize| direction(side) * finger.velocity[*k].x > BACK_M_S;

@@ -14,6 +14,7 @@ use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
 use estimation::identify::tossed::Tossed;
+use estimation::identify::tossed::flight::BLOW_M_S;
 use estimation::identify::tossed::flight::least;
 use estimation::identify::tossed::pose::Track;
 use foundation::estimate::EstimateError;
@@ -28,8 +29,6 @@ const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
 /// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
-/// Change of the velocity there from which a blow begins, m/s.
-const BLOW_M_S: f64 = 0.15;
 /// Least speed of a blow, m/s: the scatter of a slower one is as large as its restitution.
 const SLOW_M_S: f64 = 0.4;
 /// Change of the velocity up to which a blow is over, and up to which two velocities are equal, m/s.

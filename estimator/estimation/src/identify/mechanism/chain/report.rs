@@ -1,6 +1,6 @@
 //! Report of a chain's parameters from its recordings, as a fit.
 
-use super::solve::{FIRM, MODEL, Row, Solution};
+use super::solve::{FIRM, Row, Solution};
 use crate::identify::limits::SIGNIFICANT;
 use crate::identify::mechanism::report::EFFECT_SHARE;
 use foundation::estimate::{Parameter, Quality};
@@ -43,7 +43,7 @@ impl Seen<'_> {
 
     /// All numbers of the model, and the length of the first link that follows from two of them.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let mut found: Vec<Parameter> = (0..MODEL).map(|k| self.parameter(k)).collect();
+        let mut found: Vec<Parameter> = (0..TWO_LINK.len()).map(|k| self.parameter(k)).collect();
         found.push(self.elbow());
         found
     }

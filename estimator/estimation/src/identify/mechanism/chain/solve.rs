@@ -6,9 +6,6 @@ use crate::regression::linear::{LinearFit, least_squares};
 use foundation::estimate::EstimateError;
 use haptics::law::object::TWO_LINK;
 
-/// Number of parameters of the model.
-/// Derived: length of [`TWO_LINK`].
-pub const MODEL: usize = TWO_LINK.len();
 /// Indices of the parameters that must not depend on the cut-off: inertias and gravity. The model is least true for
 /// friction.
 /// Derived: positions in [`TWO_LINK`].
@@ -34,7 +31,7 @@ pub struct Row {
     /// Place in the recording, 0 … 1.
     pub place: f64,
     /// The model's columns.
-    pub columns: [f64; MODEL],
+    pub columns: [f64; TWO_LINK.len()],
     /// Torque, N m.
     pub torque: f64,
     doubt: f64,
@@ -99,7 +96,7 @@ pub fn solve(
         }
     }
     let mut zeros = vec![[None; 2]; held.len()];
-    let mut count = MODEL;
+    let mut count = TWO_LINK.len();
     for row in &rows {
         let zero = &mut zeros[row.recording][row.joint];
         if zero.is_none() {
@@ -107,7 +104,7 @@ pub fn solve(
             count += 1;
         }
     }
-    let mut columns: Vec<Vec<f64>> = (0..MODEL).map(|k| rows.iter().map(|r| r.columns[k]).collect()).collect();
+    let mut columns: Vec<Vec<f64>> = (0..TWO_LINK.len()).map(|k| rows.iter().map(|r| r.columns[k]).collect()).collect();
     columns.resize(count, vec![0.0; rows.len()]);
     for (i, row) in rows.iter().enumerate() {
         if let Some(k) = zeros[row.recording][row.joint] {
