@@ -1,6 +1,7 @@
 //! `touchstone bench ablation`: each numeric constant of the diagnosis and of the identification halved and doubled, and
 //! the answers that change.
 
+mod annotate;
 mod schemata;
 
 use super::super::{Output, progress};
@@ -8,7 +9,7 @@ use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use schemars::JsonSchema;
 use schemata::{Constant, Sources};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -41,10 +42,16 @@ pub struct AblationBench {
     /// File for the table, as Markdown
     #[arg(long)]
     write: Option<PathBuf>,
+    /// Counts of an earlier run, its answer with --json, instead of asking the cases
+    #[arg(long)]
+    from: Option<PathBuf>,
+    /// Write the counts into the comment of each constant that names no source and no derivation
+    #[arg(long)]
+    annotate: bool,
 }
 
 /// Answers that changed when a constant was multiplied by one factor.
-#[derive(Clone, Copy, Debug, Default, JsonSchema, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, Serialize)]
 struct Counts {
     /// Cases that were asked.
     asked: usize,
@@ -61,7 +68,7 @@ struct Counts {
 }
 
 /// A constant with its counts, one for each factor.
-#[derive(JsonSchema, Serialize)]
+#[derive(Deserialize, JsonSchema, Serialize)]
 struct Row {
     name: String,
     file: String,
@@ -71,7 +78,7 @@ struct Row {
 }
 
 /// Answer of `bench ablation --json`.
-#[derive(JsonSchema, Serialize)]
+#[derive(Deserialize, JsonSchema, Serialize)]
 pub(crate) struct Said {
     /// Seeds of the cases.
     seeds: Vec<u64>,
@@ -92,17 +99,33 @@ impl AblationBench {
         let source = self.source.clone().unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."));
         let source =
             source.canonicalize().with_context(|| format!("{}: no sources; give --source", source.display()))?;
-        let copy = source.join("target/ablation/sources");
-        let (constants, fixed) =
-            progress::during("building the sources with constants that vary", |_| build(&source, &copy))?;
-        let varied = self.varied(&constants)?;
-        let cases = progress::during("asking the cases", |_| self.ask(&copy, &varied))?;
-        let said = self.said(&cases, &varied, &constants, fixed);
+        let said = match &self.from {
+            Some(path) => {
+                let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+                let earlier = serde_json::from_str(&text);
+                earlier.with_context(|| format!("{}: no answer of `bench ablation --json`", path.display()))?
+            }
+            None => self.asked(&source)?,
+        };
         let text = markdown(&said);
         if let Some(path) = &self.write {
             std::fs::write(path, &text).with_context(|| path.display().to_string())?;
         }
+        if self.annotate {
+            let written = annotate::annotate(&source, &said.constants, &said.factors)?;
+            eprintln!("{written} comments of constants were written");
+        }
         Ok(Output { text, json: serde_json::to_value(&said)? })
+    }
+
+    /// Builds the sources with constants that vary, and asks the cases.
+    fn asked(&self, source: &Path) -> anyhow::Result<Said> {
+        let copy = source.join("target/ablation/sources");
+        let (constants, fixed) =
+            progress::during("building the sources with constants that vary", |_| build(source, &copy))?;
+        let varied = self.varied(&constants)?;
+        let cases = progress::during("asking the cases", |_| self.ask(&copy, &varied))?;
+        Ok(self.said(&cases, &varied, &constants, fixed))
     }
 
     /// Indices of the constants that are asked for; an unknown name is an error.
@@ -258,6 +281,8 @@ mod tests {
             factors: vec![0.5, 2.0],
             only: only.iter().map(|name| (*name).to_owned()).collect(),
             write: None,
+            from: None,
+            annotate: false,
         }
     }
 
