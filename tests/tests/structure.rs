@@ -323,6 +323,48 @@ fn a_cause_id_is_written_once() {
     assert!(sum <= MOST_ID_LITERALS, "{sum} literals of cause ids outside the hypotheses: {elsewhere:?}");
 }
 
+/// Numeric constants of a folder with their comments: file, name, comment.
+fn constants(folder: &str) -> Vec<(String, String, String)> {
+    let mut found = Vec::new();
+    for path in sources(folder) {
+        let mut comment = String::new();
+        for line in product(&path).lines().map(str::trim) {
+            if let Some(text) = line.strip_prefix("///") {
+                comment.push_str(text);
+                comment.push('\n');
+                continue;
+            }
+            let words: Vec<&str> = line.split_whitespace().take_while(|word| *word != "=").collect();
+            let name = words.iter().position(|word| *word == "const").and_then(|at| words.get(at + 1));
+            // An id, a text or a flag is no tuning constant.
+            let kinds = ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64", "Axis", "Demands"];
+            let kind = words.last().copied().unwrap_or_default();
+            if let Some(name) = name.filter(|name| name.ends_with(':') && kinds.iter().any(|k| line.contains(k))) {
+                let name = name.trim_end_matches(':').to_owned();
+                if kind != "&str" {
+                    found.push((shown(&path), name, std::mem::take(&mut comment)));
+                }
+            }
+            comment.clear();
+        }
+    }
+    found
+}
+
+#[test]
+fn a_constant_says_where_it_comes_from_or_what_changes_with_it() {
+    for (folder, _) in MOST_CONSTANTS {
+        let all = constants(folder);
+        assert!(all.len() > 100, "{} constants of {folder} were looked at", all.len());
+        let says = |comment: &str| {
+            let lines = comment.lines().map(str::trim);
+            lines.into_iter().any(|line| ["Source: ", "Derived: ", "Choice: "].iter().any(|with| line.starts_with(with)))
+        };
+        let silent: Vec<_> = all.iter().filter(|(.., comment)| !says(comment)).map(|(f, n, _)| (f, n)).collect();
+        assert!(silent.is_empty(), "no Source, Derived or Choice: {silent:?}");
+    }
+}
+
 #[test]
 fn constants_are_few_and_a_name_stands_in_one_file() {
     for (folder, most) in MOST_CONSTANTS {
