@@ -5,11 +5,12 @@
 use super::atlas::Atlas;
 use super::cause::{Unnamed, rivals};
 use super::part::{Part, Role};
+use super::put_back::PutBack;
 use crate::diagnose::contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
+    Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
-use crate::diagnose::findings::{Figures, Findings};
+use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::rules::OPEN;
 use crate::diagnose::validation::on_other_recordings::of_study;
@@ -22,6 +23,7 @@ pub struct Named {
     pub causes: Vec<Cause>,
     pub alternatives: Vec<Alternative>,
     pub not_excited: Vec<NotExcited>,
+    pub passed_over: Vec<PassedOver>,
     pub next: Option<NextExperiment>,
 }
 
@@ -45,6 +47,12 @@ pub struct Evidence<'a> {
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
     /// True if the residual of each channel is shown beside every suspect.
     pub atlas: bool,
+    /// Evidence of a time delay.
+    pub delay: DelayFindings,
+    /// Part of a sample by which motion and forces were shifted together before the comparison, s.
+    pub skew_s: f64,
+    /// Shift of the forces before the comparison.
+    pub put_back: Option<&'a PutBack<'a>>,
     /// The task's reading of the named causes.
     pub reads: &'a dyn Fn(&mut Named),
 }
@@ -62,6 +70,9 @@ impl Default for Evidence<'_> {
             figures: Figures::of_nothing(),
             next: &|_| None,
             atlas: false,
+            delay: DelayFindings::default(),
+            skew_s: 0.0,
+            put_back: None,
             reads: &|_| (),
         }
     }
@@ -116,15 +127,20 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > limit).cloned().collect();
     let next = (evidence.next)(&open);
-    let mut named = Named { causes, alternatives, not_excited, next };
+    let mut named = Named { causes, alternatives, not_excited, passed_over, next };
     (evidence.reads)(&mut named);
-    let Named { causes, alternatives, not_excited, next } = named;
+    let is_open = named.alternatives.iter().any(|a| a.posterior > limit);
+    let (mut figures, mut delay) = (told(parts).map_or(evidence.figures, Part::figures), evidence.delay);
+    figures.baseline.model = model;
+    if let Some(put_back) = evidence.put_back {
+        figures = put_back.name(&mut named, &mut delay, figures);
+    }
+    let Named { causes, alternatives, not_excited, passed_over, next } = named;
     let is_named = causes.iter().any(|c| !terms.contains(&c.id));
-    let is_open = alternatives.iter().any(|a| a.posterior > limit);
-    let Figures { baseline, end, noise_floor } = told(parts).map_or(evidence.figures, Part::figures);
+    let Figures { baseline, end, noise_floor } = figures;
     let diagnosis = Diagnosis {
         verdict: verdict(is_named, is_strange, is_open),
-        baseline: Baseline { model, ..baseline },
+        baseline,
         noise_floor_n: noise_floor,
         residuals: parts.iter().flat_map(Part::residuals).collect(),
         causes,
@@ -143,6 +159,8 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     Findings {
         diagnosis,
         kept,
+        delay,
+        skew_s: evidence.skew_s,
         hypotheses,
         atlas: Atlas { channels: atlas, ..Atlas::default() },
         ..Findings::default()
@@ -165,8 +183,8 @@ fn compare(parts: &[Part<'_>], not_excited: Vec<NotExcited>) -> Compared {
     let mut all = Compared { ranking, alternatives, not_excited, passed, excuses };
     for part in parts {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
-            if let Some(excuse) = part.told.excuse(k) {
-                all.excuses.push(excuse);
+            if !part.told.is_cause(k) {
+                all.excuses.extend(part.told.excuse(k));
             } else if all.ranking.add(part.role, chosen.score, part.cause(k)) {
                 all.alternatives.extend(rivals(part.study, chosen));
             }

@@ -31,7 +31,11 @@ pub trait Told {
     fn shows(&self, _found: &Found<'_>) -> String {
         String::new()
     }
-    /// Warning about the k-th chosen term if it is no cause.
+    /// True if the k-th chosen term is a cause.
+    fn is_cause(&self, _k: usize) -> bool {
+        true
+    }
+    /// Warning about the k-th chosen term, which is no cause.
     fn excuse(&self, _k: usize) -> Option<String> {
         None
     }

@@ -169,14 +169,11 @@ pub fn skewed_s(study: &ChannelFit, track: &Track) -> Option<f64> {
     (0..study.chosen.len()).find_map(|k| skew(study, k, track))
 }
 
-/// Beginning of the sentence.
-pub const APART: &str = "force and motion are ";
-
 /// The offset in words.
 pub fn apart(skew_s: f64) -> String {
     let ms = 1e3 * skew_s;
     format!(
-        "{APART}{ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
+        "force and motion are {ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
     )
 }
 

@@ -11,7 +11,7 @@ use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::experiment::proposal::{propose, turned_track};
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
 use crate::diagnose::extension::model::{effects, plain};
-use crate::diagnose::findings::{DelayFindings, Findings};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::widen;
@@ -41,7 +41,7 @@ pub fn explain(
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let picks = study.picks();
     let (end, end_train) = rms(study, &picks, &along);
-    let coordinate = Coordinate { track, study };
+    let coordinate = Coordinate { track, study, is_put_together: evidence.skew_s != 0.0 };
     let force = Part {
         role: Role::Coordinate,
         study,
@@ -66,6 +66,7 @@ pub fn explain(
         evidence.model = model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+");
     }
     evidence.not_excited.extend(without_reversals(track));
+    evidence.delay.rest_s = rest_s(study, &picks);
     let atlas = if evidence.atlas { atlas::atlas(track, study) } else { Atlas::default() };
     Findings {
         plain: plain(track, model, study),
@@ -73,7 +74,6 @@ pub fn explain(
         course: course(track, study),
         atlas,
         per_inertia: track.freely.is_some_and(|free| !free.is_known),
-        delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
         hypotheses: hypotheses(track, model, study),
         ..answer(&parts, evidence)
     }
@@ -83,11 +83,17 @@ pub fn explain(
 struct Coordinate<'a> {
     track: &'a Track,
     study: &'a ChannelFit,
+    /// True if an offset between force and motion was removed before: its sentence stands for what remains of it.
+    is_put_together: bool,
 }
 
 impl Told for Coordinate<'_> {
+    fn is_cause(&self, k: usize) -> bool {
+        skew(self.study, k, self.track).is_none()
+    }
+
     fn excuse(&self, k: usize) -> Option<String> {
-        skew(self.study, k, self.track).map(apart)
+        skew(self.study, k, self.track).filter(|_| !self.is_put_together).map(apart)
     }
 
     fn states(&self, k: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {

@@ -11,11 +11,12 @@ use super::baseline_models::plain_crank;
 use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
 use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::limits::AMBIGUOUS;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
-use crate::diagnose::findings::Findings;
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
@@ -26,7 +27,11 @@ use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
 
 /// Diagnoses recordings of one crank.
-pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
+pub fn crank(
+    recordings: &[Recording],
+    options: &Options,
+    put_back: Option<&PutBack<'_>>,
+) -> Result<Findings, EstimateError> {
     let Geometry { tracks, swapped, paths, short, faults, mut link, scale } = geometry(recordings, options)?;
     let other = swapped.iter().any(Option::is_some).then(|| {
         let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
@@ -71,12 +76,12 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         remarks: on_bearing.into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
         atlas: options.atlas,
+        delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
+        put_back,
         reads: &|named| name_joint(named, link),
         ..Evidence::default()
     };
-    let mut found = explain(&track, &model, &study, &paths, evidence);
-    found.delay.guess_s = time_delay::guess_s(&track, &model);
-    Ok(found)
+    Ok(explain(&track, &model, &study, &paths, evidence))
 }
 
 /// Geometry of all recordings, with the rows on their circles.
