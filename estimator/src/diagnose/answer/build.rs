@@ -4,6 +4,7 @@
 
 use super::atlas::Atlas;
 use super::cause::{Unnamed, rivals};
+use super::named::Named;
 use super::part::{Part, Role};
 use super::put_back::PutBack;
 use crate::diagnose::contract::{
@@ -15,17 +16,6 @@ use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::rules::OPEN;
 use crate::diagnose::validation::on_other_recordings::of_study;
 use haptics::law::cause;
-
-/// What the comparisons name, and the experiment that would settle what they leave open. The task reads it by what it
-/// knows beside them.
-pub struct Named {
-    /// Named causes, then unnamed terms.
-    pub causes: Vec<Cause>,
-    pub alternatives: Vec<Alternative>,
-    pub not_excited: Vec<NotExcited>,
-    pub passed_over: Vec<PassedOver>,
-    pub next: Option<NextExperiment>,
-}
 
 /// Evidence that does not come from a comparison.
 pub struct Evidence<'a> {

@@ -1,10 +1,9 @@
 //! One cause of an answer: parameters, probability, gain and evidence sentence.
 
-use super::part::{Part, Role};
+use super::part::{Found, Part, Role};
 use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::all::twins;
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::length_scale;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
@@ -12,14 +11,6 @@ use crate::diagnose::selection::profile_likelihood::parameters;
 use crate::diagnose::selection::stepwise::{SelectedTerm, is_curve};
 use foundation::words::amount;
 use haptics::law::entries;
-
-/// A chosen cause, as its evidence sentence sees it.
-pub struct Found<'a> {
-    /// The candidate that was chosen.
-    pub candidate: &'a Candidate,
-    /// Its parameters as the answer states them.
-    pub parameters: &'a [CauseParameter],
-}
 
 /// Generic term of a residual that no known cause explains.
 pub struct Unnamed {

@@ -1,7 +1,6 @@
 //! One compared channel as a part of an answer.
 
 use super::atlas::{Against, Channel, strongest};
-use super::cause::Found;
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, NotExcited, Residual};
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
@@ -23,6 +22,14 @@ pub enum Role {
     Coordinate,
     /// A path beside it: its causes stand by their evidence, unless they are named already.
     Path,
+}
+
+/// A chosen cause, as its evidence sentence sees it.
+pub struct Found<'a> {
+    /// The candidate that was chosen.
+    pub candidate: &'a Candidate,
+    /// Its parameters as the answer states them.
+    pub parameters: &'a [CauseParameter],
 }
 
 /// Words of a compared channel, and everything that its task knows of its causes.

@@ -1,6 +1,6 @@
 //! Delay of the forces that was corrected before a comparison, as evidence for its answer.
 
-use super::build::Named;
+use super::named::Named;
 use crate::diagnose::contract::{Baseline, Cause, Gain, parameter};
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;

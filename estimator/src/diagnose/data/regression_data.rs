@@ -1,7 +1,7 @@
 //! Data set of a regression from one or several recordings: measured motion and force at a common, moderate rate.
 
 use super::covariates::Extra;
-use super::known_weight::Hung;
+use super::hung_weight::Hung;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Effect, Motion};
 

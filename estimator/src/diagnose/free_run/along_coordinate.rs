@@ -8,7 +8,7 @@ use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::normal_equations::Use;
+use crate::diagnose::selection::layout::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, drive_forces, inertia};
 
 /// One side of the comparison: laws, and the measured force less the found sensor faults.

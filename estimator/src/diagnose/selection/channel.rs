@@ -9,7 +9,7 @@ use super::comparison::{ChannelFit, residual};
 use super::held_out_gain::{confirmed, gain, holds_out, is_tested};
 use super::layout::Layout;
 use super::noise_model::whitener;
-use super::normal_equations::{System, solve, uses};
+use super::normal_equations::{System, columns_of, solve, uses};
 use super::prescreen::Rough;
 use super::profile_likelihood::firsts;
 use super::rules::Rules;
@@ -76,7 +76,8 @@ impl Channel {
         let mut system = match before {
             // Rows with other weights have another residual noise.
             Some(before) if before.layout.weight == layout.weight => {
-                System::after(before, &base, &candidates, &y, &layout)
+                let ChannelFit { system, candidates: had, baseline: had_base, target: had_y, .. } = before;
+                System::after(system, &columns_of(&had_base, &had, &had_y), &base, &candidates, &y, &layout)
             }
             _ => {
                 let coefficients = whitening(&base, &candidates, &y, &layout, &rules)?;

@@ -1,7 +1,8 @@
 //! Gain of a cause on the locked blocks, which took part in neither the choice nor the fit.
 
 use super::comparison::ChannelFit;
-use super::normal_equations::{Use, solve};
+use super::layout::Use;
+use super::normal_equations::solve;
 use crate::diagnose::contract::Gain;
 use crate::diagnose::hypotheses::candidate::Column;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

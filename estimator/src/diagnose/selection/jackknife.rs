@@ -1,6 +1,7 @@
 //! Jackknife of an effect over blocks of a recording, each of which may have its own model error.
 
-use super::normal_equations::{Scaled, Solved, System, Use, factored};
+use super::layout::Use;
+use super::normal_equations::{Scaled, Solved, System, factored};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 

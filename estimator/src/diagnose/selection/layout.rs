@@ -1,6 +1,5 @@
 //! Rows of a channel: segment, time, weight and hold-out role of each.
 
-use super::noise_model::Noise;
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, LEAST_PIECES};
 use crate::diagnose::hypotheses::axis::Axis;
 use std::collections::HashMap;
@@ -18,6 +17,30 @@ pub enum Held {
     ByFolds,
     /// Tested by folds and by locked blocks.
     Fully,
+}
+
+/// Use of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Trains always.
+    Always,
+    /// Used for training, and tested by the fold of this number.
+    Fold(usize),
+    /// Tests only; the number of its block.
+    Locked(usize),
+    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
+    Beside(usize),
+    /// Beside a locked block.
+    Guard,
+}
+
+/// Kind of the rows' noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Unknown noise.
+    Any,
+    /// Noise of first or second differences of data with white noise, plus some white noise.
+    OfDifferences,
 }
 
 /// Blocks of rows that share a model error, for the jackknife.

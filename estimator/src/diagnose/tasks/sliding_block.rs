@@ -9,7 +9,8 @@ use super::baseline_models::named;
 use super::coordinate_answer::explain;
 use super::mechanism::rows;
 use super::one_coordinate;
-use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::named::Named;
 use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };

@@ -1,6 +1,6 @@
 //! Slips of the fingers on a standing block as candidates: over all rests, and finer around the best.
 
-use super::standing_height::{Rows, Stand};
+use super::stands::{Rows, Stand};
 use crate::diagnose::data::limits::{HALF, PARTS};
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;

@@ -1,8 +1,7 @@
 //! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
 
 use super::signals::Seen;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{ASSUMED_ERROR, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::free_run::channel::Pads;

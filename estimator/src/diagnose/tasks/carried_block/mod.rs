@@ -17,6 +17,7 @@ pub(crate) mod regrasp;
 pub(crate) mod rows;
 pub(crate) mod signals;
 pub(crate) mod standing_height;
+pub(crate) mod stands;
 #[cfg(test)]
 pub(crate) mod tests;
 

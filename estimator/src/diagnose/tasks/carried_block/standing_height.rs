@@ -2,8 +2,8 @@
 
 use super::grasp_slip::{slips, ways};
 use super::signals::Seen;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use super::stands::{Rows, Stand};
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::LEAST_PIECES;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
@@ -30,23 +30,6 @@ use haptics::world::World;
 const HELD_OUT_RESTS: usize = 2;
 const RESTS_NEVER_HELD_OUT: usize = 4;
 
-/// One end of a carry.
-pub struct Stand {
-    pub recording: usize,
-    pub number: usize,
-    /// True for the end of the carry.
-    pub placed: bool,
-    /// Numbers of the blocks below.
-    pub below: Vec<usize>,
-    pub first: usize,
-    pub end: usize,
-    /// Start of the standing phase, s, and start of the plain means of its height, s.
-    pub from_s: f64,
-    pub plain_from_s: f64,
-    /// Samples of it.
-    pub samples: Vec<usize>,
-}
-
 /// The comparison with the data for its texts.
 pub struct Ground {
     pub compared: Compared,
@@ -54,20 +37,6 @@ pub struct Ground {
     rows: Rows,
     /// Each slip's time, s, its distance, m, and the standard error of the distance with the time free, m.
     ways: Vec<[f64; 3]>,
-}
-
-#[derive(Default)]
-pub struct Rows {
-    pub stand: Vec<usize>,
-    pub time_s: Vec<f64>,
-    pub height_m: Vec<f64>,
-    lift_n: Vec<f64>,
-    /// Its rate, N/s.
-    lift_rate: Vec<f64>,
-    /// Largest shear over normal force of a finger.
-    ratio: Vec<f64>,
-    /// Half of the averaging window of the heights, s.
-    pub half_s: f64,
 }
 
 /// Compares the causes that move the grip while a held block stands. `cross`: share of each finger's horizontal force

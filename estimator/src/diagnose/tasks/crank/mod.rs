@@ -5,12 +5,14 @@ pub(crate) mod bearing_load;
 pub(crate) mod contact_phases;
 pub(crate) mod grasp_slip;
 pub(crate) mod path;
+pub(crate) mod path_points;
 pub(crate) mod rows;
 
 use super::baseline_models::plain_crank;
 use super::coordinate_answer::{PathFit, explain, without_known};
 use super::one_coordinate;
-use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::named::Named;
 use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::limits::AMBIGUOUS;

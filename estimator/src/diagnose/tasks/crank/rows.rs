@@ -1,10 +1,11 @@
 //! Rows of a crank's recording: positions and forces of the fingers or tool that hold the handle.
 
 use super::contact_phases::held_and_free;
-use super::path::{Arm, Path, PathPoint, unwrapped};
+use super::path::{Arm, unwrapped};
+use super::path_points::{Path, PathPoint};
+use crate::diagnose::data::hung_weight::Hung;
 use crate::diagnose::data::interpolation;
 use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, mean_step_s, offsets};
-use crate::diagnose::data::known_weight::Hung;
 use crate::diagnose::data::limits::{FAST_ROW_S, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
 use foundation::estimate::EstimateError;

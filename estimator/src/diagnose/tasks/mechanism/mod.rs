@@ -13,7 +13,7 @@ use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::regression_data::{Model, Place, Track};
-use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
+use crate::diagnose::data::{coordinate, covariates, hung_weight, regression_data};
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
@@ -97,7 +97,7 @@ impl Studied {
             if let Some(first) = tracks.first() {
                 coordinate::one_kind(first, &rows, recording)?;
             }
-            rows.hung = vec![known_weight::Hung::on_mechanism(recording, rows.coordinate)];
+            rows.hung = vec![hung_weight::Hung::on_mechanism(recording, rows.coordinate)];
             rows.extra = vec![covariates::of(recording)];
             faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
             tracks.push(rows);

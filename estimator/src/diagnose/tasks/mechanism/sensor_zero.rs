@@ -4,7 +4,7 @@
 //! Without other evidence, a recording counts as untouched at its beginning and end if position and force stay within
 //! their noise there. A hand that holds on trembles, and would have to hold equally hard both times.
 
-use crate::diagnose::answer::build::Named;
+use crate::diagnose::answer::named::Named;
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment};
 use crate::diagnose::data::limits::{FEWEST, REST_WINDOW_S, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Track, Zero};

@@ -1,8 +1,7 @@
 //! Free-run simulation of a needle: a hand holds it on its measured path, and the sheet or the hole acts on it.
 
-use super::hole::{RIM_SHARE, rim};
+use super::forces::{Law, RIM_SHARE, first_push_n, own_n, rim};
 use super::rows::{Needle, Phase, Row};
-use super::sheet::{Law, first_push_n, own_n};
 use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::extension::model::without_friction;

@@ -5,6 +5,7 @@
 //! they are its laws.
 
 pub(crate) mod experiment;
+pub(crate) mod forces;
 pub(crate) mod held_needle;
 pub(crate) mod hole;
 pub(crate) mod interpolation;

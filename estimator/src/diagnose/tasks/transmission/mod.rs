@@ -8,7 +8,7 @@ pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Found;
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::limits::{CERTAIN, PARTS, SHORTEST_S};
