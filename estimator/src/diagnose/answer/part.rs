@@ -32,11 +32,27 @@ pub struct Found<'a> {
     pub parameters: &'a [CauseParameter],
 }
 
+impl Found<'_> {
+    /// Value of the first parameter.
+    pub fn value(&self) -> f64 {
+        self.parameters.first().map_or(0.0, |p| p.value)
+    }
+
+    /// Value of a parameter; zero if the cause has none of this name.
+    pub fn value_of(&self, name: &str) -> f64 {
+        self.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value)
+    }
+}
+
 /// Words of a compared channel, and everything that its task knows of its causes.
 pub trait Told {
     /// Sentence on how the residual shows a cause. Along a coordinate it is that of the catalogue.
     fn shows(&self, _found: &Found<'_>) -> String {
         String::new()
+    }
+    /// What the task knows beyond the sentence of the catalogue.
+    fn adds(&self, _candidate: &Candidate) -> &'static str {
+        ""
     }
     /// True if the k-th chosen term is a cause.
     fn is_cause(&self, _k: usize) -> bool {

@@ -81,9 +81,8 @@ impl<'a> Eye<'a> {
     fn lambda(&self, study: &ChannelFit, picks: &[usize], k: usize, other: &str) -> Option<f64> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
-        let at = study.baseline.len() + picks[..k].iter().map(|c| study.candidates[*c].regressors.len()).sum::<usize>();
         let like = nearest(&self.on.candidates, own)?;
-        let parts = like.regressors.iter().zip(&solved.values[at..at + own.regressors.len()]);
+        let parts = like.regressors.iter().zip(&solved.values[study.system.own(picks, k)]);
         let effect = parts.fold(vec![0.0; self.on.weight.len()], |mut sum, (c, v)| {
             sum.iter_mut().zip(c.iter()).for_each(|(s, x)| *s += v * x);
             sum

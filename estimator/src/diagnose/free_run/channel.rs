@@ -69,7 +69,7 @@ pub fn consecutive(
 /// The rollout without and with the k-th of the chosen causes, all others in, over the windows in which it acts.
 pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
-    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let rest = study.picks_without(k);
     let own = &study.candidates[picks[k]].regressors;
     let acts = |row: &&usize| own.iter().any(|column| column[**row] != 0.0);
     let mut windows = channel.windows();

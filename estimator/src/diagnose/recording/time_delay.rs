@@ -184,8 +184,7 @@ pub fn rest_s(study: &ChannelFit, picks: &[usize]) -> Option<[f64; 2]> {
     let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
     let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
     let last = solved.values.len() - 1;
-    let variance = solved.variance(study.system.rows);
-    Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
+    Some([solved.values[last], solved.std_error(last, study.system.rows)])
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@ use super::layout::Layout;
 use super::noise_model::whitener;
 use super::normal_equations::{System, columns_of, solve, uses};
 use super::prescreen::Rough;
-use super::profile_likelihood::firsts;
 use super::rules::Rules;
 use super::stepwise::Stepwise;
 use crate::diagnose::hypotheses::all::relations;
@@ -139,8 +138,8 @@ fn whitening(
     }
     let solved = solve(&ridged, &columns, target)
         .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
-    let left = residual(y, base, candidates, &used, &solved);
-    let weighted: Vec<f64> = left.iter().zip(&layout.weight).map(|(r, w)| r * w).collect();
+    let residual = residual(y, base, candidates, &used, &solved);
+    let weighted: Vec<f64> = residual.iter().zip(&layout.weight).map(|(r, w)| r * w).collect();
     Ok(whitener(&weighted, layout, &uses(layout)))
 }
 
@@ -182,9 +181,7 @@ fn is_unsure(study: &ChannelFit, k: usize) -> bool {
 fn is_steady(study: &ChannelFit, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
-    let first = firsts(study, &picks)[k];
-    let own = first..first + study.candidates[picks[k]].regressors.len();
-    study.system.steadiness(solved, &own) > study.rules.steady
+    study.system.steadiness(solved, &study.system.own(&picks, k)) > study.rules.steady
 }
 
 /// A chosen cause whose estimate no longer fits its name after another one was removed.

@@ -1,7 +1,7 @@
 use super::layout::Layout;
 use super::normal_equations::{Solved, System};
 use super::rules::Rules;
-use super::stepwise::{SelectedTerm, Stepwise};
+use super::stepwise::{SelectedTerm, Stepwise, without};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use foundation::tasks::SystemState;
@@ -71,6 +71,11 @@ impl ChannelFit {
     /// Candidates that were chosen.
     pub fn picks(&self) -> Vec<usize> {
         self.chosen.iter().map(|c| c.candidate).collect()
+    }
+
+    /// The same without the k-th.
+    pub fn picks_without(&self, k: usize) -> Vec<usize> {
+        without(&self.picks(), k)
     }
 
     /// True if this cause was found.

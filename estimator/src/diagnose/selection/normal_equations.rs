@@ -164,6 +164,11 @@ impl Solved {
     pub fn variance(&self, rows: f64) -> f64 {
         self.rss / (rows - self.columns.len() as f64).max(1.0)
     }
+
+    /// Standard error of the i-th value, from this many rows.
+    pub fn std_error(&self, i: usize, rows: f64) -> f64 {
+        (self.variance(rows) * self.inverse[(i, i)]).sqrt()
+    }
 }
 
 impl System {
@@ -254,6 +259,12 @@ impl System {
     /// Columns of the base and of the chosen candidates.
     pub fn columns(&self, chosen: &[usize]) -> Vec<usize> {
         (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()
+    }
+
+    /// Indices of the values of the k-th of these candidates in a solution with them.
+    pub fn own(&self, chosen: &[usize], k: usize) -> Range<usize> {
+        let first = self.base + chosen[..k].iter().map(|c| self.places[*c].len()).sum::<usize>();
+        first..first + self.places[chosen[k]].len()
     }
 
     /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.

@@ -97,16 +97,16 @@ fn calmer(track: &Track, made: &ChannelFit) -> Option<f64> {
     if track.noise_is_measured {
         return None;
     }
-    let left = |picks: &[usize]| -> Option<f64> {
+    let rms = |picks: &[usize]| -> Option<f64> {
         let solved = made.system.solve(picks)?;
-        let left = made.residual_of(picks, &solved);
+        let residual = made.residual_of(picks, &solved);
         let (sum, rows) = track.along().fold((0.0, 0.0), |(sum, rows), i| {
             let weight = made.layout.weight[i].powi(2);
-            (sum + weight * left[i].powi(2), rows + weight)
+            (sum + weight * residual[i].powi(2), rows + weight)
         });
         Some((sum / f64::max(rows, 1e-12)).sqrt())
     };
-    let (model, found) = (left(&[])?, left(&made.picks())?);
+    let (model, found) = (rms(&[])?, rms(&made.picks())?);
     (found < CALMER * model).then_some(found)
 }
 
@@ -295,8 +295,8 @@ fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
     let base = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> =
         fixed.iter().map(|effect| column(track, effect)).chain(known_weight::column(track)).collect();
-    let left = |(i, row): (usize, &Row)| row.target - known.iter().map(|k| k[i]).sum::<f64>();
-    let y = track.rows.iter().enumerate().map(left).collect();
+    let unknown = |(i, row): (usize, &Row)| row.target - known.iter().map(|k| k[i]).sum::<f64>();
+    let y = track.rows.iter().enumerate().map(unknown).collect();
     Asked { base, known, y }
 }
 

@@ -204,7 +204,7 @@ impl Told for Grasp {
     }
 
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             pad_compliance::ID => {
                 let short: Vec<String> = self

@@ -12,16 +12,15 @@ pub(crate) mod grip_width;
 pub(crate) mod net_force;
 pub(crate) mod net_force_candidates;
 #[cfg(test)]
-pub(crate) mod recorded;
+#[path = "../../../../tests/diagnosis/recorded.rs"]
+mod recorded;
 pub(crate) mod regrasp;
 pub(crate) mod rows;
 pub(crate) mod signals;
 pub(crate) mod standing_height;
 pub(crate) mod stands;
-#[cfg(test)]
-pub(crate) mod tests;
 
-use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::build::{Evidence, draft};
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Alternative, Cause, Final, NextExperiment, NotExcited};
@@ -60,7 +59,6 @@ pub fn blocks(
         .to_owned(),
         causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
         atlas: options.atlas,
-        put_back,
         ..Evidence::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
@@ -80,7 +78,7 @@ pub fn blocks(
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
         beside.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
-    Ok(answer(&parts, Evidence { next: &asked, ..beside }))
+    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
 }
 
 /// Adds a slip between pick-up and placement. `faulty`: sensor faults were found that have the same effect.

@@ -184,10 +184,10 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
 /// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
 fn floor(rows: &Rows<'_>, study: &ChannelFit) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
-    let left = study.residual_of(&study.picks(), solved);
+    let residual = study.residual_of(&study.picks(), solved);
     let mean = |free: bool| {
-        let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
-        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));
+        let of = (0..residual.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
+        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + residual[i] * residual[i], n + 1));
         (n > 0).then(|| (sum / f64::from(n)).sqrt())
     };
     mean(true).map_or_else(|| mean(false).unwrap_or(0.0), |one| std::f64::consts::SQRT_2 * one)

@@ -62,8 +62,7 @@ impl Geometry {
     /// Relative excess of the path over a known radius, with its standard error.
     pub fn too_large(&self, known_m: f64) -> Option<[f64; 2]> {
         let solved = self.study.solved.as_ref()?;
-        let variance = solved.variance(self.study.system.rows);
-        Some([self.arm.radius_m / known_m - 1.0, (variance * solved.inverse[(0, 0)]).sqrt() / known_m])
+        Some([self.arm.radius_m / known_m - 1.0, solved.std_error(0, self.study.system.rows) / known_m])
     }
 }
 
@@ -281,8 +280,8 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 
 /// The comparison of the path with generic terms beside the causes found; `None` if the residual is near the noise.
 pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
-    let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
-    let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    let residual = study.residual_of(&study.picks(), study.solved.as_ref()?);
+    let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64).sqrt();
     if rms < MUCH * white_noise(&study.target) {
         return None;
     }
@@ -303,8 +302,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let arc_rad = (high - low).min(std::f64::consts::TAU);
     let bulge_m = arm.radius_m * (1.0 - (0.5 * arc_rad).cos());
     let noise_m = white_noise(&study.target);
-    let variance = solved.variance(study.system.rows);
-    let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
+    let error_m = solved.std_error(0, study.system.rows);
     (error_m > UNSURE * arm.radius_m).then(|| {
         format!(
             "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \

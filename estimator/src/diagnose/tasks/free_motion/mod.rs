@@ -87,12 +87,11 @@ pub(crate) fn diagnose(
         causes: faults,
         warnings: sentence(&track, scale).into_iter().collect(),
         atlas: options.atlas,
-        reads: &|named| put_right(named, &track),
         ..Evidence::default()
     };
-    let mut found = explain(&track, &model, &study, &[], evidence);
-    found.along = Some(Along::of(track.coordinate, recordings, paths));
-    Ok(found)
+    let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
+    put_right(&mut draft.named, &track);
+    Ok(Findings { along: Some(Along::of(track.coordinate, recordings, paths)), ..draft.finish(None) })
 }
 
 /// The rows of all recordings, and the faults of their samples.

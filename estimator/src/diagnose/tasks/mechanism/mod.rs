@@ -76,7 +76,7 @@ fn studied(recordings: &[Recording], options: &Options) -> Result<Studied, Estim
         let skew_s = found.skew_s + OF_SKEW * more_s;
         let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
         let Ok(again) = Studied::of(&together, options, skew_s) else { break };
-        if again.names_a_delay() || again.left() > found.left() {
+        if again.names_a_delay() || again.heldout_rms() > found.heldout_rms() {
             break;
         }
         found = again;
@@ -131,7 +131,7 @@ impl Studied {
     }
 
     /// RMS of the held-out residual with the causes found.
-    fn left(&self) -> f64 {
+    fn heldout_rms(&self) -> f64 {
         let along: Vec<bool> = self.track.rows.iter().map(|r| r.place == Place::Along).collect();
         rms(&self.study, &self.study.picks(), &along).0
     }
@@ -145,11 +145,11 @@ impl Studied {
             atlas: options.atlas,
             delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
             skew_s,
-            put_back,
-            reads: &|named| sensor_zero::ask(named, &track),
             ..Evidence::default()
         };
-        Findings { along: Some(along), ..explain(&track, &model, &study, &[], evidence) }
+        let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
+        sensor_zero::ask(&mut draft.named, &track);
+        Findings { along: Some(along), ..draft.finish(put_back) }
     }
 }
 

@@ -14,7 +14,7 @@ pub(crate) mod sheet;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::build::{Evidence, draft};
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Alternative, Cause, Gain, NextExperiment, NotExcited, parameter};
@@ -63,7 +63,6 @@ pub fn needle(
         causes: faults.iter().cloned().chain(sample_faults::causes(recordings)).collect(),
         warnings: left_out,
         atlas: options.atlas,
-        put_back,
         ..Evidence::default()
     };
     beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.compared.study, p)));
@@ -88,7 +87,7 @@ pub fn needle(
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
         beside.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
-    Ok(answer(&parts, Evidence { next: &asked, ..beside }))
+    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
 }
 
 /// The channels of other recordings of the same needle and sheet.

@@ -249,15 +249,13 @@ fn said_by_a_row(
 pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
-    let mut place = study.baseline.len();
-    for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
+    for (candidate, values) in study.found() {
         let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
         level += match candidate.id {
-            force_bias::ID => solved.values[place],
-            force_drift::ID if own => solved.values[place] * at.time_s,
+            force_bias::ID => values[0],
+            force_drift::ID if own => values[0] * at.time_s,
             _ => 0.0,
         };
-        place += candidate.regressors.len();
     }
     level
 }

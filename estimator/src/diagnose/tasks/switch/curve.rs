@@ -91,8 +91,7 @@ fn best_seen(id: &str) -> Variable {
 
 impl Told for Beside {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
-        let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
             friction_asymmetry::ID => {
@@ -103,7 +102,7 @@ impl Told for Beside {
             local_resistance::ID => {
                 format!(
                     "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
-                    1e3 * at("place")
+                    1e3 * found.value_of("place")
                 )
             }
             force_gain::ID => format!(

@@ -78,7 +78,7 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
 
 impl Told for Pressed {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             pad_compliance::ID => {
                 format!(

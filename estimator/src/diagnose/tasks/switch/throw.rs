@@ -223,7 +223,7 @@ fn best_seen(id: &str) -> Variable {
 
 impl Told for Push {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             viscous_friction::ID => {
                 format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
