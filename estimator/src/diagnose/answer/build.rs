@@ -37,7 +37,6 @@ pub struct Evidence<'a> {
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
     /// True if the residual of each channel is shown beside every suspect.
     pub atlas: bool,
-    /// Evidence of a time delay.
     pub delay: DelayFindings,
     /// Part of a sample by which motion and forces were shifted together before the comparison, s.
     pub skew_s: f64,

@@ -15,7 +15,6 @@ use haptics::law::entries;
 pub struct Unnamed {
     /// The term as a cause without a name.
     pub cause: Cause,
-    /// The warning about it.
     pub warning: String,
 }
 

@@ -26,7 +26,6 @@ pub enum Role {
 
 /// A chosen cause, as its evidence sentence sees it.
 pub struct Found<'a> {
-    /// The candidate that was chosen.
     pub candidate: &'a Candidate,
     /// Its parameters as the answer states them.
     pub parameters: &'a [CauseParameter],
@@ -76,13 +75,11 @@ pub trait Told {
 /// One channel, compared.
 pub struct Part<'a> {
     pub role: Role,
-    /// The comparison.
     pub study: &'a ChannelFit,
     /// The comparison with the generic terms of the residual, if there are any.
     pub terms: Option<&'a ChannelFit>,
     /// Name of the channel, in words.
     pub channel: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// Noise of its rows: no cause can explain it.
     pub floor: f64,

@@ -24,6 +24,13 @@ pub fn mean_step_s(time_s: &[f64]) -> f64 {
     }
 }
 
+/// Noise of the slope of a line through a window of `half` samples to either side, a second.
+pub fn slope_noise(values: &[f64], half: usize, step_s: f64) -> f64 {
+    let half = half as f64;
+    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
+    white_noise(values) / (spread.sqrt() * step_s.max(1e-9))
+}
+
 /// Weights of the smoothing, from the middle outwards; their sum over both sides is one.
 fn weights(period_s: f64) -> Vec<f64> {
     let half = (0.5 * CALM_S / period_s).floor() as usize;

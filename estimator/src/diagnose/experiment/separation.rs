@@ -13,7 +13,6 @@ pub struct Imagined {
     /// Regressors of the base model, and all candidates.
     pub baseline: Vec<Vec<f64>>,
     pub candidates: Vec<Candidate>,
-    /// Segment of each row.
     pub segment: Vec<usize>,
     /// Weight of each row: inverse of its relative noise.
     pub weight: Vec<f64>,

@@ -25,7 +25,6 @@ pub(crate) type Act = (String, Vec<CauseParameter>);
 /// One answer that is not excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hypothesis {
-    /// The assumed cause.
     pub(crate) id: String,
     /// `None` if a cause among them cannot be simulated.
     pub(crate) inside: Option<Inside>,

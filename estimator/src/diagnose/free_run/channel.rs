@@ -14,10 +14,11 @@ const LEAST_WINDOW_ROWS: usize = 5;
 /// A channel with a free-run simulation.
 pub trait Forward {
     /// Compared quantity and its unit.
-    fn of(&self) -> (RolloutOf, &str);
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Force, "N")
+    }
     /// Rows of every window, in the order of time.
     fn windows(&self) -> Vec<Vec<usize>>;
-    /// Longest window, s.
     fn window_s(&self) -> f64 {
         ROLLOUT_WINDOW_S
     }

@@ -24,7 +24,6 @@ const LEAST_OWN_PART: f64 = 1e-4;
 /// One measured quantity and all that may explain it.
 #[derive(Clone)]
 pub struct Channel {
-    /// The target.
     pub target: Vec<f64>,
     /// Regressors of the model.
     pub baseline: Vec<Vec<f64>>,
@@ -32,9 +31,7 @@ pub struct Channel {
     pub resisting: Vec<usize>,
     /// Causes and generic terms.
     pub candidates: Vec<Candidate>,
-    /// The rows.
     pub layout: Layout,
-    /// The limits in force.
     pub rules: Rules,
 }
 

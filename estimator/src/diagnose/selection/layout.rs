@@ -22,7 +22,6 @@ pub enum Held {
 /// Use of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// Trains always.
     Always,
     /// Used for training, and tested by the fold of this number.
     Fold(usize),
@@ -57,7 +56,6 @@ pub enum Blocks {
 /// Rows of a channel.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// Segment of each row.
     pub segment: Vec<usize>,
     /// Hold-out role of each row; rows that may not be held out always train.
     pub held: Vec<Held>,
@@ -67,11 +65,9 @@ pub struct Layout {
     pub weight: Vec<f64>,
     /// Time between rows, s.
     pub period_s: f64,
-    /// Kind of their noise.
     pub noise: Noise,
     /// True if standing rows have next to no weight: blocks then have equal information, not equal numbers of rows.
     pub may_stand: bool,
-    /// Blocks of the jackknife.
     pub blocks: Blocks,
 }
 
@@ -96,7 +92,6 @@ impl Layout {
         Self { weight, ..self }
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.segment.len()
     }

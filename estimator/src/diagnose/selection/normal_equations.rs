@@ -348,7 +348,6 @@ pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<So
 /// Scaled and factored normal equations.
 pub(crate) struct Scaled {
     pub(crate) cholesky: Cholesky<f64, Dyn>,
-    /// Scale of each column.
     pub(crate) scale: Vec<f64>,
 }
 

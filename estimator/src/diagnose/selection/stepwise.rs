@@ -25,7 +25,6 @@ const SPARED: f64 = 0.05;
 /// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
 pub struct SelectedTerm {
-    /// Index of the candidate.
     pub candidate: usize,
     /// Evidence lost without it, 2 ln(likelihood) with penalty.
     pub score: f64,
@@ -40,7 +39,6 @@ pub struct Stepwise<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
     pub rules: Rules,
-    /// Relations of each candidate.
     relations: Vec<&'static [Relation]>,
     /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
     prices: RefCell<HashMap<Vec<usize>, f64>>,
@@ -57,7 +55,6 @@ pub fn is_curve(id: &str) -> bool {
 }
 
 impl<'a> Stepwise<'a> {
-    /// A selection by these rules.
     pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
         let relations = candidates.iter().map(|candidate| relations(candidate.id)).collect();
         Self { system, candidates, rules: *rules, relations, prices: RefCell::default() }

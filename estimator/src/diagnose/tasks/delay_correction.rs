@@ -18,7 +18,7 @@ const BETTER: f64 = 0.95;
 /// The diagnosis `ask`, repeated with the force shifted back while a large delay is found.
 pub fn corrected(
     recordings: &[Recording],
-    ask: &dyn Fn(&[Recording], Option<&PutBack<'_>>) -> Result<Findings, EstimateError>,
+    ask: impl Fn(&[Recording], Option<&PutBack<'_>>) -> Result<Findings, EstimateError>,
 ) -> Result<Findings, EstimateError> {
     let first = ask(recordings, None)?;
     let named_s = delay_s(&first);

@@ -305,7 +305,6 @@ struct Look {
     /// Force predicted by the model, and the part of it that opposes motion.
     predicted: Vec<f64>,
     resisting: Vec<f64>,
-    /// Weight of the row.
     weight: Vec<f64>,
     /// The dry friction if it slid.
     slides: Vec<f64>,

@@ -34,7 +34,6 @@ pub struct Grasp {
     means: Vec<(f64, f64)>,
     /// Compliance of a pad at zero force in the model, m/N.
     modelled: f64,
-    /// Free-run model of the pads.
     pub pads: Pads,
 }
 

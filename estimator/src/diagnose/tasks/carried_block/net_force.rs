@@ -43,7 +43,6 @@ pub struct Carry<'a> {
     cable_errors: Option<[f64; 4]>,
     /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
     pub weighed: Vec<usize>,
-    /// Free-run simulation of carried blocks.
     pub airborne: Airborne<'a>,
 }
 

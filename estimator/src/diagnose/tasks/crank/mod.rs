@@ -82,7 +82,9 @@ pub fn crank(
         delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
         ..Evidence::default()
     };
-    paths.iter_mut().for_each(|path| path.link = link);
+    for path in &mut paths {
+        path.link = link;
+    }
     Ok(explain(&track, &model, &study, paths.iter().map(PathFit::part).collect(), evidence).finish(put_back))
 }
 

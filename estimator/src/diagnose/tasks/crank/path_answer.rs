@@ -49,7 +49,9 @@ impl Told for PathFit {
 
     fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         if is_of_one_finger(candidate) && self.link == Some(Link::First) {
-            found.iter_mut().for_each(|p| p.value = -p.value);
+            for p in &mut found {
+                p.value = -p.value;
+            }
         }
         found
     }

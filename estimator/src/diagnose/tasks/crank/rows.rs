@@ -368,21 +368,12 @@ fn mean_square(noises: &[[f64; 2]], k: usize) -> f64 {
 
 /// Segments of held rows that are long enough to be differentiated.
 fn stretches(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for i in 0..=flags.len() {
-        let on = i < flags.len() && flags[i];
-        match (on, start) {
-            (true, None) => start = Some(i),
-            (false, Some(first)) => {
-                found.push(first..i);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found.retain(|r| r.len() >= 8);
-    found
+    let mut end = 0;
+    let ranges = flags.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        end - run.len()..end
+    });
+    ranges.filter(|range| flags[range.start] && range.len() >= 8).collect()
 }
 
 type Raw = (Vec<Vec2>, Vec<Vec2>, Vec<Vec2>);

@@ -46,7 +46,7 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
     if free_motion::is_free(recordings, &paths)? {
         return free_motion::diagnose(recordings, &paths, options);
     }
-    corrected(recordings, &|some, back| Ok(studied(some, options)?.answer(options, back)))
+    corrected(recordings, |some, back| Ok(studied(some, options)?.answer(options, back)))
 }
 
 /// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.

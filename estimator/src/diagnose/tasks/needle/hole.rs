@@ -58,7 +58,6 @@ pub struct Shaft<'a> {
     pub model: &'static str,
     /// Dry friction of a first fit, N.
     dry_n: f64,
-    /// Free-run model of the needle.
     pub sliding: Sliding<'a>,
 }
 

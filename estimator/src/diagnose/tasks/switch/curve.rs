@@ -34,7 +34,6 @@ const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
 /// The comparison.
 pub struct Beside {
     pub compared: Compared,
-    /// Free-run model of a knob.
     pub knob: Knob,
 }
 

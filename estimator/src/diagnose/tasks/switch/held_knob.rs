@@ -3,7 +3,6 @@
 use super::measured_curve::{Curve, along_m};
 use super::model::asked_n;
 use super::rows::{Place, Row, direction};
-use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Side, over};
 use crate::diagnose::free_run::windows::Errors;
@@ -174,10 +173,6 @@ fn of_side<'a>(curves: &'a [Curve], side: usize, values: &'a [f64]) -> Option<(&
 }
 
 impl Forward for Knob {
-    fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Force, "N")
-    }
-
     fn windows(&self) -> Vec<Vec<usize>> {
         self.travel.windows()
     }

@@ -37,7 +37,6 @@ pub struct Push {
     curves: Vec<Curve>,
     /// Forces of the curves in a first fit, N.
     forces_n: Vec<Vec<f64>>,
-    /// Free-run model of a knob.
     pub thrown: Knob,
 }
 

@@ -47,7 +47,6 @@ pub struct Force {
     pub compared: Compared,
     /// Separability of friction and load.
     pub told: Option<Confounding>,
-    /// Free-run model of the input.
     pub input: Input,
 }
 
