@@ -19,6 +19,12 @@ pub struct Imagined {
 }
 
 impl Imagined {
+    /// Rows of equal noise.
+    pub fn of(baseline: Vec<Vec<f64>>, candidates: Vec<Candidate>, segment: Vec<usize>) -> Self {
+        let weight = vec![1.0; segment.len()];
+        Self { baseline, candidates, segment, weight }
+    }
+
     /// Predicted effects of the causes along one coordinate.
     pub fn along(track: &Track, model: &Model, study: &ChannelFit) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();

@@ -66,12 +66,8 @@ impl Shaft<'_> {
     pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
         let rows = rows(needle);
         let track = seen(needle, &rows);
-        Imagined {
-            baseline: base(needle, &rows, law),
-            candidates: candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track))),
-            segment: rows.iter().map(|r| r.stretch).collect(),
-            weight: vec![1.0; rows.len()],
-        }
+        let candidates = candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track)));
+        Imagined::of(base(needle, &rows, law), candidates, rows.iter().map(|r| r.stretch).collect())
     }
 }
 

@@ -37,12 +37,7 @@ pub struct Columns {
 impl Columns {
     /// The same as predicted rows.
     pub fn imagined(self) -> Imagined {
-        Imagined {
-            segment: self.rows.iter().map(|r| r.stretch).collect(),
-            weight: vec![1.0; self.rows.len()],
-            baseline: self.base,
-            candidates: self.candidates,
-        }
+        Imagined::of(self.base, self.candidates, self.rows.iter().map(|r| r.stretch).collect())
     }
 }
 

@@ -137,8 +137,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
             stretch.push(number);
         }
     }
-    let weight = vec![1.0; points.len()];
-    Imagined { baseline: base(&points), candidates: candidates(&points, known, false), segment: stretch, weight }
+    Imagined::of(base(&points), candidates(&points, known, false), stretch)
 }
 
 /// Travel and speed of a smooth movement, every `period_s`.

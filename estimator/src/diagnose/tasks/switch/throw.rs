@@ -196,12 +196,8 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
 impl Push {
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
-        Imagined {
-            baseline: base(&seen.rows, &self.curves),
-            candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
-            segment: seen.stretch.clone(),
-            weight: vec![1.0; seen.rows.len()],
-        }
+        let candidates = candidates(seen, &seen.rows, &self.curves, &self.forces_n);
+        Imagined::of(base(&seen.rows, &self.curves), candidates, seen.stretch.clone())
     }
 
     /// Range of the travel seen in the throws of a side, m.
