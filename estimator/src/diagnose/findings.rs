@@ -44,6 +44,17 @@ impl From<Diagnosis> for Findings {
     }
 }
 
+impl Findings {
+    /// The figures by which a delay is judged.
+    pub(crate) fn figures_of_delay(&self) -> Figures {
+        self.delay.figures.clone().unwrap_or_else(|| Figures {
+            baseline: self.baseline.clone(),
+            end: self.end.clone(),
+            noise_floor: self.noise_floor_n,
+        })
+    }
+}
+
 impl Deref for Findings {
     type Target = Diagnosis;
 

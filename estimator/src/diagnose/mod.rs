@@ -57,7 +57,7 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     match task {
-        Task::Crank => delay_correction::corrected(recordings, &|some| tasks::crank::crank(some, options)),
+        Task::Crank => delay_correction::corrected(recordings, |some, back| tasks::crank::crank(some, options, back)),
         Task::Mechanism => tasks::mechanism::one_of_mechanisms(recordings, options),
         _ => pinched(task, recordings, options),
     }
@@ -83,10 +83,12 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Fi
             tasks::sliding_block::slid(recordings, options, &faults)
         }
         // A barrel is a carried block.
-        Task::BlockStack | Task::Barrel => {
-            delay_correction::corrected(recordings, &|some| tasks::carried_block::blocks(some, options, &faults))
+        Task::BlockStack | Task::Barrel => delay_correction::corrected(recordings, |some, back| {
+            tasks::carried_block::blocks(some, options, &faults, back)
+        }),
+        Task::Needle => {
+            delay_correction::corrected(recordings, |some, back| tasks::needle::needle(some, options, &faults, back))
         }
-        Task::Needle => delay_correction::corrected(recordings, &|some| tasks::needle::needle(some, options, &faults)),
         _ => tasks::switch::switch(recordings, options, &faults),
     }
 }

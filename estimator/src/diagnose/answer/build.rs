@@ -4,26 +4,18 @@
 
 use super::atlas::Atlas;
 use super::cause::{Unnamed, rivals};
+use super::named::Named;
 use super::part::{Part, Role};
+use super::put_back::PutBack;
 use crate::diagnose::contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
+    Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
-use crate::diagnose::findings::{Figures, Findings};
+use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::rules::OPEN;
 use crate::diagnose::validation::on_other_recordings::of_study;
 use haptics::law::cause;
-
-/// What the comparisons name, and the experiment that would settle what they leave open. The task reads it by what it
-/// knows beside them.
-pub struct Named {
-    /// Named causes, then unnamed terms.
-    pub causes: Vec<Cause>,
-    pub alternatives: Vec<Alternative>,
-    pub not_excited: Vec<NotExcited>,
-    pub next: Option<NextExperiment>,
-}
 
 /// Evidence that does not come from a comparison.
 pub struct Evidence<'a> {
@@ -45,8 +37,9 @@ pub struct Evidence<'a> {
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
     /// True if the residual of each channel is shown beside every suspect.
     pub atlas: bool,
-    /// The task's reading of the named causes.
-    pub reads: &'a dyn Fn(&mut Named),
+    pub delay: DelayFindings,
+    /// Part of a sample by which motion and forces were shifted together before the comparison, s.
+    pub skew_s: f64,
 }
 
 impl Default for Evidence<'_> {
@@ -62,7 +55,8 @@ impl Default for Evidence<'_> {
             figures: Figures::of_nothing(),
             next: &|_| None,
             atlas: false,
-            reads: &|_| (),
+            delay: DelayFindings::default(),
+            skew_s: 0.0,
         }
     }
 }
@@ -92,6 +86,25 @@ impl Ranking {
 
 /// The answer of one or several channels.
 pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
+    draft(parts, evidence).finish(None)
+}
+
+/// An answer before its verdict. A task reads what is named by what it knows beside the comparisons.
+pub struct Draft {
+    pub named: Named,
+    /// Everything else.
+    pub findings: Findings,
+    figures: Figures,
+    /// Ids of the unnamed terms among the causes.
+    terms: Vec<String>,
+    /// Probability above which an alternative is open.
+    open: f64,
+    /// True if more of the residuals is unexplained than noise.
+    is_strange: bool,
+}
+
+/// What the comparisons and the evidence beside them show.
+pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let Evidence { model, mut causes, mut alternatives, not_excited, mut warnings, remarks, .. } = evidence;
     let compared = compare(parts, not_excited);
     warnings.extend(compared.excuses);
@@ -106,7 +119,6 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     let passed_over = unsaid(compared.passed, &causes, &alternatives, &not_excited);
     let mut left = left_over(parts, causes.is_empty());
     warnings.append(&mut left.much);
-    let is_strange = left.is_strange;
     let terms: Vec<String> = left.unnamed.iter().map(|u| u.cause.id.clone()).collect();
     for Unnamed { cause, warning } in left.unnamed {
         causes.push(cause);
@@ -116,36 +128,47 @@ pub fn answer(parts: &[Part<'_>], evidence: Evidence<'_>) -> Findings {
     let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > limit).cloned().collect();
     let next = (evidence.next)(&open);
-    let mut named = Named { causes, alternatives, not_excited, next };
-    (evidence.reads)(&mut named);
-    let Named { causes, alternatives, not_excited, next } = named;
-    let is_named = causes.iter().any(|c| !terms.contains(&c.id));
-    let is_open = alternatives.iter().any(|a| a.posterior > limit);
-    let Figures { baseline, end, noise_floor } = told(parts).map_or(evidence.figures, Part::figures);
-    let diagnosis = Diagnosis {
-        verdict: verdict(is_named, is_strange, is_open),
-        baseline: Baseline { model, ..baseline },
-        noise_floor_n: noise_floor,
-        residuals: parts.iter().flat_map(Part::residuals).collect(),
-        causes,
-        alternatives,
-        not_excited,
-        passed_over,
-        next_experiment: next,
-        end,
-        warnings,
-        ..Diagnosis::default()
-    };
-    let kept = parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect();
+    let mut figures = told(parts).map_or(evidence.figures, Part::figures);
+    figures.baseline.model = model;
+    let residuals = parts.iter().flat_map(Part::residuals).collect();
     let atlas = if evidence.atlas { parts.iter().filter_map(Part::atlas).collect() } else { Vec::new() };
     let simulated: Vec<_> = parts.iter().filter_map(|p| Some((p.study, p.in_world?))).collect();
-    let hypotheses = of_channels(&simulated);
-    Findings {
-        diagnosis,
-        kept,
-        hypotheses,
+    let findings = Findings {
+        diagnosis: Diagnosis { residuals, warnings, ..Diagnosis::default() },
+        kept: parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect(),
+        delay: evidence.delay,
+        skew_s: evidence.skew_s,
+        hypotheses: of_channels(&simulated),
         atlas: Atlas { channels: atlas, ..Atlas::default() },
         ..Findings::default()
+    };
+    let named = Named { causes, alternatives, not_excited, passed_over, next };
+    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange }
+}
+
+impl Draft {
+    /// The answer with its verdict. `put_back`: shift of the forces before the comparison.
+    pub fn finish(self, put_back: Option<&PutBack<'_>>) -> Findings {
+        let Self { mut named, mut findings, mut figures, terms, open, is_strange } = self;
+        let is_open = named.alternatives.iter().any(|a| a.posterior > open);
+        if let Some(put_back) = put_back {
+            figures = put_back.name(&mut named, &mut findings.delay, figures);
+        }
+        let Named { causes, alternatives, not_excited, passed_over, next } = named;
+        let is_named = causes.iter().any(|c| !terms.contains(&c.id));
+        findings.diagnosis = Diagnosis {
+            verdict: verdict(is_named, is_strange, is_open),
+            baseline: figures.baseline,
+            end: figures.end,
+            noise_floor_n: figures.noise_floor,
+            causes,
+            alternatives,
+            not_excited,
+            passed_over,
+            next_experiment: next,
+            ..findings.diagnosis
+        };
+        findings
     }
 }
 
@@ -165,8 +188,8 @@ fn compare(parts: &[Part<'_>], not_excited: Vec<NotExcited>) -> Compared {
     let mut all = Compared { ranking, alternatives, not_excited, passed, excuses };
     for part in parts {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
-            if let Some(excuse) = part.told.excuse(k) {
-                all.excuses.push(excuse);
+            if !part.told.is_cause(k) {
+                all.excuses.extend(part.told.excuse(k));
             } else if all.ranking.add(part.role, chosen.score, part.cause(k)) {
                 all.alternatives.extend(rivals(part.study, chosen));
             }

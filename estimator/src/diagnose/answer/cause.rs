@@ -1,11 +1,9 @@
 //! One cause of an answer: parameters, probability, gain and evidence sentence.
 
-use super::part::{Part, Role};
+use super::part::{Found, Part, Role};
 use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::all::twins;
-use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::length_scale;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use crate::diagnose::selection::profile_likelihood::parameters;
@@ -13,19 +11,10 @@ use crate::diagnose::selection::stepwise::{SelectedTerm, is_curve};
 use foundation::words::amount;
 use haptics::law::entries;
 
-/// A chosen cause, as its evidence sentence sees it.
-pub struct Found<'a> {
-    /// The candidate that was chosen.
-    pub candidate: &'a Candidate,
-    /// Its parameters as the answer states them.
-    pub parameters: &'a [CauseParameter],
-}
-
 /// Generic term of a residual that no known cause explains.
 pub struct Unnamed {
     /// The term as a cause without a name.
     pub cause: Cause,
-    /// The warning about it.
     pub warning: String,
 }
 
@@ -77,22 +66,15 @@ impl Part<'_> {
         } else {
             ""
         };
-        let link = if candidate.id == length_scale::ID
-            && candidate.linear.first().is_some_and(|(n, _)| n.starts_with("link_error"))
-        {
-            "; the length is that of the first link (an error of the second link's, as large and the other way round, makes the same path but for the size of \
-             the circle)"
-        } else {
-            ""
-        };
         format!(
             "{title}: what the model leaves of the {} follows {equation}{goes_with}; on data held out it{stands} goes from {} to {} RMS (score \
-             {:.0}, {:.0} would do){link}",
+             {:.0}, {:.0} would do){}",
             self.channel,
             amount(gain.heldout_rms_before, self.unit),
             amount(gain.heldout_rms_after, self.unit),
             chosen.score,
-            self.study.rules.threshold
+            self.study.rules.threshold,
+            self.told.adds(candidate)
         )
     }
 
@@ -182,10 +164,9 @@ fn size_of_term(study: &ChannelFit, term: usize) -> (Vec<CauseParameter>, f64) {
     let Some(solved) = with(term) else { return (Vec::new(), 1.0) };
     let candidate = &study.candidates[term];
     let first = solved.values.len() - candidate.regressors.len();
-    let variance = solved.variance(study.system.rows);
     let names: &[&str] = if candidate.regressors.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
     let parameters = names.iter().zip(first..).map(|(name, i)| {
-        parameter(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), candidate.linear[i - first].1)
+        parameter(name, solved.values[i], solved.std_error(i, study.system.rows), candidate.linear[i - first].1)
     });
     // Other generic terms with as small a residual.
     let others = (0..study.candidates.len()).filter(|c| study.candidates[*c].expression.is_some());

@@ -1,7 +1,6 @@
 //! One compared channel as a part of an answer.
 
 use super::atlas::{Against, Channel, strongest};
-use super::cause::Found;
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, NotExcited, Residual};
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
@@ -25,13 +24,40 @@ pub enum Role {
     Path,
 }
 
+/// A chosen cause, as its evidence sentence sees it.
+pub struct Found<'a> {
+    pub candidate: &'a Candidate,
+    /// Its parameters as the answer states them.
+    pub parameters: &'a [CauseParameter],
+}
+
+impl Found<'_> {
+    /// Value of the first parameter.
+    pub fn value(&self) -> f64 {
+        self.parameters.first().map_or(0.0, |p| p.value)
+    }
+
+    /// Value of a parameter; zero if the cause has none of this name.
+    pub fn value_of(&self, name: &str) -> f64 {
+        self.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value)
+    }
+}
+
 /// Words of a compared channel, and everything that its task knows of its causes.
 pub trait Told {
     /// Sentence on how the residual shows a cause. Along a coordinate it is that of the catalogue.
     fn shows(&self, _found: &Found<'_>) -> String {
         String::new()
     }
-    /// Warning about the k-th chosen term if it is no cause.
+    /// What the task knows beyond the sentence of the catalogue.
+    fn adds(&self, _candidate: &Candidate) -> &'static str {
+        ""
+    }
+    /// True if the k-th chosen term is a cause.
+    fn is_cause(&self, _k: usize) -> bool {
+        true
+    }
+    /// Warning about the k-th chosen term, which is no cause.
     fn excuse(&self, _k: usize) -> Option<String> {
         None
     }
@@ -49,13 +75,11 @@ pub trait Told {
 /// One channel, compared.
 pub struct Part<'a> {
     pub role: Role,
-    /// The comparison.
     pub study: &'a ChannelFit,
     /// The comparison with the generic terms of the residual, if there are any.
     pub terms: Option<&'a ChannelFit>,
     /// Name of the channel, in words.
     pub channel: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// Noise of its rows: no cause can explain it.
     pub floor: f64,

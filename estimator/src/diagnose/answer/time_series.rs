@@ -2,7 +2,7 @@
 
 use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::normal_equations::Use;
+use crate::diagnose::selection::layout::Use;
 
 /// One instant of the course along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

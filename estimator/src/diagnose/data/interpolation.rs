@@ -24,6 +24,13 @@ pub fn mean_step_s(time_s: &[f64]) -> f64 {
     }
 }
 
+/// Noise of the slope of a line through a window of `half` samples to either side, a second.
+pub fn slope_noise(values: &[f64], half: usize, step_s: f64) -> f64 {
+    let half = half as f64;
+    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
+    white_noise(values) / (spread.sqrt() * step_s.max(1e-9))
+}
+
 /// Weights of the smoothing, from the middle outwards; their sum over both sides is one.
 fn weights(period_s: f64) -> Vec<f64> {
     let half = (0.5 * CALM_S / period_s).floor() as usize;
@@ -55,8 +62,22 @@ pub fn calmed_line(values: &[f64], period_s: f64) -> (Vec<f64>, f64) {
     (calm.into_iter().map(|v| v.x).collect(), left)
 }
 
+/// Number of points for one sample, and number of samples for one point, at this time step. One of them is 1.
+pub fn points_and_samples(period_s: f64) -> (usize, usize) {
+    let fill = (FINE_HZ * period_s).round().max(1.0) as usize;
+    (fill, (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize)
+}
+
+/// Adds a sample's point, preceded by interpolated ones within its segment: `fill` points for one sample.
+pub fn add_point(points: &mut Vec<Fine>, point: Fine, fill: usize) {
+    if let Some(before) = points.last().copied().filter(|f| f.segment == point.segment) {
+        points.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
+    }
+    points.push(point);
+}
+
 /// A point between two others: time and velocity by linear interpolation, position by the cubic with both slopes.
-pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
+fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
     let step_s = b.time_s - a.time_s;
     let (p, q) = (part, 1.0 - part);
     let bend = p * q * step_s * (q * a.velocity - p * b.velocity);

@@ -1,6 +1,7 @@
 pub(crate) mod coordinate;
 pub(crate) mod covariates;
 pub(crate) mod direction;
+pub(crate) mod hung_weight;
 pub(crate) mod interpolation;
 pub(crate) mod known_weight;
 pub(crate) mod limits;

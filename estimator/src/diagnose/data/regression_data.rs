@@ -1,7 +1,7 @@
 //! Data set of a regression from one or several recordings: measured motion and force at a common, moderate rate.
 
 use super::covariates::Extra;
-use super::known_weight::Hung;
+use super::hung_weight::Hung;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Effect, Motion};
 
@@ -34,7 +34,6 @@ pub enum Place {
 /// Motion between the rows, in which the direction may change, as finely as it is known.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fine {
-    /// Segment of the point.
     pub segment: usize,
     pub time_s: f64,
     pub position: f64,
@@ -58,7 +57,6 @@ impl Fine {
 pub struct Span {
     pub start: usize,
     pub len: usize,
-    /// Weights of the points.
     pub weighing: Weighing,
 }
 
@@ -110,9 +108,7 @@ impl Span {
 /// One force with its motion; by default one of zero velocity, without a force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Row {
-    /// Index of the recording.
     pub recording: usize,
-    /// Segment of the row.
     pub segment: usize,
     /// Source of the force.
     pub place: Place,

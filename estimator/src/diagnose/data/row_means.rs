@@ -85,6 +85,14 @@ fn by_rows(track: &Track, effect: &Effect) -> Vec<f64> {
     track.rows.iter().map(mean).collect()
 }
 
+/// Mean, and its standard error by the scatter of the values.
+pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+    (mean, (squares / (n - 1.0).max(1.0) / n).sqrt())
+}
+
 /// Standard deviation.
 pub fn spread(values: &[f64]) -> f64 {
     let n = values.len().max(1) as f64;

@@ -121,7 +121,8 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
 /// them.
 fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
-    let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
+    let picks = study.picks();
+    let chosen = picks.iter().position(|p| study.candidates[*p].id == pair.0)?;
     let mut asked = asked(track, &HANG, RECORDING_LENGTHS_S.low());
     let in_steps = |weight: f64| (20.0 * weight.clamp(0.1, HEAVIEST_N)).round() / 20.0;
     if track.planar {
@@ -132,11 +133,10 @@ fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) ->
         // Factor by which the weight enlarges the sine of a tilt.
         let times = 1.0 + asked.added_weight_n / own_n.max(0.02);
         let share = asked.seconds / track.span_s.max(1.0);
-        let lambda = chosen.lambda * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
+        let lambda = study.chosen[chosen].lambda * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
         return Some(hung_proposal(&asked, &[pair], power(lambda), "the handle"));
     }
-    let before = study.chosen.iter().take_while(|c| c.candidate != chosen.candidate);
-    let first = study.baseline.len() + before.map(|c| study.candidates[c.candidate].regressors.len()).sum::<usize>();
+    let first = study.system.own(&picks, chosen).start;
     let moment = solved.values[first..first + 2].iter().map(|v| v * v).sum::<f64>().sqrt();
     asked.added_lever_m = LEVER_M;
     asked.added_weight_n = in_steps(HUNG_MULTIPLE * moment / LEVER_M);

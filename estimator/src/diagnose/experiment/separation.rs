@@ -13,13 +13,18 @@ pub struct Imagined {
     /// Regressors of the base model, and all candidates.
     pub baseline: Vec<Vec<f64>>,
     pub candidates: Vec<Candidate>,
-    /// Segment of each row.
     pub segment: Vec<usize>,
     /// Weight of each row: inverse of its relative noise.
     pub weight: Vec<f64>,
 }
 
 impl Imagined {
+    /// Rows of equal noise.
+    pub fn of(baseline: Vec<Vec<f64>>, candidates: Vec<Candidate>, segment: Vec<usize>) -> Self {
+        let weight = vec![1.0; segment.len()];
+        Self { baseline, candidates, segment, weight }
+    }
+
     /// Predicted effects of the causes along one coordinate.
     pub fn along(track: &Track, model: &Model, study: &ChannelFit) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
@@ -81,9 +86,8 @@ impl<'a> Eye<'a> {
     fn lambda(&self, study: &ChannelFit, picks: &[usize], k: usize, other: &str) -> Option<f64> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
-        let at = study.baseline.len() + picks[..k].iter().map(|c| study.candidates[*c].regressors.len()).sum::<usize>();
         let like = nearest(&self.on.candidates, own)?;
-        let parts = like.regressors.iter().zip(&solved.values[at..at + own.regressors.len()]);
+        let parts = like.regressors.iter().zip(&solved.values[study.system.own(picks, k)]);
         let effect = parts.fold(vec![0.0; self.on.weight.len()], |mut sum, (c, v)| {
             sum.iter_mut().zip(c.iter()).for_each(|(s, x)| *s += v * x);
             sum

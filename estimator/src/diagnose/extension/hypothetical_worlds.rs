@@ -25,7 +25,6 @@ pub(crate) type Act = (String, Vec<CauseParameter>);
 /// One answer that is not excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hypothesis {
-    /// The assumed cause.
     pub(crate) id: String,
     /// `None` if a cause among them cannot be simulated.
     pub(crate) inside: Option<Inside>,
@@ -46,7 +45,7 @@ pub(crate) fn hypotheses(track: &Track, model: &Model, study: &ChannelFit) -> Ve
         let mut add = |id: &str, picks: &[usize]| {
             let Some(solved) = study.system.solve(picks) else { return };
             let inside = effects_of(track, model, study, picks, &solved).map(Inside::Laws);
-            let fault = fault(study, picks, &solved.values);
+            let fault = add_faults(&SensorFault::default(), study, picks, &solved.values);
             all.push(Hypothesis { id: id.to_owned(), inside, fault, hung_share: 1.0 });
         };
         add(own, &picks);
@@ -60,7 +59,8 @@ pub(crate) fn hypotheses(track: &Track, model: &Model, study: &ChannelFit) -> Ve
             let laws = effects(track, model, study);
             // By itself, a tilted axis is equivalent to an eccentric mass. Only a hung weight separates them.
             let (laws, hung_share) = if track.planar { (tilted(&laws), 1.0) } else { (Some(laws), LEANS) };
-            let fault = study.solved.as_ref().and_then(|s| fault(study, &picks, &s.values));
+            let fault =
+                study.solved.as_ref().and_then(|s| add_faults(&SensorFault::default(), study, &picks, &s.values));
             all.push(Hypothesis { id: twin.to_owned(), inside: laws.map(Inside::Laws), fault, hung_share });
         }
     }
@@ -135,12 +135,7 @@ fn of_picks(
     Some((acts, sum.map(as_sensed)))
 }
 
-/// The sensor faults among some candidates; `None` if one of them cannot be added to a recording.
-fn fault(study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
-    add_faults(&SensorFault::default(), study, picks, values)
-}
-
-/// The same, added to other faults.
+/// The sensor faults among some candidates, added to other faults; `None` if one of them cannot be added to a recording.
 fn add_faults(beside: &SensorFault, study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;
     let mut faults = study.with_values(picks, values).filter(|(c, _)| c.kind == Kind::Instrument);

@@ -31,12 +31,16 @@ pub fn effects_of(
     solved: &Solved,
 ) -> Option<Vec<Effect>> {
     let candidates: Vec<&Candidate> = picks.iter().map(|c| &study.candidates[*c]).collect();
-    let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
-    let searched: Vec<Vec<f64>> = candidates.iter().map(tried).collect();
+    let searched = tried(&candidates);
     let mut values = solved.values.clone();
     shares(study, picks).for_each(|first| values[first] *= study.shares_of[0]);
     let (found, is_whole) = made(track, model, &candidates, &values, &searched);
     is_whole.then_some(found)
+}
+
+/// Tried values of each candidate.
+fn tried(candidates: &[&Candidate]) -> Vec<Vec<f64>> {
+    candidates.iter().map(|c| c.searched.iter().map(|s| s.value).collect()).collect()
 }
 
 /// The laws, and true if every plant cause is among them. `values`: of the model's regressors, then of the causes'
@@ -64,8 +68,7 @@ pub fn without_friction(
     causes: &[&Candidate],
     values: &[f64],
 ) -> Option<Vec<Effect>> {
-    let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
-    let searched: Vec<Vec<f64>> = causes.iter().map(tried).collect();
+    let searched = tried(causes);
     let (found, is_whole) =
         beside_model(track, laws, &DryFriction { level_n: dry_n, mu: 0.0 }, causes, values, &searched);
     is_whole.then_some(found)

@@ -8,7 +8,7 @@ use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::extension::model::effects_of;
 use crate::diagnose::hypotheses::law_forces;
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::normal_equations::Use;
+use crate::diagnose::selection::layout::Use;
 use haptics::law::{Coordinate, Effect, Kind, Memories, drive_forces, inertia};
 
 /// One side of the comparison: laws, and the measured force less the found sensor faults.
@@ -16,14 +16,14 @@ struct Side {
     effects: Vec<Effect>,
     drive: Vec<f64>,
     /// Residual of the force after the regressors, one per row.
-    left: Vec<f64>,
+    residual: Vec<f64>,
 }
 
 /// The rollout without and with the k-th of the chosen causes, all others in. The error is the reason why it cannot be
 /// done faithfully: a cause without a law in a world, or too little held-out motion.
 pub fn rollout(track: &Track, model: &Model, study: &ChannelFit, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
-    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let rest = study.picks_without(k);
     let sides = side(track, model, study, &rest).zip(side(track, model, study, &picks));
     let (without, with) = sides.ok_or_else(|| NO_LAW.to_owned())?;
     if !(faithful(track, study, &without, &with) && faithful(track, study, &with, &without)) {
@@ -51,7 +51,7 @@ pub fn rollout(track: &Track, model: &Model, study: &ChannelFit, k: usize) -> Re
 fn side(track: &Track, model: &Model, study: &ChannelFit, picks: &[usize]) -> Option<Side> {
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
-    let left = study.residual_of(picks, &solved);
+    let residual = study.residual_of(picks, &solved);
     // No force drives a free motion, and its inertial force is the target.
     let mut drive = if track.freely.is_some() { vec![0.0; study.target.len()] } else { study.target.clone() };
     for (candidate, values) in study.with_values(picks, &solved.values).filter(|(c, _)| c.kind == Kind::Instrument) {
@@ -59,7 +59,7 @@ fn side(track: &Track, model: &Model, study: &ChannelFit, picks: &[usize]) -> Op
             drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
         }
     }
-    Some(Side { effects, drive, left })
+    Some(Side { effects, drive, residual })
 }
 
 /// True if the laws agree with the force of the regressors.
@@ -73,8 +73,8 @@ fn faithful(track: &Track, study: &ChannelFit, side: &Side, other: &Side) -> boo
         };
         for (i, needed) in rows.into_iter().zip(needed) {
             if study.layout.weight[i] > HALF && track.rows[i].motion.direction.abs() > HALF {
-                off += (side.drive[i] - side.left[i] - needed).powi(2);
-                worth += (side.left[i] - other.left[i]).powi(2);
+                off += (side.drive[i] - side.residual[i] - needed).powi(2);
+                worth += (side.residual[i] - other.residual[i]).powi(2);
             }
         }
     }

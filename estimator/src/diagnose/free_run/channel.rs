@@ -14,10 +14,11 @@ const LEAST_WINDOW_ROWS: usize = 5;
 /// A channel with a free-run simulation.
 pub trait Forward {
     /// Compared quantity and its unit.
-    fn of(&self) -> (RolloutOf, &str);
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Force, "N")
+    }
     /// Rows of every window, in the order of time.
     fn windows(&self) -> Vec<Vec<usize>>;
-    /// Longest window, s.
     fn window_s(&self) -> f64 {
         ROLLOUT_WINDOW_S
     }
@@ -69,7 +70,7 @@ pub fn consecutive(
 /// The rollout without and with the k-th of the chosen causes, all others in, over the windows in which it acts.
 pub fn in_turn(study: &ChannelFit, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
-    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let rest = study.picks_without(k);
     let own = &study.candidates[picks[k]].regressors;
     let acts = |row: &&usize| own.iter().any(|column| column[**row] != 0.0);
     let mut windows = channel.windows();

@@ -14,7 +14,6 @@ const TIP_KG: f64 = 5e-3;
 /// A moment of a window.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Moment {
-    /// The measured motion.
     pub motion: Motion,
     /// Measured force less the assumed sensor faults, N or N m.
     pub drive: f64,

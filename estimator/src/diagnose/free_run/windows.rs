@@ -28,7 +28,6 @@ pub const AT_ONCE: &str =
 pub struct Compared<'a> {
     pub of: RolloutOf,
     pub unit: &'a str,
-    /// Longest window, s.
     pub window_s: f64,
     /// True if the windows took part in the choice of the causes.
     pub in_turn: bool,

@@ -257,7 +257,6 @@ impl Grips {
     }
 }
 
-/// One lift.
 struct Lift {
     /// Change of the vertical force of either finger, N.
     gained_n: [f64; 2],

@@ -10,7 +10,6 @@ use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
 use logs;
 
-/// Faults found in the samples.
 pub struct Faults {
     pub causes: Vec<Cause>,
     /// Flags of samples that no sensor measured.
@@ -54,7 +53,6 @@ pub fn faults(recording: &Recording) -> Faults {
     found
 }
 
-/// Causes of all recordings.
 pub fn causes(recordings: &[Recording]) -> impl Iterator<Item = Cause> {
     recordings.iter().flat_map(|recording| faults(recording).causes)
 }

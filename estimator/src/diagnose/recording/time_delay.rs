@@ -169,14 +169,11 @@ pub fn skewed_s(study: &ChannelFit, track: &Track) -> Option<f64> {
     (0..study.chosen.len()).find_map(|k| skew(study, k, track))
 }
 
-/// Beginning of the sentence.
-pub const APART: &str = "force and motion are ";
-
 /// The offset in words.
 pub fn apart(skew_s: f64) -> String {
     let ms = 1e3 * skew_s;
     format!(
-        "{APART}{ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
+        "force and motion are {ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
     )
 }
 
@@ -187,8 +184,7 @@ pub fn rest_s(study: &ChannelFit, picks: &[usize]) -> Option<[f64; 2]> {
     let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
     let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
     let last = solved.values.len() - 1;
-    let variance = solved.variance(study.system.rows);
-    Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
+    Some([solved.values[last], solved.std_error(last, study.system.rows)])
 }
 
 #[cfg(test)]

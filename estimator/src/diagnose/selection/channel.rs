@@ -9,9 +9,8 @@ use super::comparison::{ChannelFit, residual};
 use super::held_out_gain::{confirmed, gain, holds_out, is_tested};
 use super::layout::Layout;
 use super::noise_model::whitener;
-use super::normal_equations::{System, solve, uses};
+use super::normal_equations::{System, columns_of, solve, uses};
 use super::prescreen::Rough;
-use super::profile_likelihood::firsts;
 use super::rules::Rules;
 use super::stepwise::Stepwise;
 use crate::diagnose::hypotheses::all::relations;
@@ -25,7 +24,6 @@ const LEAST_OWN_PART: f64 = 1e-4;
 /// One measured quantity and all that may explain it.
 #[derive(Clone)]
 pub struct Channel {
-    /// The target.
     pub target: Vec<f64>,
     /// Regressors of the model.
     pub baseline: Vec<Vec<f64>>,
@@ -33,9 +31,7 @@ pub struct Channel {
     pub resisting: Vec<usize>,
     /// Causes and generic terms.
     pub candidates: Vec<Candidate>,
-    /// The rows.
     pub layout: Layout,
-    /// The limits in force.
     pub rules: Rules,
 }
 
@@ -76,7 +72,8 @@ impl Channel {
         let mut system = match before {
             // Rows with other weights have another residual noise.
             Some(before) if before.layout.weight == layout.weight => {
-                System::after(before, &base, &candidates, &y, &layout)
+                let ChannelFit { system, candidates: had, baseline: had_base, target: had_y, .. } = before;
+                System::after(system, &columns_of(&had_base, &had, &had_y), &base, &candidates, &y, &layout)
             }
             _ => {
                 let coefficients = whitening(&base, &candidates, &y, &layout, &rules)?;
@@ -138,8 +135,8 @@ fn whitening(
     }
     let solved = solve(&ridged, &columns, target)
         .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
-    let left = residual(y, base, candidates, &used, &solved);
-    let weighted: Vec<f64> = left.iter().zip(&layout.weight).map(|(r, w)| r * w).collect();
+    let residual = residual(y, base, candidates, &used, &solved);
+    let weighted: Vec<f64> = residual.iter().zip(&layout.weight).map(|(r, w)| r * w).collect();
     Ok(whitener(&weighted, layout, &uses(layout)))
 }
 
@@ -181,9 +178,7 @@ fn is_unsure(study: &ChannelFit, k: usize) -> bool {
 fn is_steady(study: &ChannelFit, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
-    let first = firsts(study, &picks)[k];
-    let own = first..first + study.candidates[picks[k]].regressors.len();
-    study.system.steadiness(solved, &own) > study.rules.steady
+    study.system.steadiness(solved, &study.system.own(&picks, k)) > study.rules.steady
 }
 
 /// A chosen cause whose estimate no longer fits its name after another one was removed.

@@ -1,26 +1,22 @@
 use super::layout::Layout;
 use super::normal_equations::{Solved, System};
 use super::rules::Rules;
-use super::stepwise::{SelectedTerm, Stepwise};
+use super::stepwise::{SelectedTerm, Stepwise, without};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use foundation::tasks::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
 pub struct Compared {
-    /// The comparison.
     pub study: ChannelFit,
     /// Name of the channel, in words.
     pub channel: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// Noise of its rows.
     pub floor: f64,
     /// True for rows that are held out in turn.
     pub along: Vec<bool>,
-    /// The state of every row.
     pub state: Vec<SystemState>,
-    /// Its rows for plots.
     pub view: View,
 }
 
@@ -55,12 +51,9 @@ pub struct ChannelFit {
     pub system: System,
     /// Solution of all chosen causes on the training rows.
     pub solved: Option<Solved>,
-    /// The target.
     pub target: Vec<f64>,
     pub baseline: Vec<Vec<f64>>,
-    /// The rows.
     pub layout: Layout,
-    /// The limits in force.
     pub rules: Rules,
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
@@ -71,6 +64,11 @@ impl ChannelFit {
     /// Candidates that were chosen.
     pub fn picks(&self) -> Vec<usize> {
         self.chosen.iter().map(|c| c.candidate).collect()
+    }
+
+    /// The same without the k-th.
+    pub fn picks_without(&self, k: usize) -> Vec<usize> {
+        without(&self.picks(), k)
     }
 
     /// True if this cause was found.
@@ -128,7 +126,6 @@ impl ChannelFit {
     }
 }
 
-/// Residual of `y`.
 pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
     let columns: Vec<&Vec<f64>> =
         base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].regressors).map(|c| &**c)).collect();

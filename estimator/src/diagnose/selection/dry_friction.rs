@@ -30,11 +30,8 @@ pub fn is_resisting(effect: &Effect) -> bool {
 pub fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
     let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
     let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));
-    let variance = solved.variance(rows);
     let dry = model.iter().enumerate().filter(|(_, effect)| effect.law().is_dry());
-    let error = |(k, effect): (usize, &Effect)| {
-        (variance * solved.inverse[(k, k)]).sqrt() * of(&|i| level(effect, track, i).abs())
-    };
+    let error = |(k, effect): (usize, &Effect)| solved.std_error(k, rows) * of(&|i| level(effect, track, i).abs());
     if used > 0.0 && now > 0.0 { [used / now, dry.map(error).sum::<f64>() / now] } else { [1.0, 0.0] }
 }
 

@@ -1,7 +1,8 @@
 //! Gain of a cause on the locked blocks, which took part in neither the choice nor the fit.
 
 use super::comparison::ChannelFit;
-use super::normal_equations::{Use, solve};
+use super::layout::Use;
+use super::normal_equations::solve;
 use crate::diagnose::contract::Gain;
 use crate::diagnose::hypotheses::candidate::Column;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -29,18 +30,17 @@ struct Parts {
 }
 
 /// Weighted residuals of a subset of the chosen causes, all rows.
-fn left(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
-    let Some(solved) = study.system.solve(picks) else { return study.target.clone() };
-    weighted(study, &study.residual_of(picks, &solved))
+fn residual(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
+    weighted(study, &study.residual(picks))
 }
 
-fn weighted(study: &ChannelFit, left: &[f64]) -> Vec<f64> {
-    left.iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
+fn weighted(study: &ChannelFit, residual: &[f64]) -> Vec<f64> {
+    residual.iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
 }
 
 /// Root mean square over the locked rows, and over those that train.
 pub fn rms(study: &ChannelFit, picks: &[usize], along: &[bool]) -> (f64, f64) {
-    let residual = left(study, picks);
+    let residual = residual(study, picks);
     let over = |wanted: &dyn Fn(Use) -> bool| {
         let (sum, n) = (0..residual.len())
             .filter(|i| along[*i] && wanted(study.system.uses[*i]))
@@ -55,7 +55,7 @@ pub fn rms(study: &ChannelFit, picks: &[usize], along: &[bool]) -> (f64, f64) {
 /// The gain by the k-th of the chosen causes, all others in.
 pub fn gain(study: &ChannelFit, k: usize, floor: f64) -> Gain {
     let picks = study.picks();
-    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let rest = study.picks_without(k);
     gain_between(study, &rest, &picks, floor)
 }
 
@@ -66,7 +66,7 @@ pub fn gain_between(study: &ChannelFit, rest: &[usize], picks: &[usize], floor: 
     let parts = if in_turn {
         parts_in_turn(study, rest, picks)
     } else {
-        parts(study, &left(study, rest), &left(study, picks), shows_beside(study, &more))
+        parts(study, &residual(study, rest), &residual(study, picks), shows_beside(study, &more))
     };
     if parts.rows.is_empty() {
         return Gain { no_share: Some("there were too few rows to hold any out".to_owned()), ..Gain::default() };
@@ -102,11 +102,11 @@ fn parts_in_turn(study: &ChannelFit, rest: &[usize], picks: &[usize]) -> Parts {
     let mut parts = Parts::default();
     for (fold, (products, rows)) in study.system.folds.iter().enumerate().filter(|(_, (_, rows))| *rows > 0.0) {
         let others = &study.system.train - products;
-        let left = |picks: &[usize]| {
+        let residual = |picks: &[usize]| {
             let solved = solve(&others, &study.system.columns(picks), others.ncols() - 1)?;
             Some(weighted(study, &study.residual_of(picks, &solved)))
         };
-        let (Some(before), Some(after)) = (left(rest), left(picks)) else { continue };
+        let (Some(before), Some(after)) = (residual(rest), residual(picks)) else { continue };
         let own: Vec<usize> = (0..before.len()).filter(|i| study.system.uses[*i] == Use::Fold(fold)).collect();
         let pieces = PARTS_OF_A_BLOCK.min(*rows as usize).max(1);
         own.chunks(own.len().div_ceil(pieces).max(1)).for_each(|part| parts.add(part, &before, &after));
@@ -129,7 +129,7 @@ pub fn is_tested(study: &ChannelFit, k: usize) -> bool {
 /// all others. The noise has unit variance.
 fn held_out(study: &ChannelFit, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
-    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let rest = study.picks_without(k);
     let white = |picks: &[usize]| whitened(study, picks);
     let (before, after) = (white(&rest), white(&picks));
     let over = |wanted: &dyn Fn(Use) -> bool, of: &dyn Fn(f64, f64) -> f64| {
@@ -144,7 +144,7 @@ fn held_out(study: &ChannelFit, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
 
 /// Rows whitened by the noise's autoregression; `None` at the start of a segment, before enough rows precede.
 fn whitened(study: &ChannelFit, picks: &[usize]) -> Vec<Option<f64>> {
-    let (values, segment, coefficients) = (left(study, picks), &study.layout.segment, &study.system.coefficients);
+    let (values, segment, coefficients) = (residual(study, picks), &study.layout.segment, &study.system.coefficients);
     let mut since = 0;
     (0..values.len())
         .map(|i| {

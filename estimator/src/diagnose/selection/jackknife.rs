@@ -1,6 +1,7 @@
 //! Jackknife of an effect over blocks of a recording, each of which may have its own model error.
 
-use super::normal_equations::{Scaled, Solved, System, Use, factored};
+use super::layout::Use;
+use super::normal_equations::{Scaled, Solved, System, factored};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -17,22 +18,22 @@ impl System {
             return f64::INFINITY;
         }
         let Some(effect) = self.apart(solved, own) else { return f64::INFINITY };
-        let mut left = self.whitened[self.target()].clone();
+        let mut residual = self.whitened[self.target()].clone();
         for (c, value) in solved.columns.iter().zip(&solved.values) {
-            left.iter_mut().zip(&self.whitened[*c]).for_each(|(left, column)| *left -= value * column);
+            residual.iter_mut().zip(&self.whitened[*c]).for_each(|(residual, column)| *residual -= value * column);
         }
-        self.pieces.iter().map(|pieces| self.known_to(pieces, &effect, &left)).fold(0.0, f64::max)
+        self.pieces.iter().map(|pieces| self.known_to(pieces, &effect, &residual)).fold(0.0, f64::max)
     }
 
     /// The same for one set of blocks. Without a block, the effect grows by its rows' residual along the effect
     /// over the effect's power in all others.
-    fn known_to(&self, pieces: &[usize], effect: &[f64], left: &[f64]) -> f64 {
+    fn known_to(&self, pieces: &[usize], effect: &[f64], residual: &[f64]) -> f64 {
         let count = pieces.iter().max().map_or(0, |last| last + 1);
         let (mut power, mut slope) = (vec![0.0; count], vec![0.0; count]);
         for (i, piece) in pieces.iter().enumerate() {
             if matches!(self.uses[i], Use::Always | Use::Fold(_)) {
                 power[*piece] += effect[i] * effect[i];
-                slope[*piece] += effect[i] * left[i];
+                slope[*piece] += effect[i] * residual[i];
             }
         }
         let whole: f64 = power.iter().sum();

@@ -1,6 +1,5 @@
 //! Rows of a channel: segment, time, weight and hold-out role of each.
 
-use super::noise_model::Noise;
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, LEAST_PIECES};
 use crate::diagnose::hypotheses::axis::Axis;
 use std::collections::HashMap;
@@ -20,6 +19,29 @@ pub enum Held {
     Fully,
 }
 
+/// Use of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    Always,
+    /// Used for training, and tested by the fold of this number.
+    Fold(usize),
+    /// Tests only; the number of its block.
+    Locked(usize),
+    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
+    Beside(usize),
+    /// Beside a locked block.
+    Guard,
+}
+
+/// Kind of the rows' noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Unknown noise.
+    Any,
+    /// Noise of first or second differences of data with white noise, plus some white noise.
+    OfDifferences,
+}
+
 /// Blocks of rows that share a model error, for the jackknife.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blocks {
@@ -34,7 +56,6 @@ pub enum Blocks {
 /// Rows of a channel.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// Segment of each row.
     pub segment: Vec<usize>,
     /// Hold-out role of each row; rows that may not be held out always train.
     pub held: Vec<Held>,
@@ -44,11 +65,9 @@ pub struct Layout {
     pub weight: Vec<f64>,
     /// Time between rows, s.
     pub period_s: f64,
-    /// Kind of their noise.
     pub noise: Noise,
     /// True if standing rows have next to no weight: blocks then have equal information, not equal numbers of rows.
     pub may_stand: bool,
-    /// Blocks of the jackknife.
     pub blocks: Blocks,
 }
 
@@ -73,7 +92,6 @@ impl Layout {
         Self { weight, ..self }
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.segment.len()
     }

@@ -1,6 +1,7 @@
 //! A fit without some of the rows.
 
-use super::normal_equations::{LEAST_LEFT, System, Use, scaled};
+use super::layout::Use;
+use super::normal_equations::{LEAST_LEFT, System, scaled};
 use nalgebra::DMatrix;
 
 impl System {

@@ -10,6 +10,7 @@ pub(crate) mod noise_model;
 pub(crate) mod normal_equations;
 pub(crate) mod prescreen;
 pub(crate) mod profile_likelihood;
+pub(crate) mod refinement;
 pub(crate) mod restarts;
 pub(crate) mod rules;
 pub(crate) mod stepwise;

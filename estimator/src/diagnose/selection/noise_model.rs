@@ -1,7 +1,6 @@
 //! Autocorrelated noise of the rows: estimated as an autoregression, and removed from every column.
 
-use super::layout::Layout;
-use super::normal_equations::Use;
+use super::layout::{Layout, Noise, Use};
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use std::ops::Range;
 
@@ -11,15 +10,6 @@ const LARGEST_ORDER: usize = 6;
 /// all rows.
 const ORDER_OF_DIFFERENCES: usize = 24;
 const SHARE_OF_DIFFERENCES: usize = 12;
-
-/// Kind of the rows' noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Noise {
-    /// Unknown noise.
-    Any,
-    /// Noise of first or second differences of data with white noise, plus some white noise.
-    OfDifferences,
-}
 
 /// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
 pub fn whitener(residual: &[f64], layout: &Layout, used: &[Use]) -> Vec<f64> {

@@ -1,10 +1,9 @@
 //! Whitened normal equations of all regressors, one set per block: every fit, comparison and cross-validation is
 //! then a small solve.
 
-use super::comparison::ChannelFit;
 use super::gram;
 use super::gram::{Weighed, gram, mean_squares};
-use super::layout::{Held, Layout};
+use super::layout::{Held, Layout, Use};
 use super::noise_model::Whitening;
 use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -27,21 +26,6 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 pub(crate) const LEAST_LEFT: f64 = 0.3;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
-
-/// Use of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
-    /// Trains always.
-    Always,
-    /// Used for training, and tested by the fold of this number.
-    Fold(usize),
-    /// Tests only; the number of its block.
-    Locked(usize),
-    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
-    Beside(usize),
-    /// Beside a locked block.
-    Guard,
-}
 
 /// Use of each row: blocks of the rows that may be held out.
 pub fn uses(layout: &Layout) -> Vec<Use> {
@@ -180,6 +164,11 @@ impl Solved {
     pub fn variance(&self, rows: f64) -> f64 {
         self.rss / (rows - self.columns.len() as f64).max(1.0)
     }
+
+    /// Standard error of the i-th value, from this many rows.
+    pub fn std_error(&self, i: usize, rows: f64) -> f64 {
+        (self.variance(rows) * self.inverse[(i, i)]).sqrt()
+    }
 }
 
 impl System {
@@ -193,13 +182,19 @@ impl System {
         Self::build(columns_of(base, candidates, y), (base.len(), candidates), layout, coefficients, None)
     }
 
-    /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
-    pub fn after(before: ChannelFit, base: &[Vec<f64>], candidates: &[Candidate], y: &[f64], layout: &Layout) -> Self {
+    /// A system of the same rows and weights as `had`, whitened alike: it takes known products of regressors from it.
+    /// `had_columns`: all columns of that one.
+    pub fn after(
+        had: Self,
+        had_columns: &[&[f64]],
+        base: &[Vec<f64>],
+        candidates: &[Candidate],
+        y: &[f64],
+        layout: &Layout,
+    ) -> Self {
         let columns = columns_of(base, candidates, y);
-        let ChannelFit { system, candidates: had, baseline: had_base, target: had_y, layout: had_layout, .. } = before;
-        let coefficients = system.coefficients.clone();
-        let known = (had_layout.weight == layout.weight && system.uses == uses(layout))
-            .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });
+        let coefficients = had.coefficients.clone();
+        let known = (had.uses == uses(layout)).then(|| Known { from: origins(&columns, had_columns), system: had });
         Self::build(columns, (base.len(), candidates), layout, coefficients, known)
     }
 
@@ -264,6 +259,12 @@ impl System {
     /// Columns of the base and of the chosen candidates.
     pub fn columns(&self, chosen: &[usize]) -> Vec<usize> {
         (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()
+    }
+
+    /// Indices of the values of the k-th of these candidates in a solution with them.
+    pub fn own(&self, chosen: &[usize], k: usize) -> Range<usize> {
+        let first = self.base + chosen[..k].iter().map(|c| self.places[*c].len()).sum::<usize>();
+        first..first + self.places[chosen[k]].len()
     }
 
     /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.
@@ -347,7 +348,6 @@ pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<So
 /// Scaled and factored normal equations.
 pub(crate) struct Scaled {
     pub(crate) cholesky: Cholesky<f64, Dyn>,
-    /// Scale of each column.
     pub(crate) scale: Vec<f64>,
 }
 

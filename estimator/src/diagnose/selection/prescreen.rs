@@ -2,7 +2,8 @@
 
 use super::gram::{PANEL, STRIP, Weighed};
 use super::layout::Layout;
-use super::normal_equations::{FOLDS, System, Use, columns_of, counted, energy, places, uses};
+use super::layout::Use;
+use super::normal_equations::{FOLDS, System, columns_of, counted, energy, places, uses};
 use super::rules::LIKELY_CAUSES;
 use super::stepwise::{Stepwise, cheapest};
 use crate::diagnose::hypotheses::candidate::Candidate;

@@ -39,8 +39,8 @@ pub fn settled(study: &ChannelFit) -> Option<Settled> {
     let squares = (0..solved.values.len()).map(|i| variance * solved.inverse[(i, i)]);
     let (mut values, mut squares) = (solved.values.clone(), squares.collect::<Vec<f64>>());
     let mut searched = Vec::new();
-    for (k, first) in firsts(study, &picks).into_iter().enumerate() {
-        let own = &study.candidates[picks[k]];
+    for (k, pick) in picks.iter().enumerate() {
+        let (own, own_values) = (&study.candidates[*pick], study.system.own(&picks, k));
         let all: Vec<Known> = (0..own.searched.len()).map(|which| known(study, k, which)).collect();
         for (i, unknown) in carried_over(study, k, &all).into_iter().enumerate() {
             squares[i] += unknown.powi(2);
@@ -52,7 +52,6 @@ pub fn settled(study: &ChannelFit) -> Option<Settled> {
                 values.iter_mut().zip(moved.into_iter().flatten()).for_each(|(v, by)| *v += by);
             }
         }
-        let own_values = first..first + own.regressors.len();
         if !own.admits(&values[own_values.clone()]) {
             values[own_values.clone()].copy_from_slice(&solved.values[own_values]);
         }
@@ -68,19 +67,9 @@ pub fn settled(study: &ChannelFit) -> Option<Settled> {
     Some(Settled { values, std_errors, searched })
 }
 
-/// First index of the values of each of these causes.
-pub fn firsts(study: &ChannelFit, picks: &[usize]) -> Vec<usize> {
-    let counts = picks.iter().map(|p| study.candidates[*p].regressors.len());
-    counts.scan(study.system.base, |at, count| Some(std::mem::replace(at, *at + count))).collect()
-}
-
 /// First index of the values of those causes that are shares of the dry friction.
 pub fn shares<'a>(study: &'a ChannelFit, picks: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
-    firsts(study, picks)
-        .into_iter()
-        .zip(picks)
-        .filter(|(_, p)| is_share(&study.candidates[**p]))
-        .map(|(first, _)| first)
+    (0..picks.len()).filter(|k| is_share(&study.candidates[picks[*k]])).map(|k| study.system.own(picks, k).start)
 }
 
 /// All values and −2 ln(likelihood), with another candidate in the place of the k-th chosen cause.
@@ -226,7 +215,7 @@ fn vertex(below: (f64, f64), here: (f64, f64), above: (f64, f64)) -> Known {
 pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
     let Some(settled) = settled(study) else { return Vec::new() };
     let picks = study.picks();
-    let (own, first) = (&study.candidates[picks[k]], firsts(study, &picks)[k]);
+    let (own, first) = (&study.candidates[picks[k]], study.system.own(&picks, k).start);
     let mut found: Vec<CauseParameter> = own
         .linear
         .iter()
@@ -260,14 +249,15 @@ pub(crate) fn of_hardening_spring(track: &Track, study: &ChannelFit, k: usize) -
         return None;
     }
     let solved = study.solved.as_ref()?;
-    let first = firsts(study, &study.picks())[k];
-    let values = &solved.values[first..first + 4];
+    let own = study.system.own(&study.picks(), k);
+    let first = own.start;
+    let values = &solved.values[own];
     let variance = solved.variance(study.system.rows);
     let found = about_its_rest(values, track);
     let slopes: Vec<[f64; 4]> = (0..4)
         .map(|j| {
-            let step =
-                1e-4 * values[j].abs().max((variance * solved.inverse[(first + j, first + j)]).sqrt()).max(1e-12);
+            let error = solved.std_error(first + j, study.system.rows);
+            let step = 1e-4 * values[j].abs().max(error).max(1e-12);
             let mut moved = [values[0], values[1], values[2], values[3]];
             moved[j] += step;
             let after = about_its_rest(&moved, track);

@@ -25,7 +25,6 @@ const SPARED: f64 = 0.05;
 /// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
 pub struct SelectedTerm {
-    /// Index of the candidate.
     pub candidate: usize,
     /// Evidence lost without it, 2 ln(likelihood) with penalty.
     pub score: f64,
@@ -40,7 +39,6 @@ pub struct Stepwise<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
     pub rules: Rules,
-    /// Relations of each candidate.
     relations: Vec<&'static [Relation]>,
     /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
     prices: RefCell<HashMap<Vec<usize>, f64>>,
@@ -57,7 +55,6 @@ pub fn is_curve(id: &str) -> bool {
 }
 
 impl<'a> Stepwise<'a> {
-    /// A selection by these rules.
     pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
         let relations = candidates.iter().map(|candidate| relations(candidate.id)).collect();
         Self { system, candidates, rules: *rules, relations, prices: RefCell::default() }
@@ -92,15 +89,13 @@ impl Stepwise<'_> {
             return f64::INFINITY;
         }
         let Some((values, rss)) = self.system.least_sound(chosen) else { return f64::INFINITY };
-        let (mut at, mut doubt) = (self.system.base, 0.0);
-        for c in chosen {
-            let candidate = &self.candidates[*c];
-            let end = at + candidate.regressors.len();
-            if !candidate.admits(&values[at..end]) {
+        let mut doubt = 0.0;
+        for (k, c) in chosen.iter().enumerate() {
+            let (candidate, own) = (&self.candidates[*c], &values[self.system.own(chosen, k)]);
+            if !candidate.admits(own) {
                 return f64::INFINITY;
             }
-            doubt += candidate.doubt(&values[at..end]);
-            at = end;
+            doubt += candidate.doubt(own);
         }
         self.paid(chosen, rss) + doubt
     }
@@ -246,7 +241,7 @@ impl Stepwise<'_> {
         for _ in 0..MOST_ROUNDS {
             let mut changed = false;
             for k in 0..chosen.len() {
-                let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
+                let rest = without(chosen, k);
                 let with = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
                 let now = with(chosen[k]);
                 if let Some((best, price)) = cheapest(self.priced(&rest))
@@ -299,14 +294,10 @@ impl Stepwise<'_> {
     /// True if the k-th cause and a better one are nearly collinear in this recording: large coefficients cancel, and
     /// only their difference matters. Causes that differ may cancel as well.
     fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
-        let count = |k: usize| self.candidates[chosen[k]].regressors.len();
         let Some(solved) = self.system.solve(chosen) else { return false };
-        let own = |k: usize| {
-            let first = self.system.base + (0..k).map(count).sum::<usize>();
-            first..first + count(k)
-        };
+        let own = |k: usize| self.system.own(chosen, k);
         let covariance = |a: usize, b: usize| solved.inverse[(own(a).start, own(b).start)];
-        let single = |o: usize| count(k) == 1 && count(o) == 1;
+        let single = |o: usize| own(k).len() == 1 && own(o).len() == 1;
         let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
         let taken_back = |o: usize| {
             let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
@@ -360,11 +351,8 @@ impl Stepwise<'_> {
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {
         let Some(solved) = self.system.solve(chosen) else { return false };
-        let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].regressors.len()).sum();
-        let first = self.system.base + before;
-        let variance = solved.variance(self.system.rows);
-        (first..first + self.candidates[chosen[k]].regressors.len())
-            .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
+        let is_clear = |i: usize| solved.values[i].abs() > CLEAR_T * solved.std_error(i, self.system.rows);
+        self.system.own(chosen, k).any(is_clear)
     }
 
     fn describe(&self, chosen: &[usize]) -> Vec<SelectedTerm> {
@@ -407,8 +395,7 @@ impl Stepwise<'_> {
         const LARGEST_NOISE_SHARE: f64 = 0.9;
         let noise = self.candidates[c].noise;
         let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
-        let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].regressors.len()).sum::<usize>()
-            - self.candidates[c].regressors.len();
+        let own = self.system.own(chosen, chosen.len() - 1).start;
         let whitened = 1.0 + self.system.coefficients.iter().map(|a| a * a).sum::<f64>();
         let share = (solved.values[own] * noise).powi(2) * whitened * self.system.rows / solved.rss;
         -self.system.rows * (1.0 - share.min(LARGEST_NOISE_SHARE)).ln()
@@ -439,6 +426,7 @@ pub(crate) fn cheapest<T>(priced: impl IntoIterator<Item = (T, f64)>) -> Option<
     priced.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-fn without(chosen: &[usize], k: usize) -> Vec<usize> {
+/// The chosen candidates without the k-th.
+pub fn without(chosen: &[usize], k: usize) -> Vec<usize> {
     chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::diagnose::answer::atlas;
 use crate::diagnose::answer::atlas::Atlas;
-use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::build::{Draft, Evidence, draft};
 use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::answer::time_series::course;
 use crate::diagnose::contract::{CauseParameter, NotExcited};
@@ -11,9 +11,8 @@ use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::experiment::proposal::{propose, turned_track};
 use crate::diagnose::extension::hypothetical_worlds::hypotheses;
 use crate::diagnose::extension::model::{effects, plain};
-use crate::diagnose::findings::{DelayFindings, Findings};
+use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
-use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
@@ -21,27 +20,20 @@ use crate::diagnose::recording::time_delay::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::selection::profile_likelihood::of_hardening_spring;
-use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
 
-/// Comparison of a path, and the same with generic terms if its residual needs some.
-pub struct PathFit {
-    pub study: ChannelFit,
-    pub terms: Option<ChannelFit>,
-}
-
-/// The answer of one object's recordings.
+/// The draft of the answer of one object's recordings. `paths`: comparisons beside the force.
 pub fn explain(
     track: &Track,
     model: &Model,
     study: &ChannelFit,
-    paths: &[PathFit],
+    paths: Vec<Part<'_>>,
     evidence: Evidence<'_>,
-) -> Findings {
+) -> Draft {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let picks = study.picks();
     let (end, end_train) = rms(study, &picks, &along);
-    let coordinate = Coordinate { track, study };
+    let coordinate = Coordinate { track, study, is_put_together: evidence.skew_s != 0.0 };
     let force = Part {
         role: Role::Coordinate,
         study,
@@ -57,7 +49,7 @@ pub fn explain(
         free_run: FreeRun::Coordinate(track, model),
         in_world: None,
     };
-    let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths.iter().map(PathFit::part)).collect();
+    let parts: Vec<Part<'_>> = std::iter::once(force).chain(paths).collect();
     let next = |open: &[_]| {
         if track.freely.is_some() { turned_track(open) } else { propose(track, model, study, open) }
     };
@@ -66,55 +58,41 @@ pub fn explain(
         evidence.model = model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+");
     }
     evidence.not_excited.extend(without_reversals(track));
+    evidence.delay.rest_s = rest_s(study, &picks);
     let atlas = if evidence.atlas { atlas::atlas(track, study) } else { Atlas::default() };
-    Findings {
+    let mut draft = draft(&parts, evidence);
+    draft.findings = Findings {
         plain: plain(track, model, study),
         effects: effects(track, model, study),
         course: course(track, study),
         atlas,
         per_inertia: track.freely.is_some_and(|free| !free.is_known),
-        delay: DelayFindings { rest_s: rest_s(study, &picks), ..DelayFindings::default() },
         hypotheses: hypotheses(track, model, study),
-        ..answer(&parts, evidence)
-    }
+        ..draft.findings
+    };
+    draft
 }
 
 /// Force along a coordinate.
 struct Coordinate<'a> {
     track: &'a Track,
     study: &'a ChannelFit,
+    /// True if an offset between force and motion was removed before: its sentence stands for what remains of it.
+    is_put_together: bool,
 }
 
 impl Told for Coordinate<'_> {
+    fn is_cause(&self, k: usize) -> bool {
+        skew(self.study, k, self.track).is_none()
+    }
+
     fn excuse(&self, k: usize) -> Option<String> {
-        skew(self.study, k, self.track).map(apart)
+        skew(self.study, k, self.track).filter(|_| !self.is_put_together).map(apart)
     }
 
     fn states(&self, k: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         widen(candidate.id, &mut found, self.track);
         of_hardening_spring(self.track, self.study, k).unwrap_or(found)
-    }
-}
-
-impl Told for PathFit {}
-
-impl PathFit {
-    fn part(&self) -> Part<'_> {
-        Part {
-            role: Role::Path,
-            study: &self.study,
-            terms: self.terms.as_ref(),
-            channel: "path",
-            unit: "m",
-            floor: 0.0,
-            noise: white_noise(&self.study.target),
-            along: &[],
-            state: vec![Some(("distance from the circle", SystemState::Turning)); self.study.target.len()],
-            view: None,
-            told: self,
-            free_run: FreeRun::None(AT_ONCE),
-            in_world: None,
-        }
     }
 }
 

@@ -18,8 +18,9 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
+use crate::diagnose::selection::layout::Noise;
 use crate::diagnose::selection::layout::{Blocks, Held, Layout};
-use crate::diagnose::selection::noise_model::Noise;
+use crate::diagnose::selection::refinement::{Refinement, refined};
 use crate::diagnose::selection::restarts::to_refine;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
@@ -41,49 +42,47 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelF
     if track.freely.is_none() {
         stick_phases::add(track, &loads);
     }
-    let coarse = Grid::coarse(track);
-    let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false, noise: None };
-    let mut made = compare(track, (model, fixed), &known, [&coarse, &Grid::default()], None)?;
     let is_free = track.freely.is_some();
-    for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
-        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
-        // them. The long means of a free motion show so much more of a place that one alone is not near enough either.
-        let searched = |c: &SelectedTerm| !made.candidates[c.candidate].searched.is_empty();
-        let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
-        if made.chosen.is_empty() || enough {
-            break;
-        }
-        let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
-        let fine = Grid::around(&to_refine(&made), track, step);
-        known.noise = match (known.noise, calmer(track, &made)) {
-            (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
-            (before, now) => now.or(before),
-        };
-        // Load on the friction: the sensor's reading, corrected for its faults found so far.
-        if correct_load(track, &made) {
-            known.columns.forget_loads();
-            known.generic = generic(track);
-        }
-        made = compare(track, (model, fixed), &known, [&coarse, &fine], Some(made))?;
-    }
+    let (coarse, generic) = (Grid::coarse(track), generic(track));
+    let (fine, columns) = (Grid::default(), Columns::default());
+    let mut search = Search { track, model, fixed, coarse, fine, columns, generic, is_sharp: false, noise: None };
+    let mut made = refined(&mut search, if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS })?;
     // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
     // estimated too small, which looks like friction that rises there or like a misfit of the curves.
     let rises = |study: &ChannelFit| study.has(Stribeck.id());
     let bends = |study: &ChannelFit| {
         study.of_each().unexplained(&study.picks()).is_some_and(|(_, score)| score > study.rules.threshold)
     };
-    let (rose, bent) = (rises(&made), !track.planar && bends(&made));
-    if !track.planar && (rose || bent) {
-        known.is_sharp = true;
+    let is_planar = search.track.planar;
+    let (rose, bent) = (rises(&made), !is_planar && bends(&made));
+    if !is_planar && (rose || bent) {
+        search.is_sharp = true;
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
-        let fine = Grid::around(&found, track, 1.0);
-        let sharp = compare(track, (model, fixed), &known, [&coarse, &fine], None)?;
+        search.fine = Grid::around(&found, search.track, 1.0);
+        let sharp = search.compare(None)?;
         if rose && !rises(&sharp) || bent && !bends(&sharp) {
             made = sharp;
         }
     }
     leave_out_what_is_unsure(&mut made);
     Ok(made)
+}
+
+/// A comparison on a track, with what is common to all rounds.
+struct Search<'a> {
+    track: &'a mut Track,
+    /// Laws that are fitted, and those of which everything is known.
+    model: &'a Model,
+    fixed: &'a Model,
+    coarse: Grid,
+    /// Values around those found.
+    fine: Grid,
+    columns: Columns,
+    generic: Vec<Candidate>,
+    /// True if the width of the direction's blur is reduced.
+    is_sharp: bool,
+    /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
+    noise: Option<f64>,
 }
 
 /// Ratio of residuals (extended over base model) below which the weights of the rows are computed again.
@@ -98,16 +97,16 @@ fn calmer(track: &Track, made: &ChannelFit) -> Option<f64> {
     if track.noise_is_measured {
         return None;
     }
-    let left = |picks: &[usize]| -> Option<f64> {
+    let rms = |picks: &[usize]| -> Option<f64> {
         let solved = made.system.solve(picks)?;
-        let left = made.residual_of(picks, &solved);
+        let residual = made.residual_of(picks, &solved);
         let (sum, rows) = track.along().fold((0.0, 0.0), |(sum, rows), i| {
             let weight = made.layout.weight[i].powi(2);
-            (sum + weight * left[i].powi(2), rows + weight)
+            (sum + weight * residual[i].powi(2), rows + weight)
         });
         Some((sum / f64::max(rows, 1e-12)).sqrt())
     };
-    let (model, found) = (left(&[])?, left(&made.picks())?);
+    let (model, found) = (rms(&[])?, rms(&made.picks())?);
     (found < CALMER * model).then_some(found)
 }
 
@@ -143,54 +142,84 @@ fn correct_load(track: &mut Track, study: &ChannelFit) -> bool {
     changes
 }
 
-/// Inputs common to all rounds.
-struct Known {
-    columns: Columns,
-    generic: Vec<Candidate>,
-    /// True if the width of the direction's blur is reduced.
-    is_sharp: bool,
-    /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
-    noise: Option<f64>,
+impl Refinement for Search<'_> {
+    /// The whitening of the round before stays: the same things together leave the same residual.
+    fn compare(&mut self, before: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
+        let (track, model) = (&*self.track, self.model);
+        let Asked { mut base, known, y } = asked(track, model, self.fixed);
+        let Look { mut predicted, mut resisting, weight, slides: mut dry } =
+            first_look(track, model, (&base, &y), self.noise)?;
+        // Coefficients of the model's laws, estimated together with the causes of the last round.
+        let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.baseline.len()]));
+        if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
+            (predicted, resisting) =
+                (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
+            dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
+        }
+        let taken: Vec<&str> = model.iter().chain(self.fixed).map(|e| e.law().id()).collect();
+        let dictionary = |grid| {
+            let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
+            Dictionary {
+                track,
+                predicted,
+                resisting,
+                dry,
+                fixed: &known,
+                without: &taken,
+                grid,
+                columns: &self.columns,
+            }
+        };
+        let mut candidates = dictionary(&self.coarse).candidates();
+        candidates.extend(dictionary(&self.fine).searched());
+        let losses = candidates.iter().filter(|c| [hysteresis::ID, backlash::ID].contains(&c.id));
+        let losses: Vec<&[f64]> = losses.map(|c| c.regressors[0].as_slice()).collect();
+        base.extend(stick_phases::creep(track, &y, &losses));
+        base.extend(self.is_sharp.then(|| blurred(track, &dry)));
+        candidates.extend(self.generic.iter().cloned());
+        let rules = Rules::of_coordinate(track.period_s)
+            .with_friction(model.iter().any(|e| e.law().is_dry()))
+            .with_noise(track.noise_is_measured);
+        let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
+        let layout = layout(track, weight);
+        let mut study = Channel { target: y, baseline: base, resisting, candidates, layout, rules }.select(before)?;
+        let solved = study.solved.as_ref();
+        study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
+        Ok(study)
+    }
+
+    /// One cause alone is as near after the first round as it needs be; beside others, what it misses may pass for one
+    /// of them. The long means of a free motion show so much more of a place that one alone is not near enough either.
+    fn close_in(&mut self, made: &ChannelFit, round: usize) -> bool {
+        let is_free = self.track.freely.is_some();
+        let searched = |c: &SelectedTerm| !made.candidates[c.candidate].searched.is_empty();
+        let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
+        if made.chosen.is_empty() || enough {
+            return false;
+        }
+        let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
+        self.fine = Grid::around(&to_refine(made), self.track, step);
+        self.noise = match (self.noise, calmer(self.track, made)) {
+            (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
+            (before, now) => now.or(before),
+        };
+        // Load on the friction: the sensor's reading, corrected for its faults found so far.
+        if correct_load(self.track, made) {
+            self.columns.forget_loads();
+            self.generic = generic(self.track);
+        }
+        true
+    }
 }
 
-/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening
-/// stays (the same things together left the same).
-fn compare(
-    track: &Track,
-    (model, fixed): (&Model, &Model),
-    made: &Known,
-    [coarse, fine]: [&Grid; 2],
-    before: Option<ChannelFit>,
-) -> Result<ChannelFit, EstimateError> {
-    let Asked { mut base, known, y } = asked(track, model, fixed);
-    let Look { mut predicted, mut resisting, weight, slides: mut dry } =
-        first_look(track, model, (&base, &y), made.noise)?;
-    // Coefficients of the model's laws, estimated together with the causes of the last round.
-    let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.baseline.len()]));
-    if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
-        (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
-        dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
-    }
-    let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
-    let dictionary = |grid| {
-        let without = &taken;
-        let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
-        let columns = &made.columns;
-        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }
-    };
-    let mut candidates = dictionary(coarse).candidates();
-    candidates.extend(dictionary(fine).searched());
-    let losses = candidates.iter().filter(|c| [hysteresis::ID, backlash::ID].contains(&c.id));
-    let losses: Vec<&[f64]> = losses.map(|c| c.regressors[0].as_slice()).collect();
-    base.extend(stick_phases::creep(track, &y, &losses));
-    base.extend(made.is_sharp.then(|| blurred(track, &dry)));
-    candidates.extend(made.generic.iter().cloned());
+/// The rows of a track, with these weights.
+fn layout(track: &Track, weight: Vec<f64>) -> Layout {
     let held = |row: &Row| match row.place {
         Place::Along => Held::Fully,
         Place::Stuck { .. } => Held::ByFolds,
         Place::FreeX | Place::FreeY => Held::Never,
     };
-    let layout = Layout {
+    Layout {
         segment: track.rows.iter().map(|r| r.segment).collect(),
         held: track.rows.iter().map(held).collect(),
         // One recording after the other.
@@ -200,15 +229,7 @@ fn compare(
         noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
         may_stand: true,
         blocks: Blocks::OfTime,
-    };
-    let rules = Rules::of_coordinate(track.period_s)
-        .with_friction(model.iter().any(|e| e.law().is_dry()))
-        .with_noise(track.noise_is_measured);
-    let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
-    let mut study = Channel { target: y, baseline: base, resisting, candidates, layout, rules }.select(before)?;
-    let solved = study.solved.as_ref();
-    study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
-    Ok(study)
+    }
 }
 
 /// Residual RMS of the model with Coulomb friction, and true if its friction opposes motion.
@@ -274,8 +295,8 @@ fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
     let base = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> =
         fixed.iter().map(|effect| column(track, effect)).chain(known_weight::column(track)).collect();
-    let left = |(i, row): (usize, &Row)| row.target - known.iter().map(|k| k[i]).sum::<f64>();
-    let y = track.rows.iter().enumerate().map(left).collect();
+    let unknown = |(i, row): (usize, &Row)| row.target - known.iter().map(|k| k[i]).sum::<f64>();
+    let y = track.rows.iter().enumerate().map(unknown).collect();
     Asked { base, known, y }
 }
 
@@ -284,7 +305,6 @@ struct Look {
     /// Force predicted by the model, and the part of it that opposes motion.
     predicted: Vec<f64>,
     resisting: Vec<f64>,
-    /// Weight of the row.
     weight: Vec<f64>,
     /// The dry friction if it slid.
     slides: Vec<f64>,

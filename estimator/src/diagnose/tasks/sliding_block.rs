@@ -9,7 +9,8 @@ use super::baseline_models::named;
 use super::coordinate_answer::explain;
 use super::mechanism::rows;
 use super::one_coordinate;
-use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::named::Named;
 use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
@@ -17,6 +18,7 @@ use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, HAND_REST_M_S, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::strokes::FREE_S;
 use crate::diagnose::findings::Findings;
@@ -74,24 +76,24 @@ pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Re
     let study = one_coordinate::study(&mut track, &model, &given_by_pads())?;
     options.progress.tell(0.8)?;
     let scale = scale(&study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
-    let reads = |named: &mut Named| {
-        // Motions of the library are for an object that a program drives along its coordinate.
-        if let Some(next) = &mut named.next {
-            next.experiment = None;
-        }
-        constants(named, &read, weight_n);
-        let_go(named, &track);
-        if let Some((ratio, error)) = scale {
-            scales(named, ratio, error);
-        }
-        if weight_n.is_none() {
-            let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
-            let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
-            named.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
-        }
-    };
     let causes = faults.iter().cloned().chain(of_samples).collect();
-    Ok(explain(&track, &model, &study, &[], Evidence { causes, reads: &reads, ..Evidence::default() }))
+    let mut draft = explain(&track, &model, &study, Vec::new(), Evidence { causes, ..Evidence::default() });
+    let named = &mut draft.named;
+    // Motions of the library are for an object that a program drives along its coordinate.
+    if let Some(next) = &mut named.next {
+        next.experiment = None;
+    }
+    constants(named, &read, weight_n);
+    let_go(named, &track);
+    if let Some((ratio, error)) = scale {
+        scales(named, ratio, error);
+    }
+    if weight_n.is_none() {
+        let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
+        let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
+        named.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
+    }
+    Ok(draft.finish(None))
 }
 
 /// Validates the found causes on another recording.
@@ -241,10 +243,7 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
         .chunks_exact(part)
         .map(|c| c.iter().map(|i| signals.net_force_n[*i].x).sum::<f64>() / part as f64)
         .collect();
-    let n = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / n;
-    let spread = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
-    (n >= 3.0).then(|| (mean, (spread / n).sqrt()))
+    (means.len() >= 3).then(|| mean_and_error(&means))
 }
 
 /// Causes with a constant force at every position: during motion they are equivalent.
@@ -348,8 +347,7 @@ fn let_go(found: &mut Named, track: &Track) {
 fn scale(study: &ChannelFit, model: &Model, mass_kg: Option<f64>) -> Option<(f64, f64)> {
     let (known, solved) = (mass_kg?, study.solved.as_ref()?);
     let k = model.iter().position(|e| e.law().id() == Inertia.id())?;
-    let variance = solved.variance(study.system.rows);
-    let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
+    let (ratio, error) = (solved.values[k] / known, solved.std_error(k, study.system.rows) / known);
     let differs = (ratio - 1.0).abs() >= MASS_SHARE.max(CERTAIN * error);
     differs.then_some((ratio, error))
 }

@@ -2,8 +2,7 @@
 //! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::{Part, Told};
+use crate::diagnose::answer::part::{Found, Part, Told};
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::findings::Findings;

@@ -81,11 +81,8 @@ const SAME: f64 = 0.35;
 /// One cause of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Channel of the cause.
     pub channel: &'static str,
-    /// The cause.
     pub id: &'static str,
-    /// Plant or instrument.
     pub kind: Kind,
     linear: Vec<&'static str>,
     searched: Vec<Searched>,

@@ -15,7 +15,7 @@ use crate::diagnose::selection::comparison::View;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::held_out_gain::{gain, holds_out};
 use crate::diagnose::selection::layout::Layout;
-use crate::diagnose::selection::normal_equations::Use;
+use crate::diagnose::selection::layout::Use;
 use crate::diagnose::selection::rules::Rules;
 use foundation::tasks::SystemState;
 use haptics::law::Kind;

@@ -174,18 +174,13 @@ pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     /// Derived: far above rounding (1e-16 m) and far below the distance of an anchor, whose squared share is the error.
     const STEP_M: f64 = 1e-4;
-    let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == added_constraint::ID)?;
-    let cable = &study.candidates[pick];
+    let picks = study.picks();
+    let place = picks.iter().position(|p| study.candidates[*p].id == added_constraint::ID)?;
+    let cable = &study.candidates[picks[place]];
     let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
     let at = [value(0), value(1), value(2)];
     let tied = rows.touched(&cable.regressors[0]);
-    let stiffness = study.chosen.iter().scan(study.baseline.len(), |first, c| {
-        let own = (*first, c.candidate);
-        *first += study.candidates[c.candidate].regressors.len();
-        Some(own)
-    });
-    let place = stiffness.into_iter().find(|(_, c)| *c == pick)?.0;
-    let k = study.solved.as_ref()?.values[place];
+    let k = study.solved.as_ref()?.values[study.system.own(&picks, place).start];
     let mut columns: Vec<Vec<f64>> = cable.regressors.iter().map(|column| column.to_vec()).collect();
     columns.extend((0..3).map(|p| {
         let moved = |step: f64| {
@@ -197,7 +192,7 @@ pub fn errors(rows: &Rows<'_>, study: &ChannelFit) -> Option<[f64; 4]> {
         after.iter().zip(&before).map(|(a, b)| k * (a - b) / (2.0 * STEP_M)).collect()
     }));
     columns.extend(study.baseline.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
-    let others = study.picks().into_iter().filter(|p| *p != pick);
+    let others = study.picks().into_iter().filter(|p| *p != picks[place]);
     columns.extend(others.flat_map(|p| study.candidates[p].regressors.iter().map(|column| column.to_vec())));
     let squares: Vec<f64> = study.layout.weight.iter().map(|w| w * w).collect();
     let fit = least_squares(&columns, &study.target, Some(&squares)).ok()?;

@@ -92,11 +92,10 @@ pub fn propose(open: &[Alternative], carry: &Carry<'_>, seen: &[Seen<'_>]) -> Op
     let first = open.first()?;
     let study = &carry.compared.study;
     let solved = study.solved.as_ref()?;
-    let chosen = study.chosen.iter().position(|c| study.candidates[c.candidate].id == first.instead_of)?;
-    let before: usize = study.chosen[..chosen].iter().map(|c| study.candidates[c.candidate].regressors.len()).sum();
-    let own = &study.candidates[study.chosen[chosen].candidate];
-    let at = study.baseline.len() + before;
-    let size = solved.values[at..at + own.regressors.len()].iter().map(|v| v * v).sum::<f64>().sqrt();
+    let picks = study.picks();
+    let chosen = picks.iter().position(|p| study.candidates[*p].id == first.instead_of)?;
+    let own = &study.candidates[picks[chosen]];
+    let size = solved.values[study.system.own(&picks, chosen)].iter().map(|v| v * v).sum::<f64>().sqrt();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max).max(1e-3);
     let weight_n = study.target.iter().copied().fold(0.0, f64::max);
     // Noise that is correlated between rows hides slow effects more.

@@ -1,6 +1,6 @@
 //! Slips of the fingers on a standing block as candidates: over all rests, and finer around the best.
 
-use super::standing_height::{Rows, Stand};
+use super::stands::{Rows, Stand};
 use crate::diagnose::data::limits::{HALF, PARTS};
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -51,8 +51,7 @@ pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &ChannelFi
     let is_slip = |c: &&&Candidate| c.id == fingertip_slip::ID;
     let variance_m2 = study.solved.as_ref().map_or(0.0, |s| s.variance(study.system.rows));
     let way = |own: &&Candidate| {
-        let value = |name: &str| own.searched.iter().find(|s| s.name == name).map(|s| s.value);
-        let (start_s, length_s) = (value("t0")?, value("duration")?);
+        let (start_s, length_s) = (own.value("t0")?, own.value("duration")?);
         let rest = rests.iter().position(|r| own.regressors[0][r.rows.clone()].iter().any(|share| *share > 0.0))?;
         let others = chosen.iter().filter(is_slip).filter(|c| c.searched[0].value != start_s);
         let model =

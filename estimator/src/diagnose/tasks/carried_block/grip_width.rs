@@ -1,8 +1,7 @@
 //! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
 
 use super::signals::Seen;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{ASSUMED_ERROR, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::free_run::channel::Pads;
@@ -35,7 +34,6 @@ pub struct Grasp {
     means: Vec<(f64, f64)>,
     /// Compliance of a pad at zero force in the model, m/N.
     modelled: f64,
-    /// Free-run model of the pads.
     pub pads: Pads,
 }
 
@@ -205,7 +203,7 @@ impl Told for Grasp {
     }
 
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             pad_compliance::ID => {
                 let short: Vec<String> = self

@@ -12,16 +12,17 @@ pub(crate) mod grip_width;
 pub(crate) mod net_force;
 pub(crate) mod net_force_candidates;
 #[cfg(test)]
-pub(crate) mod recorded;
+#[path = "../../../../tests/diagnosis/recorded.rs"]
+mod recorded;
 pub(crate) mod regrasp;
 pub(crate) mod rows;
 pub(crate) mod signals;
 pub(crate) mod standing_height;
-#[cfg(test)]
-pub(crate) mod tests;
+pub(crate) mod stands;
 
-use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::build::{Evidence, draft};
 use crate::diagnose::answer::part::Part;
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Alternative, Cause, Final, NextExperiment, NotExcited};
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::free_run::FreeRun;
@@ -40,7 +41,12 @@ use net_force::Carry;
 use signals::Seen;
 
 /// Diagnoses recordings of the same blocks.
-pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
+pub fn blocks(
+    recordings: &[Recording],
+    options: &Options,
+    faults: &[Cause],
+    put_back: Option<&PutBack<'_>>,
+) -> Result<Findings, EstimateError> {
     let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
     let world = options.world.as_ref();
     let (carry, grasp, ground) = look(&seen, world)?;
@@ -64,16 +70,15 @@ pub fn blocks(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
     parts.extend(grasp.as_ref().map(|grasp| Part::of(&grasp.compared, grasp).running(FreeRun::Channel(&grasp.pads))));
     parts.extend(ground.as_ref().map(|ground| Part::of(&ground.compared, ground)));
     let asked = |open: &[Alternative]| experiment::propose(open, &carry, &seen).or_else(|| next(open));
-    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
     // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
         let figures = force.figures();
         // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
         // too.
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
-        found.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
+        beside.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
-    Ok(found)
+    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
 }
 
 /// Adds a slip between pick-up and placement. `faulty`: sensor faults were found that have the same effect.

@@ -9,8 +9,7 @@ use super::free_body::Airborne;
 use super::net_force_candidates::{generic, instrument, plant};
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, MOST_ROUNDS};
 use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
@@ -44,7 +43,6 @@ pub struct Carry<'a> {
     cable_errors: Option<[f64; 4]>,
     /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
     pub weighed: Vec<usize>,
-    /// Free-run simulation of carried blocks.
     pub airborne: Airborne<'a>,
 }
 
@@ -185,10 +183,10 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
 /// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
 fn floor(rows: &Rows<'_>, study: &ChannelFit) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
-    let left = study.residual_of(&study.picks(), solved);
+    let residual = study.residual_of(&study.picks(), solved);
     let mean = |free: bool| {
-        let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
-        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));
+        let of = (0..residual.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
+        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + residual[i] * residual[i], n + 1));
         (n > 0).then(|| (sum / f64::from(n)).sqrt())
     };
     mean(true).map_or_else(|| mean(false).unwrap_or(0.0), |one| std::f64::consts::SQRT_2 * one)

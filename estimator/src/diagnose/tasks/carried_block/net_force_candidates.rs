@@ -2,6 +2,7 @@
 
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
+use crate::diagnose::data::row_means::{mean_and_error, spread};
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
@@ -120,9 +121,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
 fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
     let carried = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }));
     let places: Vec<f64> = carried.map(|r| rows.seen[r.recording].place[axis][r.i]).collect();
-    let n = places.len().max(1) as f64;
-    let mean = places.iter().sum::<f64>() / n;
-    (mean, (places.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt())
+    (mean_and_error(&places).0, spread(&places))
 }
 
 /// Generic terms.

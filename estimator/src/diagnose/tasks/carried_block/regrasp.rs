@@ -2,7 +2,8 @@
 //! carry.
 
 use super::signals::Seen;
-use super::standing_height::{Ground, Stand};
+use super::standing_height::Ground;
+use super::stands::Stand;
 use crate::diagnose::contract::{Cause, Gain, parameter};
 use crate::diagnose::data::limits::{ASSUMED_ERROR, CERTAIN};
 use crate::diagnose::free_run::windows::AT_ONCE;

@@ -213,7 +213,6 @@ impl<'a> Seen<'a> {
         self.every(self.blocks.gripped(number).into_iter())
     }
 
-    /// The state of a row.
     pub fn state(&self, i: usize) -> SystemState {
         let states = &self.blocks.segmentation.states;
         states.get(states.partition_point(|s| s.end <= i)).map_or(SystemState::NoState, |s| s.state)

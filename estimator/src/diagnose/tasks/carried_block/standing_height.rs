@@ -2,10 +2,11 @@
 
 use super::grasp_slip::{slips, ways};
 use super::signals::Seen;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use super::stands::{Rows, Stand};
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::LEAST_PIECES;
+use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
@@ -30,23 +31,6 @@ use haptics::world::World;
 const HELD_OUT_RESTS: usize = 2;
 const RESTS_NEVER_HELD_OUT: usize = 4;
 
-/// One end of a carry.
-pub struct Stand {
-    pub recording: usize,
-    pub number: usize,
-    /// True for the end of the carry.
-    pub placed: bool,
-    /// Numbers of the blocks below.
-    pub below: Vec<usize>,
-    pub first: usize,
-    pub end: usize,
-    /// Start of the standing phase, s, and start of the plain means of its height, s.
-    pub from_s: f64,
-    pub plain_from_s: f64,
-    /// Samples of it.
-    pub samples: Vec<usize>,
-}
-
 /// The comparison with the data for its texts.
 pub struct Ground {
     pub compared: Compared,
@@ -54,20 +38,6 @@ pub struct Ground {
     rows: Rows,
     /// Each slip's time, s, its distance, m, and the standard error of the distance with the time free, m.
     ways: Vec<[f64; 3]>,
-}
-
-#[derive(Default)]
-pub struct Rows {
-    pub stand: Vec<usize>,
-    pub time_s: Vec<f64>,
-    pub height_m: Vec<f64>,
-    lift_n: Vec<f64>,
-    /// Its rate, N/s.
-    lift_rate: Vec<f64>,
-    /// Largest shear over normal force of a finger.
-    ratio: Vec<f64>,
-    /// Half of the averaging window of the heights, s.
-    pub half_s: f64,
 }
 
 /// Compares the causes that move the grip while a held block stands. `cross`: share of each finger's horizontal force
@@ -210,10 +180,8 @@ impl Ground {
         for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
             give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
         }
-        let n = (stand.end - stand.first) as f64;
-        let mean = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]).sum::<f64>() / n;
-        let scatter = (stand.first..stand.end).map(|i| (self.rows.height_m[i] - give[i] - mean).powi(2)).sum::<f64>();
-        (mean, (scatter / (n - 1.0).max(1.0) / n).sqrt())
+        let own = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]);
+        mean_and_error(&own.collect::<Vec<f64>>())
     }
 }
 
@@ -226,7 +194,7 @@ impl Told for Ground {
     fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             fingertip_slip::ID => {
-                let at = candidate.searched.iter().find(|s| s.name == "t0").map(|s| s.value);
+                let at = candidate.value("t0");
                 let open = self.ways.iter().find(|[t0, ..]| Some(*t0) == at);
                 for (way, [_, way_m, error_m]) in found.iter_mut().zip(open) {
                     (way.value, way.std_error) = (*way_m, way.std_error.hypot(*error_m));
@@ -242,11 +210,11 @@ impl Told for Ground {
     }
 
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         if found.candidate.id == pad_compliance::ID {
             return "the grip sinks and rises with the load while a held block stands".to_owned();
         }
-        let at = found.parameters.iter().find(|p| p.name == "t0").map_or(0.0, |p| p.value);
+        let at = found.value_of("t0");
         let Some(stand) = self.stand_at(at) else {
             return format!("the fingers go on by {:.2} mm although the block stands", 1e3 * value);
         };

@@ -1,7 +1,7 @@
 //! Start and duration of a grasp's slip or creep along the handle: the candidates, and a direct test for one large
 //! slip.
 
-use super::path::{Path, PathPoint};
+use super::path_points::{Path, PathPoint};
 use crate::diagnose::data::limits::SURE;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;

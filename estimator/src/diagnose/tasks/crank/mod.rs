@@ -5,17 +5,20 @@ pub(crate) mod bearing_load;
 pub(crate) mod contact_phases;
 pub(crate) mod grasp_slip;
 pub(crate) mod path;
+pub(crate) mod path_answer;
+pub(crate) mod path_points;
 pub(crate) mod rows;
 
 use super::baseline_models::plain_crank;
-use super::coordinate_answer::{PathFit, explain, without_known};
+use super::coordinate_answer::{explain, without_known};
 use super::one_coordinate;
-use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::limits::AMBIGUOUS;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
-use crate::diagnose::findings::Findings;
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
@@ -24,10 +27,15 @@ use crate::diagnose::validation::on_other_recordings;
 use foundation::estimate::EstimateError;
 use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
+use path_answer::{Link, PathFit};
 
 /// Diagnoses recordings of one crank.
-pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    let Geometry { tracks, swapped, paths, short, faults, mut link, scale } = geometry(recordings, options)?;
+pub fn crank(
+    recordings: &[Recording],
+    options: &Options,
+    put_back: Option<&PutBack<'_>>,
+) -> Result<Findings, EstimateError> {
+    let Geometry { tracks, swapped, mut paths, short, faults, mut link, scale } = geometry(recordings, options)?;
     let other = swapped.iter().any(Option::is_some).then(|| {
         let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
         regression_data::join(either.collect())
@@ -71,12 +79,13 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Findings, Es
         remarks: on_bearing.into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
         atlas: options.atlas,
-        reads: &|named| name_joint(named, link),
+        delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
         ..Evidence::default()
     };
-    let mut found = explain(&track, &model, &study, &paths, evidence);
-    found.delay.guess_s = time_delay::guess_s(&track, &model);
-    Ok(found)
+    for path in &mut paths {
+        path.link = link;
+    }
+    Ok(explain(&track, &model, &study, paths.iter().map(PathFit::part).collect(), evidence).finish(put_back))
 }
 
 /// Geometry of all recordings, with the rows on their circles.
@@ -119,7 +128,7 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
         let path = signals.path(recording);
         found.short.extend(path::short_arc(&path, &circle.arm, &circle.study));
         let terms = path::unexplained(&path, &circle.arm, &circle.study);
-        found.paths.push(PathFit { study: circle.study, terms });
+        found.paths.push(PathFit { study: circle.study, terms, link: None });
     }
     Ok(found)
 }
@@ -147,13 +156,6 @@ struct Turned {
     other: Option<regression_data::Track>,
     /// Likelier link of the two. None if the forces do not tell.
     link: Option<Link>,
-}
-
-/// A link of a finger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Link {
-    First,
-    Second,
 }
 
 /// Corrects an angle error of the finger. An offset of the first link distorts the path as the opposite offset of the
@@ -185,23 +187,6 @@ fn turned(
 /// True if the forces seem rotated against the motion.
 fn is_turned(study: &comparison::ChannelFit) -> bool {
     study.has(force_cross_axis::ID)
-}
-
-/// Names the joint with the angle error, if the data tell.
-fn name_joint(found: &mut Named, link: Option<Link>) {
-    // With two fingers, the cause names the finger. The path shows no more.
-    let of_the_finger = |c: &&mut Cause| c.id == joint_offset::ID && c.parameters.iter().any(|p| p.name == "delta");
-    let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
-    cause.evidence += match link {
-        Some(Link::First) => "; it is the angle of the first link",
-        Some(Link::Second) => "; it is the angle of the second link",
-        None => {
-            "; the first link's angle being off by the opposite makes the same path, and the forces do not tell the two apart"
-        }
-    };
-    if link == Some(Link::First) {
-        cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
-    }
 }
 
 /// Takes a weight that the sidecar states out of the fitted laws.

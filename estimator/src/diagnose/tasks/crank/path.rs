@@ -3,6 +3,7 @@
 //! Unexplained residual of a crank's path, and arcs that are too short to determine their circle.
 
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
+use super::path_points::{Path, PathPoint};
 use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -10,6 +11,7 @@ use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pa
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
+use crate::diagnose::selection::refinement::{Refinement, refined};
 use crate::diagnose::selection::rules::{MUCH, Rules};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
@@ -23,36 +25,6 @@ const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-
-/// One held sample.
-pub struct PathPoint {
-    /// Row of the signals.
-    pub index: usize,
-    pub stretch: usize,
-    pub time_s: f64,
-    pub position: Vec2,
-    pub force: Vec2,
-    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were
-    /// recorded.
-    pub joints: [Option<[Vec2; 2]>; 2],
-    /// Inward offset of a mean of points on an arc, times the radius, m².
-    pub inside_m2: f64,
-}
-
-/// Data from which the geometry is estimated.
-pub struct Path {
-    pub points: Vec<PathPoint>,
-    pub period_s: f64,
-    /// True if two pads hold the handle: their compliance belongs to the model.
-    pub two_fingered: bool,
-}
-
-impl Path {
-    pub fn span_s(&self) -> f64 {
-        let ends = self.points.first().zip(self.points.last());
-        ends.map_or(0.0, |(first, last)| last.time_s - first.time_s)
-    }
-}
 
 /// The circle that the handle follows.
 #[derive(Clone, Debug)]
@@ -90,8 +62,7 @@ impl Geometry {
     /// Relative excess of the path over a known radius, with its standard error.
     pub fn too_large(&self, known_m: f64) -> Option<[f64; 2]> {
         let solved = self.study.solved.as_ref()?;
-        let variance = solved.variance(self.study.system.rows);
-        Some([self.arm.radius_m / known_m - 1.0, (variance * solved.inverse[(0, 0)]).sqrt() / known_m])
+        Some([self.arm.radius_m / known_m - 1.0, solved.std_error(0, self.study.system.rows) / known_m])
     }
 }
 
@@ -103,37 +74,65 @@ struct Displaced {
     linear: Vec2,
 }
 
+/// The circle in the making.
+struct Circling<'a> {
+    path: &'a Path,
+    rules: Rules,
+    coarse: Vec<Course>,
+    /// Courses of a slip to try in this round: the coarse ones, and finer ones around those found.
+    courses: Vec<Course>,
+    step_s: f64,
+    center_m: Vec2,
+    radius_m: f64,
+    /// Last step of the centre, m.
+    moved_m: f64,
+    bent: Vec<Displaced>,
+    shift_m: Vec<Vec2>,
+}
+
+impl Refinement for Circling<'_> {
+    fn compare(&mut self, _: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
+        let made = compare(self.path, (self.center_m, &self.bent), &self.courses, self.rules)?;
+        let solved = made.solved.as_ref().ok_or_else(no_circle)?;
+        self.radius_m = solved.values[0];
+        let step = Vec2::new(solved.values[1], solved.values[2]);
+        self.moved_m = step.norm();
+        self.center_m += step;
+        self.bent = corrections(self.path, &made, &mut self.shift_m, self.center_m);
+        Ok(made)
+    }
+
+    fn close_in(&mut self, made: &ChannelFit, round: usize) -> bool {
+        // The grid around found slips becomes finer.
+        self.step_s *= 0.5;
+        let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
+        let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(self.step_s)).collect();
+        let is_settled = self.moved_m < 1e-8 && finer.is_empty() && round > 1;
+        self.courses = [self.coarse.as_slice(), &finer].concat();
+        !is_settled
+    }
+}
+
 /// Fits the circle and its distortions. `signals`: number of rows of the signals.
 pub fn geometry(path: &Path, signals: usize, rules: Rules) -> Result<Geometry, EstimateError> {
     let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
-    let mut center_m = circle(&positions)?;
-    let mut shift_m = vec![Vec2::zeros(); signals];
-    let mut bent = vec![Displaced::default(); path.points.len()];
-    let mut radius_m = 0.0;
-    let mut study = None;
+    let center_m = circle(&positions)?;
     let mut coarse = Course::coarse(path);
     coarse.extend(jump(path, center_m));
-    let mut courses = coarse.clone();
-    let mut step_s = path.span_s() * SLIP_STARTS.spacing();
-    for round in 0..MOST_ROUNDS {
-        let made = compare(path, (center_m, &bent), &courses, rules)?;
-        let solved = made.solved.as_ref().ok_or_else(no_circle)?;
-        radius_m = solved.values[0];
-        let step = Vec2::new(solved.values[1], solved.values[2]);
-        center_m += step;
-        bent = corrections(path, &made, &mut shift_m, center_m);
-        // The grid around found slips becomes finer.
-        step_s *= 0.5;
-        let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
-        let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
-        let settled = step.norm() < 1e-8 && finer.is_empty();
-        courses = [coarse.as_slice(), &finer].concat();
-        study = Some(made);
-        if settled && round > 1 {
-            break;
-        }
-    }
-    let study = study.ok_or_else(|| EstimateError::Other("no circle was fitted".to_owned()))?;
+    let mut circling = Circling {
+        path,
+        rules,
+        courses: coarse.clone(),
+        coarse,
+        step_s: path.span_s() * SLIP_STARTS.spacing(),
+        center_m,
+        radius_m: 0.0,
+        moved_m: f64::INFINITY,
+        bent: vec![Displaced::default(); path.points.len()],
+        shift_m: vec![Vec2::zeros(); signals],
+    };
+    let study = refined(&mut circling, MOST_ROUNDS - 1)?;
+    let Circling { center_m, radius_m, shift_m, .. } = circling;
     Ok(Geometry { arm: Arm { center_m, radius_m, shifts: shift_m, turn_rad: 0.0 }, study })
 }
 
@@ -281,8 +280,8 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 
 /// The comparison of the path with generic terms beside the causes found; `None` if the residual is near the noise.
 pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
-    let left = study.residual_of(&study.picks(), study.solved.as_ref()?);
-    let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    let residual = study.residual_of(&study.picks(), study.solved.as_ref()?);
+    let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64).sqrt();
     if rms < MUCH * white_noise(&study.target) {
         return None;
     }
@@ -303,8 +302,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let arc_rad = (high - low).min(std::f64::consts::TAU);
     let bulge_m = arm.radius_m * (1.0 - (0.5 * arc_rad).cos());
     let noise_m = white_noise(&study.target);
-    let variance = solved.variance(study.system.rows);
-    let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
+    let error_m = solved.std_error(0, study.system.rows);
     (error_m > UNSURE * arm.radius_m).then(|| {
         format!(
             "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \

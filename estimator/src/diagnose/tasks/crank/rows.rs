@@ -1,10 +1,10 @@
 //! Rows of a crank's recording: positions and forces of the fingers or tool that hold the handle.
 
 use super::contact_phases::held_and_free;
-use super::path::{Arm, Path, PathPoint, unwrapped};
-use crate::diagnose::data::interpolation;
-use crate::diagnose::data::interpolation::{FINE_HZ, acceleration, calmed, mean_step_s, offsets};
-use crate::diagnose::data::known_weight::Hung;
+use super::path::{Arm, unwrapped};
+use super::path_points::{Path, PathPoint};
+use crate::diagnose::data::hung_weight::Hung;
+use crate::diagnose::data::interpolation::{acceleration, add_point, calmed, mean_step_s, offsets, points_and_samples};
 use crate::diagnose::data::limits::{FAST_ROW_S, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
 use foundation::estimate::EstimateError;
@@ -277,7 +277,7 @@ impl Signals {
         let number = fine.last().map_or(0, |f: &Fine| f.segment + 1);
         let raw = &self.raw;
         // Recorded samples are thinned out, or interpolated, to about the same rate.
-        let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
+        let (fill, _) = points_and_samples(self.raw_period_s);
         let mut recorded = Vec::with_capacity(range.len() * self.every);
         let mut places = Vec::with_capacity(range.len() * self.every);
         let mut angle = 0.0_f64;
@@ -298,15 +298,10 @@ impl Signals {
                 // Recorded positions, because interpolated ones have less noise.
                 places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
                 recorded.push(raw.as_recorded[at.nearest].dot(&along));
-                if let Some(before) = fine.last().copied().filter(|f| f.segment == number) {
-                    fine.extend(
-                        (1..fill).map(|part| interpolation::between(&before, &point, part as f64 / fill as f64)),
-                    );
-                }
+                add_point(fine, point, fill);
                 if k == 0 {
-                    row.span.start = fine.len();
+                    row.span.start = fine.len() - 1;
                 }
-                fine.push(point);
             }
             row.span.len = fine.len() - row.span.start;
         }
@@ -373,21 +368,12 @@ fn mean_square(noises: &[[f64; 2]], k: usize) -> f64 {
 
 /// Segments of held rows that are long enough to be differentiated.
 fn stretches(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for i in 0..=flags.len() {
-        let on = i < flags.len() && flags[i];
-        match (on, start) {
-            (true, None) => start = Some(i),
-            (false, Some(first)) => {
-                found.push(first..i);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found.retain(|r| r.len() >= 8);
-    found
+    let mut end = 0;
+    let ranges = flags.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        end - run.len()..end
+    });
+    ranges.filter(|range| flags[range.start] && range.len() >= 8).collect()
 }
 
 type Raw = (Vec<Vec2>, Vec<Vec2>, Vec<Vec2>);

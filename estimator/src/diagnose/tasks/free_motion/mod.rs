@@ -14,7 +14,8 @@ mod unit_per_inertia;
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::explain;
 use super::one_coordinate;
-use crate::diagnose::answer::build::{Evidence, Named};
+use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::named::Named;
 use crate::diagnose::contract;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::coordinate::Along;
@@ -86,12 +87,11 @@ pub(crate) fn diagnose(
         causes: faults,
         warnings: sentence(&track, scale).into_iter().collect(),
         atlas: options.atlas,
-        reads: &|named| put_right(named, &track),
         ..Evidence::default()
     };
-    let mut found = explain(&track, &model, &study, &[], evidence);
-    found.along = Some(Along::of(track.coordinate, recordings, paths));
-    Ok(found)
+    let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
+    put_right(&mut draft.named, &track);
+    Ok(Findings { along: Some(Along::of(track.coordinate, recordings, paths)), ..draft.finish(None) })
 }
 
 /// The rows of all recordings, and the faults of their samples.

@@ -5,7 +5,7 @@
 //! [`Weighing::Bell`] or [`Weighing::Tent`]. Long blocks have little noise and no bias, because laws are evaluated
 //! between the rows and averaged with the same weights.
 
-use crate::diagnose::data::interpolation::{FINE_HZ, between};
+use crate::diagnose::data::interpolation::{add_point, points_and_samples};
 use crate::diagnose::data::limits::{FEWEST, LEAST_PIECES, LONGEST_BLOCK_S, SHORTEST_S, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Fine, Freely, Row, Span, Track, Weighing};
 use estimation::identify::mechanism;
@@ -125,7 +125,7 @@ impl Plan {
         let rate_noise = pieces.iter().all(|p| p.rate.is_some());
         let rate_noise = rate_noise.then(|| worst(&|p| p.rate.as_deref().map_or(0.0, white_noise_under_fast_motion)));
         let [speed, acceleration] = usual(pieces, period_s);
-        let step = skip(period_s);
+        let (_, step) = points_and_samples(period_s);
         let whole = |length_s: f64| (length_s / (period_s * step as f64)).round().max(1.0) as usize * step;
         let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_BLOCK_S);
         let (shortest, longest) = (whole(SHORTEST_S), whole(longest_s).max(whole(SHORTEST_S)));
@@ -194,11 +194,6 @@ fn usual(pieces: &[Piece], period_s: f64) -> [f64; 2] {
     sums.map(|sum| (sum / f64::max(count, 1.0)).sqrt())
 }
 
-/// Number of samples per finer point.
-fn skip(period_s: f64) -> usize {
-    (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
-}
-
 /// Rows in the making.
 struct Made {
     rows: Vec<Row>,
@@ -217,18 +212,14 @@ impl Made {
             Some(rate) => savitzky_golay(&piece.time_s, rate, plan.half(), ORDER).value,
             None => smooth.first,
         };
-        let fill = (FINE_HZ * plan.period_s).round().max(1.0) as usize;
-        let skip = skip(plan.period_s);
+        let (fill, skip) = points_and_samples(plan.period_s);
         let per = |samples: usize| samples * fill / skip;
         // The first sample has no neighbour that its block's end needs.
         let first_fine = self.fine.len();
         for i in (1..n).step_by(skip) {
             let (time_s, position, velocity) = (piece.time_s[i], smooth.value[i], rate[i]);
             let point = Fine { segment: stretch, time_s, position, velocity, ..Fine::default() };
-            if let Some(before) = self.fine.last().copied().filter(|f| f.segment == stretch) {
-                self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
-            }
-            self.fine.push(point);
+            add_point(&mut self.fine, point, fill);
         }
         // Of both ends of a row, in blocks.
         let reach = if plan.by_rate { 2 } else { 3 };

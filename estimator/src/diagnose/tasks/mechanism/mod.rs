@@ -7,18 +7,23 @@ pub(crate) mod sensor_zero;
 
 use super::baseline_models::{known_laws, named};
 use super::coordinate_answer::{explain, without_known};
+use super::delay_correction::corrected;
 use super::{free_motion, one_coordinate, thrown_body, transmission, untimed_path};
 use crate::diagnose::answer::build::Evidence;
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Cause, Validation};
-use crate::diagnose::data::regression_data::{Model, Track};
-use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
-use crate::diagnose::findings::Findings;
+use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::data::{coordinate, covariates, hung_weight, regression_data};
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults, time_delay};
+use crate::diagnose::selection::comparison::ChannelFit;
+use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::validation::on_other_recordings;
 use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
+use haptics::world::MechanismPath;
 
 /// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
 pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
@@ -37,83 +42,115 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
     if transmission::is_driven(recordings) {
         return transmission::driven(recordings, options);
     }
-    super::delay_correction::corrected(recordings, &|some| mechanism(some, options))
-}
-
-fn mechanism(recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
-    let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
-    // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
-    // changes too fast for a linear regressor, which overestimates it.
-    for _ in 0..OFFSET_ROUNDS {
-        let Some(more_s) = rest_s else { break };
-        let skew_s = found.skew_s + OF_SKEW * more_s;
-        let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
-        let Ok((mut again, rest)) = mechanism_as_it_is(&together, options) else { break };
-        if again.causes.iter().any(|c| c.id == hypotheses::time_delay::ID)
-            || again.end.heldout_rms_n > found.end.heldout_rms_n
-        {
-            break;
-        }
-        again.skew_s = skew_s;
-        again.warnings.retain(|w| !w.starts_with(time_delay::APART));
-        again.warnings.push(time_delay::apart(skew_s));
-        (found, rest_s) = (again, rest);
+    let paths = estimation::identify::mechanism::paths(recordings);
+    if free_motion::is_free(recordings, &paths)? {
+        return free_motion::diagnose(recordings, &paths, options);
     }
-    Ok(found)
+    corrected(recordings, |some, back| Ok(studied(some, options)?.answer(options, back)))
 }
 
 /// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
 const OFFSET_ROUNDS: usize = 2;
 const OF_SKEW: f64 = 0.7;
 
-/// The answer, and the sub-sample offset between force and motion, s.
-fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Findings, Option<f64>), EstimateError> {
-    let mut faults = Vec::new();
-    let mut tracks = Vec::new();
-    let paths = estimation::identify::mechanism::paths(recordings);
-    if free_motion::is_free(recordings, &paths)? {
-        return Ok((free_motion::diagnose(recordings, &paths, options)?, None));
-    }
-    for (recording, path) in recordings.iter().zip(&paths) {
-        let found = sample_faults::faults(recording);
-        let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
-        let recording = recording.as_ref();
-        let mut rows = rows::track(recording, &found.bad, path.as_ref())?;
-        if let Some(first) = tracks.first() {
-            coordinate::one_kind(first, &rows, recording)?;
+/// Recordings of one mechanism, compared with all causes.
+struct Studied {
+    track: Track,
+    model: Model,
+    study: ChannelFit,
+    /// Faults of the samples and of the signs.
+    faults: Vec<Cause>,
+    along: coordinate::Along,
+    /// True if a weight is known.
+    is_weighed: bool,
+    /// Part of a sample by which the motion was shifted to the forces, s.
+    skew_s: f64,
+}
+
+/// The comparison. A delay of a fraction of a sample between channels is removed from the motion itself. The force of a
+/// stiff loop changes too fast for a linear regressor, which overestimates it.
+fn studied(recordings: &[Recording], options: &Options) -> Result<Studied, EstimateError> {
+    let mut found = Studied::of(recordings, options, 0.0)?;
+    for _ in 0..OFFSET_ROUNDS {
+        let Some(more_s) = time_delay::skewed_s(&found.study, &found.track) else { break };
+        let skew_s = found.skew_s + OF_SKEW * more_s;
+        let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
+        let Ok(again) = Studied::of(&together, options, skew_s) else { break };
+        if again.names_a_delay() || again.heldout_rms() > found.heldout_rms() {
+            break;
         }
-        rows.hung = vec![known_weight::Hung::on_mechanism(recording, rows.coordinate)];
-        rows.extra = vec![covariates::of(recording)];
-        faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
-        tracks.push(rows);
-        faults.extend(found.causes);
+        found = again;
     }
-    let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
-    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
-        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
-        (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
-    };
-    options.progress.tell(0.4)?;
-    let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
-    let mut study = one_coordinate::study(&mut track, &model, &fixed)?;
-    track.zero = sensor_zero::told(&study, recordings);
-    if track.zero != regression_data::Zero::Open {
-        study = one_coordinate::study(&mut track, &model, &fixed)?;
+    Ok(found)
+}
+
+impl Studied {
+    /// `skew_s`: shift of these recordings' motion.
+    fn of(recordings: &[Recording], options: &Options, skew_s: f64) -> Result<Self, EstimateError> {
+        let paths = estimation::identify::mechanism::paths(recordings);
+        let (mut faults, mut tracks) = (Vec::new(), Vec::new());
+        for (recording, path) in recordings.iter().zip(&paths) {
+            let found = sample_faults::faults(recording);
+            let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
+            let recording = recording.as_ref();
+            let mut rows = rows::track(recording, &found.bad, path.as_ref())?;
+            if let Some(first) = tracks.first() {
+                coordinate::one_kind(first, &rows, recording)?;
+            }
+            rows.hung = vec![hung_weight::Hung::on_mechanism(recording, rows.coordinate)];
+            rows.extra = vec![covariates::of(recording)];
+            faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
+            tracks.push(rows);
+            faults.extend(found.causes);
+        }
+        let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
+        let mut model: Model = match (&options.world, options.baseline.as_deref()) {
+            (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+            (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
+        };
+        options.progress.tell(0.4)?;
+        let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
+        let mut study = one_coordinate::study(&mut track, &model, &fixed)?;
+        track.zero = sensor_zero::told(&study, recordings);
+        if track.zero != regression_data::Zero::Open {
+            study = one_coordinate::study(&mut track, &model, &fixed)?;
+        }
+        options.progress.tell(0.8)?;
+        let is_weighed = !fixed.is_empty() || track.hung.iter().any(Option::is_some);
+        let along = coordinate::Along::of(track.coordinate, recordings, &paths);
+        Ok(Self { track, model, study, faults, along, is_weighed, skew_s })
     }
-    options.progress.tell(0.8)?;
-    let is_hung = track.hung.iter().any(Option::is_some);
-    let evidence = Evidence {
-        causes: faults,
-        without_known: without_known(!fixed.is_empty() || is_hung, true),
-        atlas: options.atlas,
-        reads: &|named| sensor_zero::ask(named, &track),
-        ..Evidence::default()
-    };
-    let mut found = explain(&track, &model, &study, &[], evidence);
-    found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
-    found.delay.guess_s = time_delay::guess_s(&track, &model);
-    let skew_s = time_delay::skewed_s(&study, &track);
-    Ok((found, skew_s))
+
+    /// True if a delay is named as a cause.
+    fn names_a_delay(&self) -> bool {
+        let is_delay = |(k, pick): (usize, usize)| {
+            self.study.candidates[pick].id == hypotheses::time_delay::ID
+                && time_delay::skew(&self.study, k, &self.track).is_none()
+        };
+        self.study.picks().into_iter().enumerate().any(is_delay)
+    }
+
+    /// RMS of the held-out residual with the causes found.
+    fn heldout_rms(&self) -> f64 {
+        let along: Vec<bool> = self.track.rows.iter().map(|r| r.place == Place::Along).collect();
+        rms(&self.study, &self.study.picks(), &along).0
+    }
+
+    fn answer(self, options: &Options, put_back: Option<&PutBack<'_>>) -> Findings {
+        let Self { track, model, study, faults, along, is_weighed, skew_s } = self;
+        let evidence = Evidence {
+            causes: faults,
+            remarks: (skew_s != 0.0).then(|| time_delay::apart(skew_s)).into_iter().collect(),
+            without_known: without_known(is_weighed, true),
+            atlas: options.atlas,
+            delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
+            skew_s,
+            ..Evidence::default()
+        };
+        let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
+        sensor_zero::ask(&mut draft.named, &track);
+        Findings { along: Some(along), ..draft.finish(put_back) }
+    }
 }
 
 /// Validates the found causes on another recording of the same mechanism.
@@ -128,11 +165,7 @@ pub fn validate(recording: &Recording, diagnosis: &Findings) -> Result<Validatio
 }
 
 /// Rows of a recording for the validation of a mechanism, driven or free.
-fn track_of(
-    recording: &Recording,
-    path: Option<&haptics::world::MechanismPath>,
-    diagnosis: &Findings,
-) -> Result<Track, EstimateError> {
+fn track_of(recording: &Recording, path: Option<&MechanismPath>, diagnosis: &Findings) -> Result<Track, EstimateError> {
     let bad = sample_faults::faults(recording).bad;
     if estimation::identify::mechanism::raw(recording, path)?.force.is_some() {
         if diagnosis.per_inertia {

@@ -4,7 +4,7 @@
 //! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with triangular weights over
 //! two blocks. The mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
-use crate::diagnose::data::interpolation::{FINE_HZ, between, calmed_line};
+use crate::diagnose::data::interpolation::{add_point, calmed_line, points_and_samples};
 use crate::diagnose::data::limits::{LEAST_PIECES, LONGEST_BLOCK_S, SHORTEST_S};
 use crate::diagnose::data::regression_data::{Fine, Row, Span, Track, Weighing};
 use estimation::identify::mechanism;
@@ -39,7 +39,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         made
     };
     // A whole number of finer points per block, which are then symmetric about the middle of every mean.
-    let skip = skip(period_s);
+    let (_, skip) = points_and_samples(period_s);
     let whole = |samples: f64| (samples / skip as f64).round().max(1.0) as usize * skip;
     let shortest = whole(SHORTEST_S / period_s);
     let longest = whole((LONGEST_BLOCK_S / period_s).floor()).max(shortest);
@@ -58,11 +58,6 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         });
     }
     Ok(made.track(&raw))
-}
-
-/// Number of samples per finer point.
-fn skip(period_s: f64) -> usize {
-    (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
 
 /// True if the acceleration's noise, as a force, is below the force's own noise for blocks of this many samples.
@@ -119,7 +114,7 @@ impl Made {
             position,
             hidden,
         ]);
-        let (fill, skip) = (self.fill(), skip(self.period_s));
+        let (fill, skip) = points_and_samples(self.period_s);
         let first_fine = self.fine.len();
         self.add_points(raw, &calm, range.clone(), number);
         let mean = |values: &[f64], from: usize| trapezoid(&values[from..=from + block]);
@@ -156,15 +151,10 @@ impl Made {
         }
     }
 
-    /// Number of points for one sample.
-    fn fill(&self) -> usize {
-        (FINE_HZ * self.period_s).round().max(1.0) as usize
-    }
-
     /// Adds the points of a segment with this `number`, with the smoothed velocities `calm`.
     fn add_points(&mut self, raw: &Raw, calm: &[f64], range: std::ops::Range<usize>, number: usize) {
-        let fill = self.fill();
-        for (k, i) in range.enumerate().step_by(skip(self.period_s)) {
+        let (fill, skip) = points_and_samples(self.period_s);
+        for (k, i) in range.enumerate().step_by(skip) {
             let point = Fine {
                 segment: number,
                 time_s: raw.time_s[i],
@@ -172,10 +162,7 @@ impl Made {
                 velocity: calm[k],
                 ..Fine::default()
             };
-            if let Some(before) = self.fine.last().copied().filter(|f| f.segment == number) {
-                self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
-            }
-            self.fine.push(point);
+            add_point(&mut self.fine, point, fill);
         }
     }
 

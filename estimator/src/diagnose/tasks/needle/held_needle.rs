@@ -1,9 +1,7 @@
 //! Free-run simulation of a needle: a hand holds it on its measured path, and the sheet or the hole acts on it.
 
-use super::hole::{RIM_SHARE, rim};
+use super::forces::{Law, RIM_SHARE, first_push_n, own_n, rim};
 use super::rows::{Needle, Phase, Row};
-use super::sheet::{Law, first_push_n, own_n};
-use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::extension::model::without_friction;
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
@@ -44,10 +42,6 @@ impl Pressed<'_> {
 }
 
 impl Forward for Pressed<'_> {
-    fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Force, "N")
-    }
-
     fn windows(&self) -> Vec<Vec<usize>> {
         // The comparison deals its rows into separate segments.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
@@ -114,10 +108,6 @@ impl Sliding<'_> {
 }
 
 impl Forward for Sliding<'_> {
-    fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Force, "N")
-    }
-
     fn windows(&self) -> Vec<Vec<usize>> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
         let of = |i: usize| (self.rows[i].stretch, self.rows[i].push);

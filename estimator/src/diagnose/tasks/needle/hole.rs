@@ -1,9 +1,9 @@
 //! Needle in its hole: the forces that hold its shaft.
 
+use super::forces::{RIM_SHARE, rim};
 use super::held_needle::Sliding;
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::limits::{FILTER_REACH_S, LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::data::regression_data;
@@ -22,6 +22,7 @@ use crate::diagnose::hypotheses::{
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
+use crate::diagnose::selection::refinement::{Refinement, refined};
 use crate::diagnose::selection::rules::{MUCH_UNSEEN, Rules};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
@@ -50,9 +51,6 @@ const CLOSELY: [&str; 3] = [stribeck::ID, backlash::ID, local_resistance::ID];
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
 /// Step sizes of the refinement around the values found: those of the first grid, and half of them.
 const HOLE_REFINEMENT: Axis = Axis::geometric(1.0, 0.5, 2);
-/// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
-pub const RIM_SHARE: f64 = 0.05;
-
 /// The comparison.
 pub struct Shaft<'a> {
     pub compared: Compared,
@@ -60,7 +58,6 @@ pub struct Shaft<'a> {
     pub model: &'static str,
     /// Dry friction of a first fit, N.
     dry_n: f64,
-    /// Free-run model of the needle.
     pub sliding: Sliding<'a>,
 }
 
@@ -69,12 +66,8 @@ impl Shaft<'_> {
     pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
         let rows = rows(needle);
         let track = seen(needle, &rows);
-        Imagined {
-            baseline: base(needle, &rows, law),
-            candidates: candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track))),
-            segment: rows.iter().map(|r| r.stretch).collect(),
-            weight: vec![1.0; rows.len()],
-        }
+        let candidates = candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track)));
+        Imagined::of(base(needle, &rows, law), candidates, rows.iter().map(|r| r.stretch).collect())
     }
 }
 
@@ -222,12 +215,14 @@ pub fn shaft<'a>(
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let state = rows.iter().map(Row::state).collect();
-    let coarse = Grid::coarse(&track);
     let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
     let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
     let rules = Rules { much: Some(MUCH_UNSEEN), ..rules.with_friction(law.is_some()) };
-    let channel = Channel::new(y, base, asked(&coarse, dry_n), layout, rules);
-    let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, dry_n)?;
+    let channel = Channel::new(y, base, Vec::new(), layout, rules);
+    let grid = Grid::coarse(&track);
+    let mut closer = Closer { channel, track: &track, asked: &asked, grid, first_n: dry_n, dry_n };
+    let study = refined(&mut closer, HOLE_REFINEMENT.values().count())?;
+    let beside_n = closer.dry_n;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let view = super::sheet::view(&rows);
@@ -236,39 +231,38 @@ pub fn shaft<'a>(
     Ok(Some(Shaft { compared, model, dry_n, sliding }))
 }
 
-/// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
-/// dry friction, N, at first `first_n`. Returns also the friction to which the last shares refer.
-fn closely(
-    channel: &Channel,
-    (track, coarse): (&Track, &Grid),
-    asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
+/// The comparison over grids around the values found.
+struct Closer<'a> {
+    channel: Channel,
+    track: &'a Track,
+    /// Candidates over a grid, for a dry friction, N.
+    asked: &'a dyn Fn(&Grid, f64) -> Vec<Candidate>,
+    grid: Grid,
+    /// Dry friction of a first fit, and that to which the shares of this round refer, N.
     first_n: f64,
-) -> Result<(ChannelFit, f64), EstimateError> {
-    let mut study = channel.clone().fit()?;
-    let (mut grid, mut dry_n) = (coarse.clone(), first_n);
-    for step in HOLE_REFINEMENT.values() {
+    dry_n: f64,
+}
+
+impl Refinement for Closer<'_> {
+    fn compare(&mut self, _: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
+        Channel { candidates: (self.asked)(&self.grid, self.dry_n), ..self.channel.clone() }.fit()
+    }
+
+    fn close_in(&mut self, study: &ChannelFit, round: usize) -> bool {
         let picks = study.picks();
         let found: Vec<&Candidate> =
             picks.iter().map(|p| &study.candidates[*p]).filter(|c| !c.searched.is_empty()).collect();
-        if found.is_empty() {
-            break;
-        }
-        grid = grid.with(Grid::around(&found, track, step));
+        let Some(step) = HOLE_REFINEMENT.values().nth(round).filter(|_| !found.is_empty()) else { return false };
+        self.grid = std::mem::take(&mut self.grid).with(Grid::around(&found, self.track, step));
         // Backlash takes much of it away in a first fit; its share refers to the friction of sliding.
-        dry_n = sliding_n(&study).unwrap_or(first_n);
-        study = Channel { candidates: asked(&grid, dry_n), ..channel.clone() }.fit()?;
+        self.dry_n = sliding_n(study).unwrap_or(self.first_n);
+        true
     }
-    Ok((study, dry_n))
 }
 
 /// Estimated dry friction, N.
 fn sliding_n(study: &ChannelFit) -> Option<f64> {
     study.found().into_iter().find(|(c, _)| c.id == coulomb_friction::ID).map(|(_, values)| values[0])
-}
-
-/// A world's hole in a pierced sheet, without drag.
-pub fn rim(law: &MembraneLaw) -> MembraneLaw {
-    MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law }
 }
 
 /// Friction of a world's hole along the measured path, N, without drag.

@@ -5,6 +5,7 @@
 //! they are its laws.
 
 pub(crate) mod experiment;
+pub(crate) mod forces;
 pub(crate) mod held_needle;
 pub(crate) mod hole;
 pub(crate) mod interpolation;
@@ -13,8 +14,9 @@ pub(crate) mod sheet;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use crate::diagnose::answer::build::{Evidence, answer};
+use crate::diagnose::answer::build::{Evidence, draft};
 use crate::diagnose::answer::part::Part;
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{Alternative, Cause, Gain, NextExperiment, NotExcited, parameter};
 use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::findings::{DelayFindings, Findings};
@@ -41,7 +43,12 @@ use rows::{Needle, Puncture};
 const PUNCTURE_SHARE: f64 = 0.03;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
-pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
+pub fn needle(
+    recordings: &[Recording],
+    options: &Options,
+    faults: &[Cause],
+    put_back: Option<&PutBack<'_>>,
+) -> Result<Findings, EstimateError> {
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let rules = Rules::of_channel(seen.period_s);
@@ -77,11 +84,10 @@ pub fn needle(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
     let asked = |open: &[Alternative]| {
         experiment::propose(open, (&seen, law), (&sheet.compared, shaft.as_ref())).or_else(|| next(open))
     };
-    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
-        found.delay = DelayFindings::of_scan(late, on_sheet.figures());
+        beside.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
-    Ok(found)
+    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
 }
 
 /// The channels of other recordings of the same needle and sheet.

@@ -4,7 +4,7 @@
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::interpolation::Between;
-use crate::diagnose::data::interpolation::mean_step_s;
+use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, PAUSE_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
@@ -87,7 +87,6 @@ pub struct Puncture {
     pub force_n: f64,
     /// Standard error of the force, N: the puncture is between two noisy samples.
     pub error_n: f64,
-    /// Number of the hold.
     pub hold: usize,
 }
 
@@ -224,13 +223,6 @@ fn demand_a_push(pushes: &[Push], recording: &Recording) -> Result<(), EstimateE
         )));
     }
     Ok(())
-}
-
-/// Noise of the slope of a line through a window of `half` samples to either side, a second.
-fn slope_noise(values: &[f64], half: usize, step_s: f64) -> f64 {
-    let half = half as f64;
-    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
-    white_noise(values) / (spread.sqrt() * step_s.max(1e-9))
 }
 
 /// Numbers the segments: rows of one phase and one hold, without a gap.

@@ -1,9 +1,9 @@
 //! Sheet before the puncture, and sensors: force over depth against a linear spring.
 
+use super::forces::{CUBIC, HERTZ, Law, first_push_n, own_n, touches};
 use super::held_needle::Pressed;
 use super::rows::{AT_SURFACE_M, Needle, Phase, Puncture, Row};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
@@ -37,12 +37,7 @@ pub struct Columns {
 impl Columns {
     /// The same as predicted rows.
     pub fn imagined(self) -> Imagined {
-        Imagined {
-            segment: self.rows.iter().map(|r| r.stretch).collect(),
-            weight: vec![1.0; self.rows.len()],
-            baseline: self.base,
-            candidates: self.candidates,
-        }
+        Imagined::of(self.base, self.candidates, self.rows.iter().map(|r| r.stretch).collect())
     }
 }
 
@@ -78,62 +73,6 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     columns.extend((0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.phase != Phase::Empty && r.hold == h)))));
     let fit = least_squares(&columns, &of(&|r| r.force_n), None).ok()?;
     (fit.identified[0] && fit.values[0].abs() > SIGNIFICANT * fit.std_errors[0]).then_some(fit.values[0])
-}
-
-/// Names of the two forms of hardening.
-const CUBIC: &str = "k3";
-const HERTZ: &str = "hertz";
-
-/// Force of a sheet beside its linear spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// A power of the depth.
-    Power(f64),
-    /// In proportion to the rate.
-    Drag,
-    /// A share of the deepest indentation that stays as a dent.
-    Dent(f64),
-}
-
-impl Law {
-    /// The law of a candidate, if it is one.
-    pub fn of(candidate: &Candidate) -> Option<Self> {
-        match (candidate.id, candidate.linear[0].0) {
-            (stiffness_hardening::ID, CUBIC) => Some(Self::Power(3.0)),
-            (stiffness_hardening::ID, HERTZ) => Some(Self::Power(1.5)),
-            (viscous_friction::ID, _) => Some(Self::Drag),
-            (hysteresis::ID, _) => candidate.searched.first().map(|s| Self::Dent(s.value)),
-            _ => None,
-        }
-    }
-
-    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth.
-    pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
-        match self {
-            _ if !touches(r) => 0.0,
-            Self::Power(power) => r.depth_m.powf(power),
-            Self::Drag => r.rate_m_s,
-            Self::Dent(share) => with_dent(share, r, elastic) - elastic(r.depth_m),
-        }
-    }
-}
-
-/// Force of the model's own sheet at a row for a coefficient of one, N: of the world's sheet, or of a spring of 1 N/m.
-pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
-    match law {
-        _ if !touches(r) => 0.0,
-        Some(law) => with_dent(law.give, r, &|x| law.loading_n(x)),
-        None => r.depth_m,
-    }
-}
-
-/// Force of the first push at a depth, to which dents are relative, N.
-pub fn first_push_n(stiffness_n_m: f64, law: Option<&MembraneLaw>, depth_m: f64) -> f64 {
-    law.map_or(stiffness_n_m * depth_m, |l| l.loading_n(depth_m))
-}
-
-fn touches(r: &Row) -> bool {
-    matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
 }
 
 /// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the
@@ -305,15 +244,13 @@ fn said_by_a_row(
 pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
-    let mut place = study.baseline.len();
-    for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
+    for (candidate, values) in study.found() {
         let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
         level += match candidate.id {
-            force_bias::ID => solved.values[place],
-            force_drift::ID if own => solved.values[place] * at.time_s,
+            force_bias::ID => values[0],
+            force_drift::ID if own => values[0] * at.time_s,
             _ => 0.0,
         };
-        place += candidate.regressors.len();
     }
     level
 }
@@ -337,14 +274,4 @@ fn shuffle(rows: &mut Vec<Row>) {
     let dealt = (0..HANDS).flat_map(|hand| rows.iter().skip(hand).step_by(HANDS).copied()).collect();
     *rows = dealt;
     rows.iter_mut().enumerate().for_each(|(k, row)| row.stretch = k);
-}
-
-/// Force of a sheet that keeps a share of its deepest indentation as a dent: above that depth it is steeper and lower.
-fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
-    let (x, deepest) = (row.depth_m, row.deepest_m);
-    if row.phase == Phase::Loading || x >= deepest {
-        return elastic(x);
-    }
-    let dent = share * deepest;
-    elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
 }

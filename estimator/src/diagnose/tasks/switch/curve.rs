@@ -3,12 +3,11 @@
 //!
 //! A world is known only so well: what is smaller than its own stated errors is no cause.
 
-use super::held_knob::Captured;
+use super::held_knob::{Knob, Point, bind_n};
 use super::model::Known;
 use super::rows::direction;
 use super::throw::Push;
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{LEAST_PHASE_SAMPLES, LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::experiment::strokes::PEAK;
@@ -26,36 +25,17 @@ use crate::diagnose::selection::rules::Rules;
 use estimation::identify::limits::SETTLED_M;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
-use haptics::law::{Effect, Kind, LocalResistance, Motion};
+use haptics::law::Kind;
 
 /// Least evidence of an unexplained term, as a multiple of a cause's threshold.
 const STRANGE_CURVE_RATIO: f64 = 2.0;
 /// Tried widths of a local resistance, as shares of the travel.
 const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
 
-/// One row on the travel of a throw.
-#[derive(Clone, Copy)]
-pub struct Point {
-    pub side: usize,
-    pub at_m: f64,
-    pub speed_m_s: f64,
-    /// Measured and predicted force along the travel, N, and slope of the latter, N/m.
-    pub left_n: f64,
-    pub asked_n: f64,
-    pub slope_n_m: f64,
-}
-
-/// Force of a local resistance of one newton at a position, N.
-pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
-    let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
-    law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
-}
-
 /// The comparison.
 pub struct Beside {
     pub compared: Compared,
-    /// Free-run model of a knob.
-    pub knob: Captured,
+    pub knob: Knob,
 }
 
 /// Compares the measured curve with the world's. `None` if too little of it was seen.
@@ -71,9 +51,9 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
         }
         let (asked_n, slope_n_m) = known.asked_n(at_m, side);
         let damped_n = if viscous { 0.0 } else { known.damping_n_s_m * row.speed_m_s() };
-        let left_n = known.driving_n(row.force, at_m, side) - found_n - asked_n - damped_n;
+        let residual_n = known.driving_n(row.force, at_m, side) - found_n - asked_n - damped_n;
         times.push((row.recording, row.time_s));
-        points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), left_n, asked_n, slope_n_m });
+        points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), residual_n, asked_n, slope_n_m });
     }
     if points.len() < LEAST_ROWS_OF_A_FIT {
         return Ok(None);
@@ -85,7 +65,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     let candidates = candidates(&points, known, viscous);
     let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
     let layout = Layout::of(stretch.clone(), &along, period_s);
-    let study = Channel::new(of(&|p| p.left_n), base, candidates, layout, rules).fit()?;
+    let study = Channel::new(of(&|p| p.residual_n), base, candidates, layout, rules).fit()?;
     let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
     let over = vec![
         (Variable::Place, of(&|p| p.at_m)),
@@ -96,7 +76,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over, best_seen) };
     let time = times.iter().map(|t| t.1).collect();
-    let knob = Captured::new(&known.switch.curve, points, time, &stretch, period_s);
+    let knob = Knob::captured(&known.switch.curve, points, time, &stretch, period_s);
     Ok(Some(Beside { compared: Compared { study, channel, unit, floor, along, state, view }, knob }))
 }
 
@@ -111,8 +91,7 @@ fn best_seen(id: &str) -> Variable {
 
 impl Told for Beside {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
-        let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
             friction_asymmetry::ID => {
@@ -123,7 +102,7 @@ impl Told for Beside {
             local_resistance::ID => {
                 format!(
                     "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
-                    1e3 * at("place")
+                    1e3 * found.value_of("place")
                 )
             }
             force_gain::ID => format!(
@@ -155,12 +134,11 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
                 continue;
             }
             let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
-            points.push(Point { side: *side, at_m, speed_m_s, left_n: 0.0, asked_n, slope_n_m });
+            points.push(Point { side: *side, at_m, speed_m_s, residual_n: 0.0, asked_n, slope_n_m });
             stretch.push(number);
         }
     }
-    let weight = vec![1.0; points.len()];
-    Imagined { baseline: base(&points), candidates: candidates(&points, known, false), segment: stretch, weight }
+    Imagined::of(base(&points), candidates(&points, known, false), stretch)
 }
 
 /// Travel and speed of a smooth movement, every `period_s`.

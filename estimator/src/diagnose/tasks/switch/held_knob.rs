@@ -1,17 +1,15 @@
 //! Free-run simulation of a knob: a hand holds it on its measured path, and its curve acts on it.
 
-use super::curve::{Point, bind_n};
+use super::measured_curve::{Curve, along_m};
 use super::model::asked_n;
 use super::rows::{Place, Row, direction};
-use super::throw::{Curve, along_m};
-use crate::diagnose::contract::RolloutOf;
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
 use crate::diagnose::free_run::integrate::{Side, over};
 use crate::diagnose::free_run::windows::Errors;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{local_resistance, return_spring, viscous_friction};
 use haptics::law::object::ToggleCurve;
-use haptics::law::{Effect, Inertia, Memories, Motion};
+use haptics::law::{Effect, Inertia, LocalResistance, Memories, Motion};
 
 /// Rows along the travel of a push, in the order of a comparison.
 struct Travel {
@@ -56,14 +54,41 @@ fn added(candidate: &Candidate, own: &[f64], row: usize) -> f64 {
     candidate.regressors.iter().zip(own).map(|(column, value)| value * column[row]).sum()
 }
 
-/// Free-run model of a knob whose curve is estimated.
-pub struct Thrown {
-    travel: Travel,
-    curves: Vec<Curve>,
+/// One row on the travel of a throw.
+#[derive(Clone, Copy)]
+pub struct Point {
+    pub side: usize,
+    pub at_m: f64,
+    pub speed_m_s: f64,
+    /// Measured and predicted force along the travel, N, and slope of the latter, N/m.
+    pub residual_n: f64,
+    pub asked_n: f64,
+    pub slope_n_m: f64,
 }
 
-impl Thrown {
-    pub fn new(rows: &[Row], stretch: &[usize], period_s: f64, curves: &[Curve]) -> Self {
+/// Force of a local resistance of one newton at a position, N.
+pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
+    let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
+    law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
+}
+
+/// Force over the travel of a knob.
+enum Course {
+    /// Estimated curves, whose forces are the first values of the model.
+    Estimated(Vec<Curve>),
+    /// The curve of a world, with the rows compared with it.
+    OfWorld(ToggleCurve, Vec<Point>),
+}
+
+/// Free-run model of a knob.
+pub struct Knob {
+    travel: Travel,
+    course: Course,
+}
+
+impl Knob {
+    /// A knob whose curve is estimated.
+    pub fn thrown(rows: &[Row], stretch: &[usize], period_s: f64, curves: &[Curve]) -> Self {
         let pushed = |r: &Row| matches!(r.place, Place::Push(_)).then(|| r.side()).flatten();
         let travel = Travel {
             time_s: rows.iter().map(|r| r.time_s).collect(),
@@ -73,32 +98,31 @@ impl Thrown {
             place_m: rows.iter().map(along_m).collect(),
             speed_m_s: rows.iter().map(Row::speed_m_s).collect(),
         };
-        Self { travel, curves: curves.to_vec() }
+        Self { travel, course: Course::Estimated(curves.to_vec()) }
     }
 
-    /// Curve of a side with its forces from the model's values.
-    fn curve<'a>(&'a self, side: usize, values: &'a [f64]) -> Option<(&'a Curve, &'a [f64])> {
-        let mut at = 0;
-        self.curves.iter().find_map(|curve| {
-            let own = at..at + curve.len();
-            at = own.end;
-            (curve.side == side).then(|| (curve, &values[own]))
-        })
+    /// A knob with the curve of a world.
+    pub fn captured(
+        curve: &ToggleCurve,
+        points: Vec<Point>,
+        time_s: Vec<f64>,
+        stretch: &[usize],
+        period_s: f64,
+    ) -> Self {
+        let travel = Travel {
+            time_s,
+            side: points.iter().map(|p| Some(p.side)).collect(),
+            stretch: stretch.to_vec(),
+            period_s,
+            place_m: points.iter().map(|p| direction(p.side) * p.at_m).collect(),
+            speed_m_s: points.iter().map(|p| p.speed_m_s).collect(),
+        };
+        Self { travel, course: Course::OfWorld(curve.clone(), points) }
     }
-}
 
-impl Forward for Thrown {
-    fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Force, "N")
-    }
-
-    fn windows(&self) -> Vec<Vec<usize>> {
-        self.travel.windows()
-    }
-
-    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+    fn errors_of_thrown(&self, curves: &[Curve], fit: &Fit<'_>, window: &[usize]) -> Errors {
         let side = self.travel.side[window[0]].unwrap_or(0);
-        let curve = self.curve(side, fit.values);
+        let curve = of_side(curves, side, fit.values);
         let is_drag = |c: &Candidate| c.id == viscous_friction::ID;
         let drag: f64 = fit.causes().filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
         let drive = |i: usize| {
@@ -109,50 +133,19 @@ impl Forward for Thrown {
             curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
         };
         // The mass is the last regressor of the model.
-        Ok(self.travel.errors(window, fit.values[fit.study.baseline.len() - 1], &drive, &acts))
-    }
-}
-
-/// A knob with the curve of a world.
-pub struct Captured {
-    travel: Travel,
-    points: Vec<Point>,
-    curve: ToggleCurve,
-}
-
-impl Captured {
-    pub fn new(curve: &ToggleCurve, points: Vec<Point>, time_s: Vec<f64>, stretch: &[usize], period_s: f64) -> Self {
-        let travel = Travel {
-            time_s,
-            side: points.iter().map(|p| Some(p.side)).collect(),
-            stretch: stretch.to_vec(),
-            period_s,
-            place_m: points.iter().map(|p| direction(p.side) * p.at_m).collect(),
-            speed_m_s: points.iter().map(|p| p.speed_m_s).collect(),
-        };
-        Self { travel, points, curve: curve.clone() }
-    }
-}
-
-impl Forward for Captured {
-    fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Force, "N")
+        self.travel.errors(window, fit.values[fit.study.baseline.len() - 1], &drive, &acts)
     }
 
-    fn windows(&self) -> Vec<Vec<usize>> {
-        self.travel.windows()
-    }
-
-    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
-        let side = self.points[window[0]].side;
+    fn errors_of_captured(&self, curve: &ToggleCurve, points: &[Point], fit: &Fit<'_>, window: &[usize]) -> Errors {
+        let side = points[window[0]].side;
         let goes_with_motion =
             |c: &Candidate| [viscous_friction::ID, return_spring::ID, local_resistance::ID].contains(&c.id);
         let drive = |i: usize| {
-            let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
+            let Point { residual_n, asked_n, slope_n_m, .. } = points[i];
             let beside = fit.causes().filter(|(c, _)| !goes_with_motion(c));
             // The position of the switch is estimated.
             let moved = fit.values[0] * direction(side) * slope_n_m;
-            left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
+            residual_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };
         let laws: Vec<(&Candidate, &[f64])> = fit.causes().filter(|(c, _)| goes_with_motion(c)).collect();
         let acts = |motion: &Motion| {
@@ -163,8 +156,31 @@ impl Forward for Captured {
                 (_, [place, width]) => own[0] * bind_n(at_m, place.value, width.value),
                 _ => 0.0,
             };
-            asked_n(&self.curve, at_m, side).0 + laws.iter().map(law).sum::<f64>()
+            asked_n(curve, at_m, side).0 + laws.iter().map(law).sum::<f64>()
         };
-        Ok(self.travel.errors(window, 0.0, &drive, &acts))
+        self.travel.errors(window, 0.0, &drive, &acts)
+    }
+}
+
+/// Curve of a side with its forces from the model's values.
+fn of_side<'a>(curves: &'a [Curve], side: usize, values: &'a [f64]) -> Option<(&'a Curve, &'a [f64])> {
+    let mut at = 0;
+    curves.iter().find_map(|curve| {
+        let own = at..at + curve.len();
+        at = own.end;
+        (curve.side == side).then(|| (curve, &values[own]))
+    })
+}
+
+impl Forward for Knob {
+    fn windows(&self) -> Vec<Vec<usize>> {
+        self.travel.windows()
+    }
+
+    fn errors(&self, fit: &Fit<'_>, window: &[usize]) -> Result<Errors, String> {
+        Ok(match &self.course {
+            Course::Estimated(curves) => self.errors_of_thrown(curves, fit, window),
+            Course::OfWorld(curve, points) => self.errors_of_captured(curve, points, fit, window),
+        })
     }
 }

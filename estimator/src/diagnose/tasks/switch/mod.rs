@@ -7,6 +7,7 @@
 pub(crate) mod curve;
 pub(crate) mod experiment;
 pub(crate) mod held_knob;
+pub(crate) mod measured_curve;
 pub(crate) mod model;
 pub(crate) mod rows;
 pub(crate) mod stop;

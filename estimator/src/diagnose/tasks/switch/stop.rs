@@ -3,8 +3,7 @@
 
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::basis_functions::slow_waves;
@@ -79,7 +78,7 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
 
 impl Told for Pressed {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             pad_compliance::ID => {
                 format!(

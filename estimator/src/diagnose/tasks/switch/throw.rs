@@ -2,10 +2,10 @@
 //! time, and readings of fingers without touch. The curve itself is estimated here, one per direction. Its comparison
 //! with the world's is a separate channel.
 
-use super::held_knob::Thrown;
+use super::held_knob::Knob;
+use super::measured_curve::{Curve, along_m};
 use super::rows::{KNOB_REST_M_S, Place, Row, Seen, direction};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
@@ -21,9 +21,6 @@ use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use haptics::law::Kind;
 
-/// Spacing of the nodes of the estimated curve, m, and their largest number.
-const APART_M: f64 = 0.7e-3;
-const MOST_PLACES: usize = 24;
 /// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
 /// ones.
 const TOP_CORNER_M: f64 = 0.6e-3;
@@ -40,13 +37,7 @@ pub struct Push {
     curves: Vec<Curve>,
     /// Forces of the curves in a first fit, N.
     forces_n: Vec<Vec<f64>>,
-    /// Free-run model of a knob.
-    pub thrown: Thrown,
-}
-
-/// Position on the estimated curve, along the travel: rising in both directions.
-pub fn along_m(row: &Row) -> f64 {
-    row.side().map_or(0.0, |side| direction(side) * row.tip.x)
+    pub thrown: Knob,
 }
 
 /// Force of the knob along the travel, or that of a free finger, N.
@@ -55,66 +46,6 @@ fn force_n(row: &Row) -> f64 {
         Place::Push(side) => direction(side) * row.force.x,
         Place::Stop(_) => 0.0,
         Place::Free(_, axis) => row.force[axis],
-    }
-}
-
-/// A piecewise linear curve in one direction.
-#[derive(Clone)]
-pub struct Curve {
-    pub side: usize,
-    places: Vec<f64>,
-}
-
-impl Curve {
-    fn of(rows: &[Row], side: usize) -> Option<Self> {
-        let own: Vec<f64> = rows.iter().filter(|r| r.place == Place::Push(side)).map(along_m).collect();
-        let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-        if own.len() < 2 || high - low < APART_M {
-            return None;
-        }
-        let pieces = (((high - low) / APART_M).ceil() as usize).clamp(1, MOST_PLACES).min(own.len() / 4).max(1);
-        let places = (0..=pieces).map(|k| low + (high - low) * k as f64 / pieces as f64).collect();
-        Some(Self { side, places })
-    }
-
-    /// Share of the k-th node in a row.
-    fn share(&self, row: &Row, k: usize) -> f64 {
-        if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
-    }
-
-    /// Share of the k-th node at a position along the travel, m.
-    fn share_at(&self, along_m: f64, k: usize) -> f64 {
-        let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
-        (1.0 - (along_m - self.places[k]).abs() / step).max(0.0)
-    }
-
-    /// Force of a curve with these node values at a position along the travel, N; constant beyond its ends.
-    pub fn force_n(&self, along_m: f64, force_n: &[f64]) -> f64 {
-        let within = along_m.clamp(self.places[0], self.places[self.places.len() - 1]);
-        force_n.iter().enumerate().map(|(k, force)| self.share_at(within, k) * force).sum()
-    }
-
-    /// Number of its regressors.
-    pub fn len(&self) -> usize {
-        self.places.len()
-    }
-
-    fn columns(&self, rows: &[Row]) -> Vec<Vec<f64>> {
-        (0..self.places.len()).map(|k| rows.iter().map(|r| self.share(r, k)).collect()).collect()
-    }
-
-    /// Slope of a curve with these forces at a row, N/m along the travel.
-    fn slope(&self, row: &Row, force_n: &[f64]) -> f64 {
-        if row.place != Place::Push(self.side) {
-            return 0.0;
-        }
-        let k = self.places.partition_point(|p| *p <= along_m(row)).clamp(1, self.places.len() - 1);
-        (force_n[k] - force_n[k - 1]) / (self.places[k] - self.places[k - 1])
-    }
-
-    fn top_m(&self, force_n: &[f64]) -> f64 {
-        let most = (0..self.places.len()).max_by(|a, b| force_n[*a].total_cmp(&force_n[*b])).unwrap_or(0);
-        self.places[most]
     }
 }
 
@@ -181,7 +112,7 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let state = rows.iter().map(Row::state).collect();
     let view = view(&rows);
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
-    let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
+    let thrown = Knob::thrown(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
     let compared = Compared { study, channel, unit, floor, along, state, view };
@@ -265,12 +196,8 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
 impl Push {
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
-        Imagined {
-            baseline: base(&seen.rows, &self.curves),
-            candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
-            segment: seen.stretch.clone(),
-            weight: vec![1.0; seen.rows.len()],
-        }
+        let candidates = candidates(seen, &seen.rows, &self.curves, &self.forces_n);
+        Imagined::of(base(&seen.rows, &self.curves), candidates, seen.stretch.clone())
     }
 
     /// Range of the travel seen in the throws of a side, m.
@@ -291,7 +218,7 @@ fn best_seen(id: &str) -> Variable {
 
 impl Told for Push {
     fn shows(&self, found: &Found<'_>) -> String {
-        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        let value = found.value();
         match found.candidate.id {
             viscous_friction::ID => {
                 format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")

@@ -1,8 +1,7 @@
 //! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and
 //! after.
 
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{LEAST_PIECES, SIGNIFICANT};
 use crate::diagnose::hypotheses::candidate::Candidate;

@@ -8,6 +8,7 @@ pub(crate) mod sliding;
 use crate::diagnose::answer::build::{Evidence, answer};
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::{Alternative, Baseline, Cause, Final, NextExperiment, NotExcited};
+use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::findings::{Figures, Findings};
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
@@ -101,11 +102,9 @@ fn powers(rows: usize, size: usize, of: impl Fn(usize) -> f64) -> nalgebra::DMat
 /// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not
 /// known of the foot.
 fn mean_friction(seen: &Tossed) -> f64 {
-    let n = seen.slides.len() as f64;
     let values: Vec<f64> = seen.slides.iter().map(|s| s.friction(seen.fall.down_m_s2)).collect();
-    let mean = values.iter().sum::<f64>() / n.max(1.0);
-    let scatter = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-    (scatter / (n - 1.0).max(1.0) / n.max(1.0)).sqrt().hypot(mean * unknown_of_foot(&seen.slides))
+    let (mean, scatter) = mean_and_error(&values);
+    scatter.hypot(mean * unknown_of_foot(&seen.slides))
 }
 
 fn next(open: &[Alternative]) -> Option<NextExperiment> {

@@ -1,7 +1,6 @@
 //! Causes that slow a sliding body: dry friction, or a resistance that depends on the speed.
 
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, RolloutOf};
 use crate::diagnose::data::limits::FEWEST;
 use crate::diagnose::data::row_means::spread;

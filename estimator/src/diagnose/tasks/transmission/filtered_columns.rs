@@ -1,8 +1,8 @@
 //! Regressors of laws with memory or a jump, computed at the recording's own rate and then passed through the filter of
 //! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
+use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::SIGNIFICANT;
-use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, smooth_value};
 
 /// Speed below which its sign is uncertain, as a share of the largest speed.
@@ -25,10 +25,7 @@ pub struct Fine {
 impl Fine {
     pub fn new(time_s: &[f64], input: &[f64], every: usize) -> Self {
         let through = smooth(time_s, input);
-        let half = half_width(time_s) as f64;
-        let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1).max(1) as f64;
-        // Noise of the slope of a line over the filter's window.
-        let rate_noise = white_noise(input) / (step_s * (half * (half + 1.0) * (2.0 * half + 1.0) / 3.0).sqrt());
+        let rate_noise = slope_noise(input, half_width(time_s), mean_step_s(time_s));
         let fastest = through.slope.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let blur = (SIGNIFICANT * rate_noise).max(LEAST_SPEED * fastest).max(f64::MIN_POSITIVE);
         Self { time_s: time_s.to_vec(), input: through.value, rate: through.slope, rate_noise, blur, every }

@@ -4,6 +4,7 @@ use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::profile_likelihood::known;
+use crate::diagnose::selection::refinement::{Refinement, refined};
 use foundation::estimate::EstimateError;
 
 /// Tried half gaps, as shares of the input's range.
@@ -46,20 +47,29 @@ impl Tried {
     }
 }
 
+/// A comparison over tried values.
+struct Closer<'a> {
+    tried: &'a mut [Tried],
+    once: &'a dyn Fn(&[Tried]) -> Result<ChannelFit, EstimateError>,
+    step: f64,
+}
+
+impl Refinement for Closer<'_> {
+    fn compare(&mut self, _: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
+        (self.once)(self.tried)
+    }
+
+    fn close_in(&mut self, found: &ChannelFit, _: usize) -> bool {
+        let step = self.step;
+        self.step /= 3.0;
+        self.tried.iter_mut().map(|t| t.close_in(found, step)).fold(false, |any, one| any | one)
+    }
+}
+
 /// Compares repeatedly, with a finer grid around the values found.
 pub fn closer(
     tried: &mut [Tried],
     once: &dyn Fn(&[Tried]) -> Result<ChannelFit, EstimateError>,
 ) -> Result<ChannelFit, EstimateError> {
-    let mut study = once(tried)?;
-    let mut step = 1.0;
-    for _ in 0..MOST_ROUNDS {
-        let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);
-        if !more {
-            break;
-        }
-        study = once(tried)?;
-        step /= 3.0;
-    }
-    Ok(study)
+    refined(&mut Closer { tried, once, step: 1.0 }, MOST_ROUNDS)
 }

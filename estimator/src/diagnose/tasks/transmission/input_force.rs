@@ -9,8 +9,7 @@
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
 use super::rows::{Columns, Row, Seen, constants, stretches_of};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{Alternative, CauseParameter, RolloutOf};
 use crate::diagnose::data::limits::{HALF, SHORTEST_S};
 use crate::diagnose::free_run::channel::{Fit, Forward, consecutive};
@@ -21,7 +20,8 @@ use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
-use crate::diagnose::selection::normal_equations::{Use, solve};
+use crate::diagnose::selection::layout::Use;
+use crate::diagnose::selection::normal_equations::solve;
 use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -47,7 +47,6 @@ pub struct Force {
     pub compared: Compared,
     /// Separability of friction and load.
     pub told: Option<Confounding>,
-    /// Free-run model of the input.
     pub input: Input,
 }
 

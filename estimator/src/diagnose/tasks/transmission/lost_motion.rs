@@ -3,8 +3,7 @@
 use super::filtered_columns::Fine;
 use super::grid::{Tried, closer};
 use super::rows::{Columns, Row, Seen, constants, ratio};
-use crate::diagnose::answer::cause::Found;
-use crate::diagnose::answer::part::Told;
+use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::data::row_means::spread;

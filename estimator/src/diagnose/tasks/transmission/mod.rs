@@ -8,10 +8,11 @@ pub(crate) mod lost_motion;
 pub(crate) mod rows;
 
 use crate::diagnose::answer::build::{Evidence, answer};
-use crate::diagnose::answer::cause::Found;
+use crate::diagnose::answer::part::Found;
 use crate::diagnose::answer::part::Part;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::limits::{CERTAIN, PARTS, SHORTEST_S};
+use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -118,8 +119,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Evidence<'_>) {
         return;
     }
     let n = work.len() as f64;
-    let mean = work.iter().sum::<f64>() / n;
-    let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
+    let (mean, error) = mean_and_error(&work);
     let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
     if work.len() >= PARTS && mean < -CERTAIN * error && taken > PARTS_OF_ONE_SIGN * n {
         for row in rows.iter_mut() {
@@ -160,7 +160,7 @@ fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
 
 /// Sentence on how the residual shows a cause.
 fn shows(found: &Found<'_>) -> String {
-    let value = found.parameters.first().map_or(0.0, |p| p.value);
+    let value = found.value();
     match found.candidate.id {
         backlash::ID => {
             let half = found.candidate.searched.first().map_or(0.0, |s| s.value);

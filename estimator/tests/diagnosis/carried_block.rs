@@ -1,10 +1,7 @@
 //! One block that two fingers with soft pads carry several times.
 
 use super::recorded::{reach, recorded};
-use crate::diagnose::contract::{Diagnosis, Verdict};
-use crate::diagnose::diagnose;
-use crate::diagnose::findings::Findings;
-use crate::diagnose::options::Options;
+use estimator::diagnose::{Diagnosis, Findings, Options, Verdict, diagnose};
 use haptics::device::{Device as _, ScriptedOperator, Skill};
 use haptics::recording::Recording;
 use haptics::servo::recorder::{SensorModel, to_recording};

@@ -1,4 +1,4 @@
-//! Recordings of two fingers for the tests of this folder.
+//! Recordings of two fingers with noisy sensors.
 
 use haptics::recording::{Channel, Recording, Task};
 use rand::{RngExt as _, SeedableRng as _};
