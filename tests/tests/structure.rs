@@ -358,7 +358,9 @@ fn a_constant_says_where_it_comes_from_or_what_changes_with_it() {
         assert!(all.len() > 100, "{} constants of {folder} were looked at", all.len());
         let says = |comment: &str| {
             let lines = comment.lines().map(str::trim);
-            lines.into_iter().any(|line| ["Source: ", "Derived: ", "Choice: "].iter().any(|with| line.starts_with(with)))
+            lines
+                .into_iter()
+                .any(|line| ["Source: ", "Derived: ", "Choice: "].iter().any(|with| line.starts_with(with)))
         };
         let silent: Vec<_> = all.iter().filter(|(.., comment)| !says(comment)).map(|(f, n, _)| (f, n)).collect();
         assert!(silent.is_empty(), "no Source, Derived or Choice: {silent:?}");

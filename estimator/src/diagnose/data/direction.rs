@@ -8,7 +8,8 @@ const BLUR: f64 = 0.008;
 const BLUR_OF_MASS: f64 = 0.012;
 /// Time over which the direction is blurred if there is no force channel whose clock could differ.
 const BLUR_OF_FREE: f64 = 0.004;
-/// A reversal may be at any point between two rows: standard deviation of its position, in rows, with some margin.
+/// A reversal may be at any point between two rows: standard deviation of its position, in rows.
+/// Derived: half a row, the farthest that a reversal can lie from the middle between two rows.
 const SKEW: f64 = 0.5;
 /// Difference of the clocks of force and motion, s.
 pub(crate) const CLOCKS_S: f64 = 1e-3;

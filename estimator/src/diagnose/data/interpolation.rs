@@ -9,11 +9,12 @@ use haptics::Vec2;
 pub const FINE_HZ: f64 = 400.0;
 /// Averaging time of velocities, s.
 const CALM_S: f64 = 0.012;
-/// Over this window a parabola of the speed halves what trembles at 9 Hz. Shorter ones and higher orders leave more of
-/// it, and more noise: the first of these whose noise makes no more than [`NOISE_OF_ACCELERATION`] of the
-/// acceleration's power is taken. Rows on either side, order, and power of the slope's noise in the noise of one row's
-/// speed over a row's time (Savitzky & Golay 1964).
+/// Windows of the acceleration: rows on either side, order, and power of the slope's noise in the noise of one row's
+/// speed over a row's time. Over the first, a parabola of the speed halves a tremor of 9 Hz. The first is taken whose
+/// noise makes no more than [`NOISE_OF_ACCELERATION`].
+/// Source: Savitzky & Golay 1964; the noise powers are the sums of the squared slope coefficients.
 const FINER: [(usize, usize, f64); 3] = [(2, 4, 0.903), (3, 4, 0.263), (4, 4, 0.114)];
+/// Largest share of the acceleration's power that noise of its slope may make.
 const NOISE_OF_ACCELERATION: f64 = 0.02;
 
 /// Mean time between samples, s.

@@ -263,6 +263,7 @@ impl Track {
 
     /// True if the motion has one direction: its backward share is no larger than a hand's tremor.
     pub fn goes_one_way(&self) -> bool {
+        /// Largest share of backward travel of a motion with one direction: a hand's tremor.
         const TREMBLES: f64 = 0.02;
         let [forward, backward] = self.ways();
         forward.min(backward) <= TREMBLES * (forward + backward)

@@ -16,10 +16,10 @@ const HOLDS: f64 = 0.7;
 /// the force.
 const LARGEST: f64 = 0.006;
 /// Largest share of the friction up to which presliding is followed.
-const BENT: f64 = 0.95;
-/// Deviation of a stick phase's compliance from the usual one, relative and in standard errors, from which it was a
-/// slow slide.
+const MOST_BENT: f64 = 0.95;
+/// Deviation of a stick phase's compliance from the usual one, as a share of it, from which it was a slow slide.
 const UNLIKE: f64 = 0.7;
+/// The same deviation in standard errors, added to the share.
 const UNLIKE_SURE: f64 = 4.0;
 /// Number of rows before and after over which position and load of a floating object are averaged.
 const NEAR: usize = 2;
@@ -179,7 +179,7 @@ fn creeps(rows: &[Row], column: &mut [f64]) {
             .iter()
             .map(|row| {
                 let Place::Stuck { share, .. } = row.place else { return way };
-                let speed = share.clamp(-BENT, BENT).atanh();
+                let speed = share.clamp(-MOST_BENT, MOST_BENT).atanh();
                 if let Some((time_s, was)) = before {
                     way += 0.5 * (speed + was) * (row.motion.time_s - time_s);
                 }
@@ -221,7 +221,7 @@ pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
             .enumerate()
             .map(|(k, row)| {
                 let Place::Stuck { share, noise, .. } = row.place else { return at };
-                let share = share.clamp(-BENT, BENT);
+                let share = share.clamp(-MOST_BENT, MOST_BENT);
                 if k == 0 {
                     memory[0] = share;
                 } else if (share - memory[0]).abs() > noise {

@@ -20,10 +20,15 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
 const RECORDING_LENGTHS_S: Axis = Axis::geometric(20.0, 80.0, 3);
+/// Expected power from which a proposed motion is likely to suffice.
+/// Source: the usual power of a test, 0.8 (Cohen 1988).
 pub(crate) const LIKELY: f64 = 0.8;
-/// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
-/// one because neither answer may be true (measured, `docs/diagnosis.md`).
+/// Share of questions that a motion settles although the evidence is sure to suffice. It is below one because neither
+/// answer may be true.
+/// Source: measured, `docs/diagnosis.md`.
 pub(crate) const SURE_BY_MOTION: f64 = 0.85;
+/// The same share for a weight that is hung on.
+/// Source: measured, `docs/diagnosis.md`.
 pub(crate) const SURE_HUNG: f64 = 0.95;
 /// Largest turn of a crank to either side, rad.
 const TURN_RAD: f64 = 7.0;

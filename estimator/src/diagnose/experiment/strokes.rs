@@ -9,6 +9,7 @@ use crate::diagnose::contract::Experiment;
 /// Source: 15/8 of the mean speed, the peak of a minimum-jerk movement (Flash & Hogan 1985).
 pub(crate) const PEAK: f64 = 1.875;
 /// Time without touch that is asked for before and after a motion, s.
+/// Choice: not varied. It changes the words of a proposal and no diagnosis.
 pub(crate) const FREE_S: f64 = 2.0;
 /// Shortest duration of a back-and-forth movement, s.
 pub(crate) const SHORTEST_STROKE_S: f64 = 0.25;

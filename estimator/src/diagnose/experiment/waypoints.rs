@@ -8,6 +8,7 @@ use crate::diagnose::data::limits::{HALF, PAUSE_S};
 pub const PIERCE: &str = "pierce-slow-fast";
 pub const THROW: &str = "throw-slow-fast";
 /// Lowest and highest speed of a hand in a proposed motion, m/s.
+/// Choice: not varied. They change the words of a proposal and no diagnosis.
 pub(crate) const HAND_SPEEDS_M_S: (f64, f64) = (0.03, 0.15);
 /// Paces of throws, in turn; two throws per pace, one to either side.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];

@@ -4,11 +4,12 @@ use super::windows::Errors;
 use haptics::device::HandImpedance;
 use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
 
-/// Longest integration steps, s: of a coordinate with its own inertia, and of one that a hand holds.
+/// Longest integration step of a coordinate with its own inertia, s.
 const INTEGRATION_STEP_S: f64 = 1e-3;
+/// Longest integration step of a coordinate that a hand holds, s.
 const HELD_STEP_S: f64 = 2.5e-4;
-/// Mass of the fingertips that move a handle without inertia, kg: negligible beside every force here, large enough for
-/// the step.
+/// Mass of the fingertips that move a handle without inertia, kg.
+/// Derived: with the damping of the hand (9 N s/m) its time constant is 0.56 ms, over twice the step of 0.25 ms.
 const TIP_KG: f64 = 5e-3;
 
 /// A moment of a window.

@@ -13,11 +13,13 @@ pub(crate) const ID: &str = "added-constraint";
 
 /// Tried places of a wall, as shares of the positions that lie before it.
 const WALLS: Axis = Axis::even(0.4, 0.9, 6);
-/// Tried anchor directions of a cable, in turns, and its slack as a share of the travel.
+/// Tried anchor directions of a cable, in turns.
 const DIRECTIONS: Axis = Axis::cells(16);
+/// Tried slack of a cable, as a share of the travel.
 const SLACK: Axis = Axis::even(0.35, 0.8, 3);
-/// Initial distance of the anchor, in arm lengths, and the distances tried.
+/// Initial distance of the anchor, in arm lengths.
 const REACH: f64 = 5.0;
+/// Tried distances of the anchor, in arm lengths.
 const REACHES: Axis = Axis::geometric(0.5 * REACH, 4.0 * REACH, 4);
 /// Points: place and side of a wall.
 const WALL: &str = "wall";

@@ -20,9 +20,9 @@ const WAYS: Axis = Axis::geometric(3e-5, 0.2, 14);
 /// Share of a turn from which positions on a crank count as repeating every turn.
 const NEARLY_A_TURN: f64 = 0.8;
 /// Time constants of a decaying drift or leak, in shares of the recording.
-const SETTLING: Axis = Axis::geometric(0.2, 0.5, 2);
+const SETTLING_SHARES: Axis = Axis::geometric(0.2, 0.5, 2);
 /// Start times of a sudden change, in shares of the recording.
-const STARTS: Axis = Axis::even(1.0 / 16.0, 15.0 / 16.0, 15);
+const START_SHARES: Axis = Axis::even(1.0 / 16.0, 15.0 / 16.0, 15);
 
 /// The searched values of one candidate, in the order of its law's file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,13 +123,13 @@ impl<'a> Ranges<'a> {
     /// Time constants of a decaying drift or leak.
     pub(crate) fn settling(&self) -> impl Iterator<Item = f64> {
         let span_s = self.track.span_s;
-        SETTLING.values().map(move |share| share * span_s)
+        SETTLING_SHARES.values().map(move |share| share * span_s)
     }
 
     /// Start times of a sudden change.
     pub(crate) fn starts(&self) -> impl Iterator<Item = f64> {
         let span_s = self.track.span_s;
-        STARTS.values().map(move |share| share * span_s)
+        START_SHARES.values().map(move |share| share * span_s)
     }
 }
 
@@ -178,12 +178,12 @@ impl Near<'_> {
     /// Time constants around those that were found of a drift or a leak.
     pub(crate) fn settling(&self) -> Vec<f64> {
         let taus = self.related(Relation::Settles).filter_map(|c| c.value("tau"));
-        taus.flat_map(|tau| SETTLING.around(tau, 1.0, self.step)).collect()
+        taus.flat_map(|tau| SETTLING_SHARES.around(tau, 1.0, self.step)).collect()
     }
 
     /// Start times around those that were found of any sudden change.
     pub(crate) fn starts(&self) -> Vec<f64> {
         let starts = self.found.iter().filter_map(|(c, _)| c.value("t0"));
-        starts.flat_map(|start| STARTS.around(start, self.ranges.track.span_s, self.step)).collect()
+        starts.flat_map(|start| START_SHARES.around(start, self.ranges.track.span_s, self.step)).collect()
     }
 }

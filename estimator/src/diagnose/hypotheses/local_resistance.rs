@@ -11,8 +11,9 @@ use std::f64::consts::TAU;
 
 pub(crate) const ID: &str = "local-resistance";
 
-/// Tried places and widths, as shares of the range.
+/// Tried places, as shares of the range.
 pub(crate) const PLACES: Axis = Axis::cells(24);
+/// Tried widths, as shares of the range.
 const WIDTHS: Axis = Axis::geometric(0.12, 0.35, 3);
 /// Points: place and width.
 const HUMP: &str = "place and width";

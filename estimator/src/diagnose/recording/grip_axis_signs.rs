@@ -16,11 +16,13 @@ use std::ops::Range;
 
 /// Least force of a press, as a share of the usual grip, or of the strongest press against a stop.
 pub(crate) const PRESSING: f64 = 0.4;
-/// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
+/// Least travel in a grip, m.
 pub(crate) const TRAVEL_M: f64 = 2e-3;
+/// Largest motion of a constant dimension, as a share of the travel of either finger.
 const STAYS: f64 = 0.1;
 /// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
 const STANDS_M: f64 = 5e-4;
+/// Share of its rise from which an object is lifted.
 const LIFTED: f64 = 0.6;
 /// Least ratio of the changes at a lift: difference of the vertical forces over their sum.
 const DIFFERS: f64 = 2.0;

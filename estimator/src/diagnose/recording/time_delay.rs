@@ -21,7 +21,9 @@ use haptics::law::{CoulombFriction, Effect, Inertia, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
-/// Demands on a guess for a repetition of the diagnosis.
+/// Demands on a guess of a delay with which the diagnosis is repeated.
+/// Choice: not varied one by one. The limits are the longest delay between two movements of a hand, half of the scan,
+/// and evidence beyond doubt; a wrong guess is discarded by the repeated fit.
 const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: SURE };
 
 /// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one

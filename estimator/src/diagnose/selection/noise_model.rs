@@ -5,10 +5,11 @@ use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use std::ops::Range;
 
 /// Highest order of the autoregression that whitens the residual of a force.
+/// Choice: not varied, because arrays have its length. An information criterion chooses among the orders up to it.
 const LARGEST_ORDER: usize = 6;
-/// Largest order for differenced data, whose noise is correlated over many rows: in rows, and as the inverse share of
-/// all rows.
+/// Largest order of the autoregression for differenced data, whose noise is correlated over many rows.
 const ORDER_OF_DIFFERENCES: usize = 24;
+/// Least number of rows for each order of that autoregression.
 const SHARE_OF_DIFFERENCES: usize = 12;
 
 /// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.

@@ -6,9 +6,10 @@ use crate::diagnose::data::limits::{AMBIGUOUS, SLOW_ROW_S};
 pub(crate) const THRESHOLD: f64 = 20.0;
 /// The same for slow rows, whose noise averages out less, and for few observations.
 pub(crate) const THRESHOLD_SLOW: f64 = 25.0;
-/// Largest ratio of final residual to force noise under a correct model along one coordinate, whose residual also
-/// contains noise of the motion: for a noise measured in free rows, and for one estimated from fast changes.
+/// Largest ratio of the final residual to a force noise that was measured in free rows, under a correct model along
+/// one coordinate. That residual also contains noise of the motion.
 pub(crate) const MUCH: f64 = 1.6;
+/// The same ratio for a noise that was estimated from fast changes.
 pub(crate) const MUCH_UNSEEN: f64 = 4.0;
 /// Largest ratio of residuals, after over before, of an explanation that is as good.
 pub(crate) const AS_GOOD: f64 = 1.1;

@@ -15,7 +15,7 @@ const FOLLOWED_SHARE: f64 = 0.5;
 /// Time over which the load is followed at most, s.
 const RISE_S: f64 = 0.2;
 /// Shares of the weight up to which lines through the first part are fitted, too.
-const FIRST: [f64; 2] = [0.25, 0.12];
+const FIRST_PART_SHARES: [f64; 2] = [0.25, 0.12];
 /// Largest lead of the beginning that the line tells, s.
 const LARGEST_LEAD_S: f64 = 0.06;
 
@@ -83,7 +83,7 @@ pub fn stands_from(
 /// The line through its first part counts if it begins later for certain. `None` if it does not rise.
 fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
     let (mut begins_s, _) = zero(rise, noise_n).filter(|_| rise.len() > 2)?;
-    for share in FIRST {
+    for share in FIRST_PART_SHARES {
         let end = rise.iter().position(|(_, load)| *load > share * weight_n).map_or(rise.len(), |last| last + 1);
         if let Some((own_s, error_s)) = zero(&rise[..end], noise_n)
             && own_s - SIGNIFICANT * error_s > begins_s

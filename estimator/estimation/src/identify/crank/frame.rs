@@ -4,6 +4,7 @@ use haptics::Vec2;
 use haptics::law::Motion;
 
 /// Half of the low-pass window that rows of the laws go through, s: motion below about 5 Hz stays.
+/// Choice: not varied, because it is an argument of other constants.
 pub const LOW_PASS_HALF_S: f64 = 0.06;
 
 /// The sign of a velocity within its noise is a guess: it is blurred over twice that (and never less than 0.5 mm/s), m/s.

@@ -25,6 +25,7 @@ use throw_curve::{Stop, Throw};
 /// The object's name in the results.
 pub const OBJECT: &str = "switch";
 /// Length of the lever that is assumed, in travels of the knob.
+/// Choice: not varied, because other constants are made from it. Its uncertainty is a half ([`LEVER_SPREAD`]).
 pub const LEVER_TRAVELS: f64 = 1.9;
 /// Relative uncertainty of the inverse of the lever's length.
 /// Derived: evenly likely within half of itself.

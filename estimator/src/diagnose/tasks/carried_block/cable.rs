@@ -12,14 +12,16 @@ use haptics::world::Cable;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Tried directions of the anchor from the middle of the carries, in turns, and inverse distances in 1/half ranges; 0
-/// is a wall.
+/// Tried directions of the anchor from the middle of the carries, in turns.
 const ANCHOR_DIRECTIONS: Axis = Axis::cells(20);
+/// Tried inverse distances of the anchor, in 1/half ranges; 0 is a wall.
 const NEARNESS: Axis = Axis::even(0.0, 0.6, 3);
 /// Tried shares of the carries in which the cable is slack.
 const SLACK_SHARES: Axis = Axis::even(0.15, 0.88, 5);
-/// Number of starting points that are refined, and of halvings of their step.
+/// Number of starting points that are refined.
 const REFINED: usize = 4;
+/// Number of halvings of the step of a refinement.
+/// Derived: the last step is 1/512 of the first one, below the errors of any cable seen.
 const CABLE_HALVINGS: usize = 9;
 /// Most moves with one step size. Without a cable the search does not converge.
 const MOVES: usize = 15;

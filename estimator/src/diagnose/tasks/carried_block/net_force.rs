@@ -341,6 +341,7 @@ impl Simulated for Carry<'_> {
 }
 
 /// Limits of a delay: beyond the longest one a hand is already at another movement.
+/// Choice: not varied one by one. A delay that it finds must improve the repeated fit, or it is discarded.
 const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };
 
 /// Delay with the smallest residual of weights, their inertia and constant sensor errors. `known`: weights that the

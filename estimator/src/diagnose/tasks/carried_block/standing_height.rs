@@ -26,9 +26,10 @@ use foundation::tasks::SystemState;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
-/// ones never are: when a slip at the very contact began shows in nothing else.
+/// Of so many rows of a rest one may be held out: every rest is fitted from its beginning to its end.
+/// Derived: two, the least number of which one is left for the fit.
 const HELD_OUT_RESTS: usize = 2;
+/// Number of first rows of a rest that are never held out: only they show a slip at the beginning of the contact.
 const RESTS_NEVER_HELD_OUT: usize = 4;
 
 /// The comparison with the data for its texts.

@@ -49,8 +49,9 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
     corrected(recordings, |some, back| Ok(studied(some, options)?.answer(options, back)))
 }
 
-/// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
+/// Rounds in which an offset between force and motion is removed.
 const OFFSET_ROUNDS: usize = 2;
+/// Share of the linear estimate of that offset that is used.
 const OF_SKEW: f64 = 0.7;
 
 /// Recordings of one mechanism, compared with all causes.

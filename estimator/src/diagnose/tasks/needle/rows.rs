@@ -293,6 +293,7 @@ fn phases(
 
 /// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
 /// the plain model and correlate with some delay by chance.
+/// Choice: not varied one by one. A delay that it finds must improve the repeated fit, or it is discarded.
 const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: SURE };
 
 /// The smoothed forces of a recording, one per sample, to which every row refers.

@@ -2,8 +2,9 @@
 
 use super::rows::{Place, Row, direction};
 
-/// Spacing of the nodes of the estimated curve, m, and their largest number.
+/// Spacing of the nodes of the estimated curve, m.
 const APART_M: f64 = 0.7e-3;
+/// Largest number of nodes of the estimated curve.
 const MOST_PLACES: usize = 24;
 /// Position on the estimated curve, along the travel: rising in both directions.
 pub fn along_m(row: &Row) -> f64 {

@@ -32,6 +32,7 @@ use haptics::law::{
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
 const SLOW_SPEED_SHARE: f64 = 0.1;
+/// Direction of motion from which its sign is certain, of 1.
 const SURE_POSTERIOR: f64 = 0.99;
 
 /// Rows with a certain direction of friction.
