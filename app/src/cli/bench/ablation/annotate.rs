@@ -19,6 +19,10 @@ pub(super) fn annotate(workspace: &Path, rows: &[Row], factors: &[f64]) -> anyho
     let mut written = 0;
     for file in files {
         let path = workspace.join(file);
+        // The file of an earlier run may be gone.
+        if !path.exists() {
+            continue;
+        }
         let mut text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         for row in rows.iter().filter(|row| row.file == file) {
             if let Some(more) = annotated(&text, &row.name, &choice(&row.counts, factors)) {
@@ -56,25 +60,37 @@ fn choice(counts: &[Counts], factors: &[f64]) -> String {
     if counts.iter().all(|of| of.asked == 0) {
         return "no case of the ablation reads it.".to_owned();
     }
+    if let [first, ..] = counts
+        && counts.iter().all(|of| changed(of) == 0 && of.asked == first.asked)
+    {
+        let names: Vec<String> = factors.iter().map(|factor| name(*factor)).collect();
+        return format!("{}, none of {} answers changes.", names.join(" or "), first.asked);
+    }
     let parts: Vec<String> = factors.iter().zip(counts).map(|(factor, of)| part(*factor, of)).collect();
     format!("{}.", parts.join("; "))
 }
 
-fn part(factor: f64, counts: &Counts) -> String {
-    let Counts { asked, moved, words, worse, better, .. } = *counts;
-    let name = match factor {
+fn name(factor: f64) -> String {
+    match factor {
         0.5 => "halved".to_owned(),
         2.0 => "doubled".to_owned(),
         other => format!("times {other}"),
-    };
-    let changed = moved + words + worse + better;
-    let turns: Vec<String> = [(worse, "wrong"), (better, "right")]
+    }
+}
+
+/// Number of answers that change by more than digits.
+fn changed(counts: &Counts) -> usize {
+    counts.moved + counts.words + counts.worse + counts.better
+}
+
+fn part(factor: f64, counts: &Counts) -> String {
+    let turns: Vec<String> = [(counts.worse, "wrong"), (counts.better, "right")]
         .iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, how)| format!("{count} to {how}"))
         .collect();
     let turns = if turns.is_empty() { String::new() } else { format!(" ({})", turns.join(", ")) };
-    format!("{name}, {changed} of {asked} answers change{turns}")
+    format!("{}, {} of {} answers change{turns}", name(factor), changed(counts), counts.asked)
 }
 
 #[cfg(test)]
@@ -88,6 +104,7 @@ mod tests {
         let none = Counts { asked: 41, ..Counts::default() };
         let line = "halved, 3 of 41 answers change (1 to wrong); doubled, 0 of 41 answers change.";
         assert_eq!(choice(&[ONE, none], &[0.5, 2.0]), line);
+        assert_eq!(choice(&[none; 2], &[0.5, 2.0]), "halved or doubled, none of 41 answers changes.");
         assert_eq!(choice(&[Counts::default(); 2], &[0.5, 2.0]), "no case of the ablation reads it.");
     }
 
