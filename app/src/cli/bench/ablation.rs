@@ -244,7 +244,8 @@ fn markdown(said: &Said) -> String {
     let seeds: Vec<String> = said.seeds.iter().map(u64::to_string).collect();
     let mut text = format!(
         "# Ablation of constants\n\n`touchstone bench ablation --seeds {}`: {} cases, {} of them right. \
-         Changed answers of those asked, by factor.\n\n| constant | value |",
+         Changed answers of those asked, by factor. \
+         An axis of a grid has so many times the values; a factor is tried no more after some changes.\n\n| constant | value |",
         seeds.join(","),
         said.cases,
         said.right

@@ -12,10 +12,13 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
 /// Distance of a value outside its bounds, in standard errors, beyond which it simply stands at the bound.
+/// Choice: no case of the ablation reads it.
 const FAR_OUTSIDE: f64 = 6.0;
 /// Distance between bounds, in standard errors, below which a distribution within them is uniform.
+/// Choice: no case of the ablation reads it.
 const NARROW: f64 = 0.02;
 /// Share of a prior's spread above which the result has learnt nothing from the recording.
+/// Choice: no case of the ablation reads it.
 const LEARNT: f64 = 0.9;
 
 /// Takes the statements of `meta` into a fit. Warnings say where they contradict the recording, or name nothing.

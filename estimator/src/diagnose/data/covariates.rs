@@ -5,9 +5,11 @@ use haptics::recording::Recording;
 use logs::units::{is_program_name, split};
 
 /// Time over which the changes of a slow channel are measured, s.
+/// Choice: halved or doubled, none of 48 answers changes.
 const SLOW_S: f64 = 1.0;
 /// Largest ratio of the change over that time to the total spread (both RMS) of a slow channel. A faster channel
 /// follows the motion itself and is no candidate.
+/// Choice: no case of the ablation reads it.
 const SLOW_SHARE: f64 = 0.6;
 /// Names of channels for user annotations.
 const MARKS: [&str; 3] = ["trial", "label", "state"];

@@ -6,8 +6,10 @@ use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 
 /// Approximate rate of the points, Hz: a hand's motion is nearly linear between them.
+/// Choice: halved, 3 of 63 answers change; doubled, 1 of 63 answers change.
 pub const FINE_HZ: f64 = 400.0;
 /// Averaging time of velocities, s.
+/// Choice: halved, 1 of 48 answers change; doubled, 1 of 48 answers change.
 const CALM_S: f64 = 0.012;
 /// Windows of the acceleration: rows on either side, order, and power of the slope's noise in the noise of one row's
 /// speed over a row's time. Over the first, a parabola of the speed halves a tremor of 9 Hz. The first is taken whose
@@ -15,6 +17,7 @@ const CALM_S: f64 = 0.012;
 /// Source: Savitzky & Golay 1964; the noise powers are the sums of the squared slope coefficients.
 const FINER: [(usize, usize, f64); 3] = [(2, 4, 0.903), (3, 4, 0.263), (4, 4, 0.114)];
 /// Largest share of the acceleration's power that noise of its slope may make.
+/// Choice: halved or doubled, none of 43 answers changes.
 const NOISE_OF_ACCELERATION: f64 = 0.02;
 
 /// Mean time between samples, s.

@@ -19,6 +19,7 @@ use haptics::law::Motion;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
+/// Choice: no case of the ablation reads it.
 const RECORDING_LENGTHS_S: Axis = Axis::geometric(20.0, 80.0, 3);
 /// Expected power from which a proposed motion is likely to suffice.
 /// Source: the usual power of a test, 0.8 (Cohen 1988).
@@ -31,12 +32,16 @@ pub(crate) const SURE_BY_MOTION: f64 = 0.85;
 /// Source: measured, `docs/diagnosis.md`.
 pub(crate) const SURE_HUNG: f64 = 0.95;
 /// Largest turn of a crank to either side, rad.
+/// Choice: no case of the ablation reads it.
 const TURN_RAD: f64 = 7.0;
 /// Heaviest weight to hang on, N, which fingers can still lift.
+/// Choice: no case of the ablation reads it.
 const HEAVIEST_N: f64 = 1.2;
 /// Weight to hang on, as a multiple of the object's weight or moment.
+/// Choice: no case of the ablation reads it.
 const HUNG_MULTIPLE: f64 = 10.0;
 /// Lever of the weight that is hung on a mechanism, m.
+/// Choice: no case of the ablation reads it.
 const LEVER_M: f64 = 0.1;
 
 /// Next experiment, which separates the found causes from the `open` alternatives; `None` if no question is open.

@@ -12,6 +12,7 @@ pub(crate) const PEAK: f64 = 1.875;
 /// Choice: not varied. It changes the words of a proposal and no diagnosis.
 pub(crate) const FREE_S: f64 = 2.0;
 /// Shortest duration of a back-and-forth movement, s.
+/// Choice: halved or doubled, none of 36 answers changes.
 pub(crate) const SHORTEST_STROKE_S: f64 = 0.25;
 
 /// Minimum jerk, as a share of the way.

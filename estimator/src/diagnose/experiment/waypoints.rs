@@ -11,8 +11,10 @@ pub const THROW: &str = "throw-slow-fast";
 /// Choice: not varied. They change the words of a proposal and no diagnosis.
 pub(crate) const HAND_SPEEDS_M_S: (f64, f64) = (0.03, 0.15);
 /// Paces of throws, in turn; two throws per pace, one to either side.
+/// Choice: halved or doubled, none of 21 answers changes.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];
 /// Duration of the press against a stop, of the release, and of the rest after it, s.
+/// Choice: halved or doubled, none of 21 answers changes.
 const PRESS_S: f64 = 0.35;
 
 /// Turning points: time, s, and place.

@@ -5,8 +5,10 @@ use haptics::law::object::MembraneLaw;
 use haptics::world::World;
 
 /// Largest friction of a hole as a share of the puncture force: the law has no other.
+/// Choice: no case of the ablation reads it.
 const LESS_THAN_PUNCTURE: f64 = 0.95;
 /// Largest dent of the law, as a share of the depth.
+/// Choice: no case of the ablation reads it.
 const DEEPEST_DENT: f64 = 0.9;
 
 /// The world with these effects on its sheet and hole.

@@ -11,6 +11,7 @@ use haptics::law::{Effect, LocalResistance, Motion};
 use haptics::world::{Switch, World};
 
 /// Number of linear parts of a local resistance in a world's curve.
+/// Choice: no case of the ablation reads it.
 const LINEAR_PARTS: usize = 8;
 
 /// The world with these effects on its switch.

@@ -9,6 +9,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
+/// Choice: halved or doubled, none of 26 answers changes.
 const LEAST_WINDOW_ROWS: usize = 5;
 
 /// A channel with a free-run simulation.

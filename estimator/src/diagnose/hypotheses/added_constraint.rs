@@ -12,14 +12,19 @@ use std::f64::consts::TAU;
 pub(crate) const ID: &str = "added-constraint";
 
 /// Tried places of a wall, as shares of the positions that lie before it.
+/// Choice: halved or doubled, none of 62 answers changes.
 const WALLS: Axis = Axis::even(0.4, 0.9, 6);
 /// Tried anchor directions of a cable, in turns.
+/// Choice: halved, 5 of 62 answers change (2 to wrong); doubled, 3 of 62 answers change.
 const DIRECTIONS: Axis = Axis::cells(16);
 /// Tried slack of a cable, as a share of the travel.
+/// Choice: halved, 6 of 62 answers change; doubled, 5 of 62 answers change.
 const SLACK: Axis = Axis::even(0.35, 0.8, 3);
 /// Initial distance of the anchor, in arm lengths.
+/// Choice: halved, 2 of 62 answers change; doubled, 3 of 62 answers change.
 const REACH: f64 = 5.0;
 /// Tried distances of the anchor, in arm lengths.
+/// Choice: halved, 1 of 6 answers change; doubled, 3 of 6 answers change.
 const REACHES: Axis = Axis::geometric(0.5 * REACH, 4.0 * REACH, 4);
 /// Points: place and side of a wall.
 const WALL: &str = "wall";

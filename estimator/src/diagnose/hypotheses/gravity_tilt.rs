@@ -13,8 +13,10 @@ use haptics::law::{Coordinate, Effect, GravityTilt, Kind};
 pub(crate) const ID: &str = "gravity-tilt";
 
 /// Tried tilts, rad: a larger one would be noticed.
+/// Choice: no case of the ablation reads it.
 const TILTS: Axis = Axis::even(-1.4, 1.4, 25);
 /// Tried tilts of a plane that was assumed to be level, as their sines.
+/// Choice: no case of the ablation reads it.
 const SINES: Axis = Axis::even(0.0, 0.6, 31);
 
 impl Hypothesis for GravityTilt {

@@ -12,8 +12,10 @@ use std::f64::consts::TAU;
 pub(crate) const ID: &str = "local-resistance";
 
 /// Tried places, as shares of the range.
+/// Choice: halved, 7 of 74 answers change (1 to wrong); doubled, 4 of 74 answers change.
 pub(crate) const PLACES: Axis = Axis::cells(24);
 /// Tried widths, as shares of the range.
+/// Choice: halved, 4 of 62 answers change; doubled, 3 of 62 answers change.
 const WIDTHS: Axis = Axis::geometric(0.12, 0.35, 3);
 /// Points: place and width.
 const HUMP: &str = "place and width";

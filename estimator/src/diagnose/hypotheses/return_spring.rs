@@ -14,6 +14,7 @@ pub(crate) const ID: &str = "return-spring";
 
 /// Tried rest positions of a hardening spring, as shares of the range from its lower end. They are twice as many if the
 /// linear part of the spring shows.
+/// Choice: halved or doubled, none of 62 answers changes.
 const RESTS: Axis = Axis::even(-0.25, 1.25, 13);
 /// Points: rest position of a cubic.
 const CUBIC: &str = "cubic";

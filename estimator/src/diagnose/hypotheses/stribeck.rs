@@ -14,19 +14,23 @@ use haptics::law::{Effect, Stribeck};
 pub(crate) const ID: &str = "stribeck";
 
 /// Speeds of the decay of static friction, as shares of the usual speed.
+/// Choice: halved or doubled, none of 68 answers changes.
 pub(crate) const SPEEDS: Axis = Axis::geometric(0.06, 0.9, 12);
 /// Exponents of that decay; 0 is the Gaussian.
 /// Source: the Gaussian and the exponential form of the Stribeck curve (Armstrong-Hélouvry, Dupont & Canudas de Wit
 /// 1994).
 const FALLING: Axis = Axis::even(0.0, 1.0, 2);
 /// Ratio of speeds at which a Gaussian is most like an exponential.
+/// Choice: no case of the ablation reads it.
 const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Number of rows, on either side, over which an acceleration is evaluated.
 /// Derived: the shortest window of an acceleration, two rows on either side (`FINER`).
 const RATE_ROWS: f64 = 2.0;
 /// Share of the rows that count as slow.
+/// Choice: no case of the ablation reads it.
 const SLOW_ROWS_SHARE: f64 = 0.25;
 /// Ratio by which a narrower peak is higher at equal area.
+/// Choice: no case of the ablation reads it.
 const HIGHER: f64 = 1.5;
 /// Points: speed and exponent.
 const DECAY: &str = "decay";

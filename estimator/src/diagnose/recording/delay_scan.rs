@@ -4,6 +4,7 @@
 use estimation::regression::linear::least_squares_values;
 
 /// Step of the tried delays, s, or one sample if that is longer.
+/// Choice: halved or doubled, none of 12 answers changes.
 const STEP_S: f64 = 2e-3;
 
 /// The same search in whole samples, about a step apart. `left`: as for [`look`], with the forces of this many samples

@@ -15,16 +15,22 @@ use haptics::recording::Recording;
 use std::ops::Range;
 
 /// Least force of a press, as a share of the usual grip, or of the strongest press against a stop.
+/// Choice: halved, 3 of 24 answers change; doubled, 4 of 24 answers change (1 to wrong).
 pub(crate) const PRESSING: f64 = 0.4;
 /// Least travel in a grip, m.
+/// Choice: halved or doubled, none of 24 answers changes.
 pub(crate) const TRAVEL_M: f64 = 2e-3;
 /// Largest motion of a constant dimension, as a share of the travel of either finger.
+/// Choice: no case of the ablation reads it.
 const STAYS: f64 = 0.1;
 /// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
+/// Choice: halved or doubled, none of 3 answers changes.
 const STANDS_M: f64 = 5e-4;
 /// Share of its rise from which an object is lifted.
+/// Choice: halved or doubled, none of 3 answers changes.
 const LIFTED: f64 = 0.6;
 /// Least ratio of the changes at a lift: difference of the vertical forces over their sum.
+/// Choice: halved or doubled, none of 3 answers changes.
 const DIFFERS: f64 = 2.0;
 
 /// A channel of each finger along one axis.

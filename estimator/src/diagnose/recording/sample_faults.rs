@@ -22,6 +22,7 @@ const CHANNEL: [&str; 7] =
 /// Kinds of them that concern all samples, so that none can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 /// Number of places with lost samples up to which the data remain usable.
+/// Choice: no case of the ablation reads it.
 const USABLE_GAPS: usize = 3;
 
 /// Looks at the raw samples.

@@ -19,6 +19,7 @@ use crate::diagnose::hypotheses::relations::Relation;
 use foundation::estimate::EstimateError;
 
 /// Part of a cause beyond the model below which it counts as none.
+/// Choice: halved or doubled, none of 90 answers changes.
 const LEAST_OWN_PART: f64 = 1e-4;
 
 /// One measured quantity and all that may explain it.

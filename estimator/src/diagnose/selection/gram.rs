@@ -40,6 +40,7 @@ pub fn more(columns: &[Vec<f64>], picked: &[usize], had: &DMatrix<f64>, from: &[
 /// Derived: the next power of two above the 5 up to which `nalgebra` multiplies by another algorithm.
 const LEAST_SIDE: usize = 8;
 /// Number of columns of a strip.
+/// Choice: halved or doubled, none of 90 answers changes.
 pub const STRIP: usize = 24;
 
 /// Columns with weighted rows.

@@ -8,8 +8,10 @@ use std::ops::Range;
 /// Choice: not varied, because arrays have its length. An information criterion chooses among the orders up to it.
 const LARGEST_ORDER: usize = 6;
 /// Largest order of the autoregression for differenced data, whose noise is correlated over many rows.
+/// Choice: no case of the ablation reads it.
 const ORDER_OF_DIFFERENCES: usize = 24;
 /// Least number of rows for each order of that autoregression.
+/// Choice: no case of the ablation reads it.
 const SHARE_OF_DIFFERENCES: usize = 12;
 
 /// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
@@ -61,8 +63,10 @@ fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
 }
 
 /// White noise added to that of the differences, as shares of its power.
+/// Choice: no case of the ablation reads it.
 const WHITE_BESIDE: [f64; 8] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 100.0];
 /// Restoring terms of a swinging position: second differences plus this share of the noise itself.
+/// Choice: no case of the ablation reads it.
 const RESTORING_SHARES: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
 
 /// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from

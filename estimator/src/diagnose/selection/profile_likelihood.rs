@@ -11,6 +11,7 @@ use crate::diagnose::hypotheses::return_spring::{self, about_its_rest};
 use haptics::law::{Coordinate, Law, PositionRipple, ReturnSpring};
 
 /// Share of the distance between two tried values that is added to the vertex's standard error.
+/// Choice: halved or doubled, none of 30 answers changes.
 const OF_STEP: f64 = 0.1;
 
 /// A searched value with one standard error.

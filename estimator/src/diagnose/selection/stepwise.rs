@@ -11,15 +11,19 @@ use std::collections::HashMap;
 
 /// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
 /// of two.
+/// Choice: halved or doubled, none of 90 answers changes.
 pub const MANY: usize = 2;
 /// Most causes at once.
+/// Choice: halved, 6 of 90 answers change (3 to right); doubled, 1 of 90 answers change.
 const MOST_CAUSES: usize = 4;
 /// Number of further causes if the model has no friction.
 /// Derived: dry and viscous friction, which the model then lacks.
 const FRICTIONS: usize = 2;
 /// t-value below which a cause must improve nearly every fold.
+/// Choice: halved or doubled, none of 73 answers changes.
 const CLEAR_T: f64 = 2.0;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
+/// Choice: halved or doubled, none of 73 answers changes.
 const SPARED: f64 = 0.05;
 
 /// A chosen candidate with its evidence.
@@ -45,8 +49,10 @@ pub struct Stepwise<'a> {
 }
 
 /// Squared correlation of two causes' estimates from which they count as one.
+/// Choice: halved, 3 of 13 answers change (3 to right); doubled, 0 of 13 answers change.
 const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
+/// Choice: halved, 1 of 17 answers change (1 to right); doubled, 0 of 17 answers change.
 const CANCELLED_SHARE: f64 = 0.1;
 
 /// True if the cause has an empirical curve.
@@ -392,6 +398,7 @@ impl Stepwise<'_> {
     /// poor measurement does not speak against a cause.
     fn forgiven(&self, chosen: &[usize], c: usize) -> f64 {
         /// Largest share of the residual that this noise may account for.
+        /// Choice: halved or doubled, none of 3 answers changes.
         const LARGEST_NOISE_SHARE: f64 = 0.9;
         let noise = self.candidates[c].noise;
         let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };

@@ -41,12 +41,16 @@ use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
 /// Least force of a touching finger, as a share of its usual force.
+/// Choice: no case of the ablation reads it.
 const SLIDER_TOUCH_SHARE: f64 = 0.1;
 /// Margin at the slow closing and opening of fingers, s.
+/// Choice: no case of the ablation reads it.
 const GRIP_CLOSING_MARGIN_S: f64 = 0.15;
 /// Least total duration of sliding, s.
+/// Choice: no case of the ablation reads it.
 const LEAST_S: f64 = 2.0;
 /// Relative error of a known mass from which a scale is wrong.
+/// Choice: no case of the ablation reads it.
 const MASS_SHARE: f64 = 0.08;
 
 /// One recording as a coordinate with a force along it.

@@ -32,8 +32,10 @@ use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
 
 /// Number of equal parts of the path, with the mean force of each.
+/// Choice: no case of the ablation reads it.
 const PATH_PARTS: usize = 160;
 /// Tried widths of a local resistance, as shares of the range.
+/// Choice: no case of the ablation reads it.
 const PATH_WIDTHS: Axis = Axis::geometric(0.08, 0.9, 6);
 
 /// Units of force and place.

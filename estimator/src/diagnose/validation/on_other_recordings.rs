@@ -17,6 +17,7 @@ use foundation::estimate::EstimateError;
 use haptics::law::{Effect, Kind};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.
+/// Choice: no case of the ablation reads it.
 const BOOTSTRAP_BLOCKS: usize = 32;
 
 /// Residual RMS before and after, and the share of the power that is explained. All in row order, with the rows'
@@ -76,6 +77,7 @@ pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &
 /// Values that belong to one recording (a time, an insertion) and do not carry over to another.
 const OF_ONE_RECORDING: [&str; 4] = ["t0", "from insertion", "from recording", "duration"];
 /// Relative difference of searched values, on another recording's grid, up to which they count as equal.
+/// Choice: no case of the ablation reads it.
 const SAME: f64 = 0.35;
 
 /// One cause of one channel.

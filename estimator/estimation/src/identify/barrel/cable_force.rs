@@ -9,21 +9,29 @@ use haptics::Vec2;
 use nalgebra::{DMatrix, DVector};
 
 /// Number of directions of the cable that are tried.
+/// Choice: no case of the ablation reads it.
 const DIRECTIONS: usize = 48;
 /// Number of taut places that are tried along each direction.
+/// Choice: no case of the ablation reads it.
 const PLACES: usize = 32;
 /// Largest number of Gauss-Newton steps after the search.
+/// Choice: no case of the ablation reads it.
 const NEWTON_STEPS: usize = 30;
 /// Stiffness of a cable in standard errors above zero from which it is seen. It is more than a single test would need,
 /// because the best of many directions and places is chosen.
+/// Choice: no case of the ablation reads it.
 const CABLE_SEEN: f64 = 7.0;
 /// Least ratio of the largest pull to the weight.
+/// Choice: no case of the ablation reads it.
 const LEAST_PULL: f64 = 0.03;
 /// Relative error of the fingers' acceleration as that of the barrel.
+/// Choice: no case of the ablation reads it.
 const ACCELERATION_SHARE: f64 = 0.05;
 /// Least noise of a force, N.
+/// Choice: no case of the ablation reads it.
 const LEAST_NOISE_N: f64 = 1e-4;
 /// Bend in standard errors above zero from which the pull turns, so that the anchor shows.
+/// Choice: no case of the ablation reads it.
 const TURNS: f64 = 6.0;
 
 /// Samples while the barrel hangs.

@@ -12,10 +12,13 @@ use nalgebra::DMatrix;
 
 /// Uncertainty of the shift of the barrel's middle, as a share of it: held above or below its middle, a pulled barrel
 /// turns in the grip.
+/// Choice: no case of the ablation reads it.
 const GRIP_TURN_SHARE: f64 = 0.25;
 /// Uncertainty of that shift, m.
+/// Choice: no case of the ablation reads it.
 const SWINGS_M: f64 = 4e-5;
 /// Uncertainty of the shift while the pull grows, m.
+/// Choice: no case of the ablation reads it.
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
 /// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];

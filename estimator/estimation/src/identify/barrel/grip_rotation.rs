@@ -13,6 +13,7 @@ use foundation::estimate::EstimateError;
 use haptics::Vec2;
 
 /// Largest distance of the grip from the barrel's middle, m: a larger estimate is no balance of a stiff barrel.
+/// Choice: no case of the ablation reads it.
 const FARTHEST_M: f64 = 5e-3;
 
 /// The turning of one recording.

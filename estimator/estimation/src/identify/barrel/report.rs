@@ -20,6 +20,7 @@ pub(crate) const CABLE: &str = "cable";
 
 /// Error of a cable's pull along and across, as a share of it: fingers that move the barrel feel it a little late, and
 /// their sensors' axes are not quite those of their positions.
+/// Choice: no case of the ablation reads it.
 const PULL_SHARE: f64 = 2e-4;
 
 /// Everything that was found out.

@@ -6,6 +6,7 @@ use foundation::estimate::EstimateError;
 use haptics::Vec2;
 
 /// Least length of a free phase before the first grip or after the last, s.
+/// Choice: no case of the ablation reads it.
 const LEAST_FREE_PHASE_S: f64 = 0.2;
 
 /// The zero of both sensors together.

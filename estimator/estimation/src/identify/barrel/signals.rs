@@ -14,6 +14,7 @@ use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
 /// Share of its height from which a lift counts: below it the floor may still carry a part.
+/// Choice: no case of the ablation reads it.
 const CLEAR_OF_FLOOR: f64 = 0.25;
 
 /// The recording of a barrel.

@@ -10,8 +10,10 @@ use super::wall_stiffness::weight_n;
 use crate::identify::limits::CLEARLY_SIGNIFICANT;
 
 /// Least way of a slip, m: pads creep, and a floor is not quite even.
+/// Choice: no case of the ablation reads it.
 const CREEP_M: f64 = 4e-5;
 /// Share of the weight at which heights are compared.
+/// Choice: no case of the ablation reads it.
 const COMPARED_LOAD: f64 = 0.5;
 
 /// Way that the barrel slid down (below 0: up) in the grip within its lifts, m; `None` if it did not, or was not put

@@ -20,8 +20,10 @@ const SHEAR_SHARE: (f64, f64) = (0.93, 0.07 * EVEN);
 /// turns.
 const PARTLY: (f64, f64) = (0.1, 0.85);
 /// Share of the samples below the weight by itself: a cable pulls in many of those above, too.
+/// Choice: no case of the ablation reads it.
 const LEAST_CARRIED: f64 = 0.1;
 /// Pull to the side, as a share of the weight, from which the barrel turns in the grip, so that its width is not seen.
+/// Choice: no case of the ablation reads it.
 const SIDEWAYS: f64 = 0.05;
 
 /// Estimates from the grip.

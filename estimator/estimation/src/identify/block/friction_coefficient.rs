@@ -19,27 +19,38 @@ use foundation::estimate::Parameter;
 use haptics::Vec2;
 
 /// Length of the windows that are looked at, s.
+/// Choice: no case of the ablation reads it.
 const SLIP_WINDOW_S: f64 = 0.05;
 /// Distance between these windows, s.
+/// Choice: no case of the ablation reads it.
 const WINDOW_STEP_S: f64 = 0.01;
 /// Least deficit of the lift, as a share of the force that the block needs.
+/// Choice: no case of the ablation reads it.
 const MISSING: f64 = 0.06;
 /// Least change of the pinch within a window, as a share of it.
+/// Choice: no case of the ablation reads it.
 const PINCH_CHANGES: f64 = 0.08;
 /// Least motion of the tips in a window beyond the give of the softest pads, m.
+/// Choice: no case of the ablation reads it.
 const SLIDES_M: f64 = 0.3e-3;
 /// Least ratio of a slip, as a share of the largest ratio that was certainly held.
+/// Choice: no case of the ablation reads it.
 const OF_THE_BOUND: f64 = 0.9;
 /// Largest difference of the two fingers' ratios, as a share: one that only leans has another ratio.
+/// Choice: no case of the ablation reads it.
 const FINGERS_AGREE: f64 = 0.15;
 /// Largest change of the ratio from the first to the second half of a window, as a share of itself, beyond doubt.
+/// Choice: no case of the ablation reads it.
 const KEEPS: f64 = 0.2;
 /// Largest change of the ratio as a share of that of the pinch, if the pinch changes: a constant shear would change it
 /// by the whole.
+/// Choice: no case of the ablation reads it.
 const OF_THE_PINCH: f64 = 0.5;
 /// Number of standard errors beyond doubt.
+/// Choice: no case of the ablation reads it.
 const DOUBT: f64 = 2.0;
 /// Duration of a slip's onset, s; later the friction is that of motion.
+/// Choice: no case of the ablation reads it.
 const ONSET_S: f64 = 0.1;
 
 impl Blocks<'_> {
@@ -104,6 +115,7 @@ impl Blocks<'_> {
     /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
     fn slip(&self, number: usize, ratio: f64) -> Option<Slip> {
         /// Time after the end of a grasp in which slips still count, s.
+        /// Choice: no case of the ablation reads it.
         const AFTER_S: f64 = 0.3;
         let carried = self.shown(MAIN, number);
         let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
@@ -119,6 +131,7 @@ impl Blocks<'_> {
     /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.
     pub(super) fn mean_force(&self, finger: usize, i: usize) -> Vec2 {
         /// Half of the window over which a tip force is averaged, s.
+        /// Choice: no case of the ablation reads it.
         const MEAN_FORCE_HALF_S: f64 = 0.03;
         let time = &self.signals.time_s;
         let first = time[..i].partition_point(|t| *t < time[i] - MEAN_FORCE_HALF_S);

@@ -24,6 +24,7 @@ use std::ops::Range;
 
 /// Relative difference of the give of the floor's contact from that between blocks, one standard deviation. They cannot
 /// be told apart, because the floor's give looks like the pads' shear.
+/// Choice: no case of the ablation reads it.
 const CONTACTS_DIFFER: f64 = 0.33;
 /// Prior standard deviation of the give of a contact, m/N.
 /// Derived: 1/(5 kN/m), the give of a soft block.

@@ -7,16 +7,22 @@ use crate::segment::threshold::percentile;
 use std::ops::Range;
 
 /// Least change of a weight in a carry, as a share of the weight.
+/// Choice: no case of the ablation reads it.
 const LEAST_CHANGE: f64 = 0.1;
 /// Share of the weight missing from the lift at which the ground takes a part of the load.
+/// Choice: no case of the ablation reads it.
 const GROUND_SHARE: f64 = 0.05;
 /// Share of the weight up to which the load is followed; the line through it tells the beginning.
+/// Choice: no case of the ablation reads it.
 const FOLLOWED_SHARE: f64 = 0.5;
 /// Time over which the load is followed at most, s.
+/// Choice: no case of the ablation reads it.
 const RISE_S: f64 = 0.2;
 /// Shares of the weight up to which lines through the first part are fitted, too.
+/// Choice: no case of the ablation reads it.
 const FIRST_PART_SHARES: [f64; 2] = [0.25, 0.12];
 /// Largest lead of the beginning that the line tells, s.
+/// Choice: no case of the ablation reads it.
 const LARGEST_LEAD_S: f64 = 0.06;
 
 /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out. `rows`: samples in which the block is carried.

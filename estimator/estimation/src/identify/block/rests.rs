@@ -3,6 +3,7 @@
 use super::signals::{Blocks, MAIN};
 
 /// Least height of a block above another one, m, by the grip's place.
+/// Choice: no case of the ablation reads it.
 const LEAST_STEP_M: f64 = 3e-3;
 
 /// One end of a carry: where the block rested in the grip.

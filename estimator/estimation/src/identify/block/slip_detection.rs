@@ -5,26 +5,36 @@
 use std::ops::Range;
 
 /// Durations of a slip in the search for the best place, s.
+/// Choice: no case of the ablation reads it.
 const SEARCHED_S: [f64; 9] = [0.0, 0.02, 0.05, 0.08, 0.1, 0.13, 0.17, 0.23, 0.3];
 /// Largest number of starts of that search in one rest.
+/// Choice: no case of the ablation reads it.
 const MOST_STARTS: usize = 60;
 /// Number of rounds in which the best place is approached.
+/// Choice: no case of the ablation reads it.
 const APPROACH_ROUNDS: usize = 8;
 /// Size of a round's steps, as a share of those of the round before.
+/// Choice: no case of the ablation reads it.
 const SHRINKS: f64 = 0.6;
 /// Least share of a slip between the first and the last row of its rest: with less, any slip would fit.
+/// Choice: no case of the ablation reads it.
 const SEEN_SHARE: f64 = 0.3;
 /// Least share of a regressor that is not in the model's own space.
+/// Choice: no case of the ablation reads it.
 const OWN: f64 = 1e-3;
 /// Relative uncertainty (one standard deviation) of the part of a slip before its rest's first row: it need not be
 /// even.
+/// Choice: no case of the ablation reads it.
 const UNSEEN: f64 = 0.3;
 /// Deviation of a slip's rows from an even slip, as a share of its way.
+/// Choice: no case of the ablation reads it.
 const SHAPE: f64 = 0.05;
 /// Least way of a slip, m. Turns of blocks in the grasp and their unevenness stay below it.
+/// Choice: no case of the ablation reads it.
 pub const LEAST_M: f64 = 3e-4;
 
 /// Largest range of heights, m: with more the block does not stand in the grip, whatever the states say.
+/// Choice: no case of the ablation reads it.
 const STANDS_M: f64 = 5e-3;
 
 /// True if heights of the grip can be those over a standing block.
@@ -191,6 +201,7 @@ impl Heights<'_> {
     /// Slips that begin and end within half a window of this one, and all that begin earlier and end with it.
     fn likely(&self, best: Slip) -> Vec<Slip> {
         /// Number of steps between the first and the latest start.
+        /// Choice: no case of the ablation reads it.
         const START_STEPS: usize = 12;
         let (first_s, last_s) = self.bounds(best.rest);
         let latest_s = (best.start_s + 0.5 * self.half_s).min(last_s).max(first_s);

@@ -12,6 +12,7 @@ use haptics::law::contact::Cushion;
 use haptics::recording::Recording;
 
 /// Share of force noise in the variation of the grip above which that variation tells nothing of the pads.
+/// Choice: no case of the ablation reads it.
 const MOSTLY_NOISE: f64 = 0.5;
 /// Variance of white noise after a parabolic window of `2 h + 1` samples, times their number.
 /// Derived: 6/5, the mean square of the window's weights.

@@ -16,8 +16,10 @@ use std::collections::BTreeMap;
 
 /// Largest error of the predicted force by one parameter, as a share of the measured one; beyond, the parameter is not
 /// identified.
+/// Choice: halved, 3 of 43 answers change; doubled, 0 of 43 answers change.
 const LARGEST_ERROR: f64 = 0.3;
 /// Number of samples of each low-pass window that a shift of the geometry is followed through.
+/// Choice: halved or doubled, none of 43 answers changes.
 const TAPS: usize = 16;
 
 /// Quantities besides the rows that decide the uncertainty of the laws.
@@ -67,6 +69,7 @@ impl Friction {
     /// enough, and it is not tied to one that is not shown.
     fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
         /// Size of the correlation of two parameters from which they are tied.
+        /// Choice: no case of the ablation reads it.
         const SAME_THING: f64 = 0.9;
         let covariance = &self.fit.covariance;
         let tied = |other: usize| {

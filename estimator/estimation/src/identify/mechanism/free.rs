@@ -13,6 +13,7 @@ use haptics::law::Coordinate;
 use haptics::recording::Meta;
 
 /// Relative error of the integration that the refinement rests on.
+/// Choice: no case of the ablation reads it.
 const INTEGRATION_ERROR: f64 = 2e-5;
 /// Ratios that are reported without a known scale.
 const RATIO_NAMES: [(Term, &str, &str); 4] = [

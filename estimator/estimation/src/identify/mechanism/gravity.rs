@@ -14,6 +14,7 @@ use foundation::estimate::EstimateError;
 /// Source: Kass & Raftery 1995: above 10 it is "very strong".
 const EVIDENCE: f64 = 10.0;
 /// Smallest range of the angle in which sine and line can differ, rad.
+/// Choice: halved or doubled, none of 4 answers changes.
 const MIN_RANGE_RAD: f64 = 0.3;
 
 /// Decision about gravity.

@@ -7,8 +7,10 @@ use foundation::signal::noise::{quantum, white_noise_under_fast_motion};
 use std::ops::Range;
 
 /// Length of the windows in which samples are looked at, s.
+/// Choice: no case of the ablation reads it.
 const STANDING_WINDOW_S: f64 = 0.1;
 /// Least number of windows in a row that are a standstill; fewer are a turn of the motion.
+/// Choice: no case of the ablation reads it.
 const LEAST_WINDOWS: usize = 3;
 
 /// The recordings without their standstills, each moving segment by itself, and whether there was any standstill. They

@@ -7,6 +7,7 @@ use super::signals::{Piece, Raw};
 use foundation::estimate::{Fit, Parameter};
 
 /// Largest relative difference of two forces by rounding.
+/// Choice: halved or doubled, none of 5 answers changes.
 const ROUNDING: f64 = 1e-9;
 
 /// The force that stands in every sample of all recordings; `None` where it changes.

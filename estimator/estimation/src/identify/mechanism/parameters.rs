@@ -8,6 +8,7 @@ use haptics::law::{
 use haptics::recording::Meta;
 
 /// Relative error of the clock of a recording: 100 ppm, the usual tolerance of an uncompensated quartz.
+/// Choice: halved or doubled, none of 5 answers changes.
 pub const CLOCK_TOLERANCE: f64 = 1e-4;
 
 /// One regressor of the fit.

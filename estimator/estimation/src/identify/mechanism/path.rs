@@ -79,8 +79,10 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
 }
 
 /// Largest distance of a tool from its path when the object is held again, in multiples of the usual one.
+/// Choice: no case of the ablation reads it.
 const WORSE: f64 = 3.0;
 /// Addition to this distance, as a share of the path's extent.
+/// Choice: no case of the ablation reads it.
 const SPARE: f64 = 0.005;
 
 /// Largest distance of a recording of the same object, in the same frame, from the path that was found in `like`, m.

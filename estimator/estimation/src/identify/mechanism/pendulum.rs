@@ -10,12 +10,16 @@ use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};
 use std::ops::Range;
 
 /// Largest number of segments that are integrated together: each brings two starting values.
+/// Choice: no case of the ablation reads it.
 const MAX_PIECES: usize = 6;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
+/// Choice: no case of the ablation reads it.
 const INNER_STEP_SHARE: f64 = 0.005;
 /// Largest number of Gauss-Newton steps.
+/// Choice: no case of the ablation reads it.
 const ITERATIONS: usize = 25;
 /// Largest distance of the refined motion from the measured one, as a share of its size; beyond, the regression stands.
+/// Choice: no case of the ablation reads it.
 const ACCEPTED_SHARE: f64 = 0.05;
 
 /// Measured samples of one segment.

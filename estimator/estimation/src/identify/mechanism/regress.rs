@@ -7,26 +7,35 @@ use foundation::estimate::EstimateError;
 use nalgebra::DMatrix;
 
 /// Part of a column that no other column explains, as a share, below which two terms merge.
+/// Choice: halved or doubled, none of 5 answers changes.
 const DISTINCT: f64 = 0.05;
 /// Least filtered direction of motion of a sample away from a reversal, of 1.
+/// Choice: halved or doubled, none of 5 answers changes.
 const STEADY_DIRECTION: f64 = 0.98;
 /// Least share of the moving time in each direction for a reversal to count.
+/// Choice: halved or doubled, none of 5 answers changes.
 const REVERSAL_SHARE: f64 = 0.02;
 /// Least share of the way in each direction for a reversal to count.
+/// Choice: halved or doubled, none of 5 answers changes.
 const REVERSAL_WAY: f64 = 0.01;
 /// Standard deviation of the place of a reversal between two samples, in samples.
 /// Derived: 1/√12, that of an even spread over one sample.
 const SKEW_SAMPLES: f64 = 0.29;
 /// Share of its usual speed below which a mechanism or joint may stick.
+/// Choice: halved or doubled, none of 5 answers changes.
 pub(super) const STICKING_SHARE: f64 = 0.015;
 /// Number of rounds of weighting.
+/// Choice: halved or doubled, none of 5 answers changes.
 pub(super) const WEIGHTING_ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
+/// Choice: halved, 2 of 5 answers change; doubled, 3 of 5 answers change.
 const UNSEEN_STOP: f64 = 0.4;
 /// Decay rate of the reach of the filter, per period of its cut-off. It lies between its main lobe and its ringing
 /// (2.4), where masses of generated recordings with many stops have no bias and the errors are least.
+/// Choice: halved or doubled, none of 5 answers changes.
 const REACH: f64 = 4.5;
 /// Least velocity of a motion, in multiples of the velocity's noise.
+/// Choice: halved or doubled, none of 5 answers changes.
 const MOTION_RATIO: f64 = 2.0;
 
 /// Regressors, target and weights of a fit, over the usable samples of all segments.

@@ -17,6 +17,7 @@ pub const OBJECT: &str = "mechanism";
 pub const PHASE: &str = "gravity_phase_rad";
 /// Largest uncertainty of the force by the error of one value, as a share of the force. A value with a larger one is
 /// shown only if it is significant.
+/// Choice: halved or doubled, none of 5 answers changes.
 pub(super) const EFFECT_SHARE: f64 = 0.2;
 
 /// Input of the report.

@@ -13,14 +13,17 @@ use haptics::world::{Mechanism, MechanismPath};
 use std::f64::consts::TAU;
 
 /// Step in periods above which a segment ends.
+/// Choice: halved or doubled, none of 5 answers changes.
 const GAP_PERIODS: f64 = 10.0;
 /// Noise that a filter lets through on a derivative, as a share of the derivative: the noise biases the inertia by the
 /// square of this share.
 /// Derived: the square root of a bias of 0.1 %.
 pub(super) const DERIVATIVE_NOISE: f64 = 0.03;
 /// Largest ratio of the cut-off to the fastest motion that matters: further up there is noise only.
+/// Choice: halved or doubled, none of 5 answers changes.
 const CUTOFF_OVER_MOTION_MAX: f64 = 100.0;
 /// Least ratio of the cut-off to the fastest motion that matters.
+/// Choice: halved or doubled, none of 5 answers changes.
 const CUTOFF_OVER_MOTION: f64 = 3.0;
 
 /// Coordinate and force as recorded: every recording form is reduced to it.

@@ -15,17 +15,21 @@ const OBJECT: &str = "transmission";
 /// The output's columns.
 const OUTPUTS: [(&str, &str, &str); 2] = [("q_out_rad", "q_rad", "rad"), ("q_out_m", "q_m", "m")];
 /// Number of half gaps that are tried first.
+/// Choice: no case of the ablation reads it.
 const TRIES: usize = 40;
 /// Number of steps of the golden section about the best one.
 /// Derived: 0.618²⁴ = 1e-5 of the bracket remains.
 const CLOSER: usize = 24;
 /// Largest half gap, as a share of the input's way.
+/// Choice: no case of the ablation reads it.
 const LARGEST: f64 = 0.25;
 /// Largest number of samples in the fit: slow motions are sampled far too often.
+/// Choice: no case of the ablation reads it.
 const ROWS: usize = 3000;
 /// Share of the recording in which the gap's side is not known yet.
 const SETTLING: f64 = 0.02;
 /// Least number of reversals of the input that show a gap.
+/// Choice: no case of the ablation reads it.
 const REVERSALS: usize = 2;
 
 /// A value with its standard error by covariance and by resampling.

@@ -56,6 +56,7 @@ fn effects(fit: &Fit) -> Vec<Effect> {
 }
 
 /// Least size of a direction of motion that is certain, of 1.
+/// Choice: no case of the ablation reads it.
 const MOVES: f64 = 0.99;
 /// Share of the square of dry friction that a stop or a turn leaves open at most, as the fit weighs its samples.
 /// Derived: 0.1²; the friction is then told to a tenth of itself.

@@ -10,16 +10,22 @@ use foundation::estimate::Parameter;
 use haptics::recording::Recording;
 
 /// Largest distance of a force on the loading curve, as a share of it: slow filters bend the curve a little.
+/// Choice: halved or doubled, none of 15 answers changes.
 const ON_CURVE: f64 = 0.02;
 /// Delay of a filter that force and place may have gone through, s: it makes the puncture lead on the curve.
+/// Choice: halved or doubled, none of 15 answers changes.
 const FILTER_S: f64 = 2e-3;
 /// Time before the puncture over which the speed of a push is taken, s; at least one step between samples.
+/// Choice: halved or doubled, none of 15 answers changes.
 const SPEED_BEFORE_S: f64 = 0.02;
 /// Uncertainty of a puncture's place on the curve, as a share of the force's noise.
+/// Choice: halved or doubled, none of 15 answers changes.
 const PLACE_NOISE: f64 = 0.5;
 /// Error of the friction by drag, and by a hole that is not the same both ways, as a share of the friction.
+/// Choice: halved or doubled, none of 15 answers changes.
 const HOLE_SHARE: f64 = 0.05;
 /// Least error of the level of the force on the way to the sheet, as a share of the force's noise.
+/// Choice: halved or doubled, none of 15 answers changes.
 const LEVEL_NOISE: f64 = 0.08;
 
 /// One puncture, all in N: the force, its errors by the curve (by covariance and by resampling), and its own.

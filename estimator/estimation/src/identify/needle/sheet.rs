@@ -17,12 +17,15 @@ pub const OBJECT: &str = "needle";
 pub const HELD: &str = "held_force_N";
 
 /// Error of a place by geometry and log, m: seats, resolution.
+/// Choice: halved or doubled, none of 15 answers changes.
 const PLACE_ERROR_M: f64 = 1e-5;
 
 /// Least number of points to which samples are averaged.
+/// Choice: halved or doubled, none of 15 answers changes.
 const LEAST_POINTS: usize = 60;
 
 /// Least number of samples of loading that show a curve.
+/// Choice: halved or doubled, none of 15 answers changes.
 pub(super) const LEAST_LOADING: usize = 20;
 
 /// The loading curve with its change by the pads' unknown give.

@@ -10,14 +10,19 @@ use haptics::recording::Recording;
 use std::ops::Range;
 
 /// Share of the largest forces whose mean direction is that of the needle.
+/// Choice: halved, 2 of 15 answers change; doubled, 1 of 15 answers change.
 const STRONGEST: f64 = 0.02;
 /// Least force that shows the needle's direction, in multiples of its noise.
+/// Choice: halved or doubled, none of 15 answers changes.
 const DIRECTION_NOISES: f64 = 12.0;
 /// Time over which points of the loading curve are averaged, s: a hand moves on by a tenth of a millimetre meanwhile.
+/// Choice: halved, 1 of 15 answers change; doubled, 1 of 15 answers change.
 const CALM_S: f64 = 0.005;
 /// Least number of samples of a hold.
+/// Choice: halved or doubled, none of 15 answers changes.
 const LEAST_HOLD: usize = 30;
 /// Slope of width over grip, in standard errors, from which the pads' give is seen.
+/// Choice: halved or doubled, none of 3 answers changes.
 const PADS_SEEN: f64 = 8.0;
 
 /// The recording along the needle.

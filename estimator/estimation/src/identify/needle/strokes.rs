@@ -6,19 +6,26 @@ use crate::identify::limits::{CONTACT_NOISES, PUSH_SHARE};
 use std::ops::Range;
 
 /// Least reversal of the motion, as a share of its whole range.
+/// Choice: halved or doubled, none of 15 answers changes.
 const STROKE_TURN_SHARE: f64 = 0.05;
 /// Least reversal of the motion, m.
+/// Choice: halved or doubled, none of 15 answers changes.
 const TURN_M: f64 = 2e-4;
 /// Largest distance of two places of the same hole, m.
+/// Choice: halved or doubled, none of 15 answers changes.
 const SAME_PLACE_M: f64 = 1e-3;
 /// Distance beyond an earlier dent from which the sheet is untouched again, m.
+/// Choice: halved, 1 of 15 answers change; doubled, 1 of 15 answers change.
 pub const BEYOND_DENT_M: f64 = 1e-4;
 /// Share of its peak below which the force of a needle that is through falls.
+/// Choice: halved, 0 of 15 answers change; doubled, 9 of 9 answers change (9 to wrong).
 const FALLEN: f64 = 0.6;
 /// Largest return of the needle meanwhile, as a share of its depth in the sheet: the force of a released press falls
 /// with its depth.
+/// Choice: halved or doubled, none of 15 answers changes.
 const DRAWN_BACK: f64 = 0.1;
 /// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
+/// Choice: halved or doubled, none of 12 answers changes.
 const LAST_PART: usize = 4;
 
 /// One push.

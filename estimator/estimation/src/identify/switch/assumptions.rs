@@ -1,6 +1,7 @@
 //! Assumptions about geometry and pads in reading the samples of a switch.
 
 /// Largest sine of a knob's angle from the top of its arc.
+/// Choice: halved, 2 of 21 answers change; doubled, 0 of 21 answers change.
 const FARTHEST_SINE: f64 = 0.95;
 
 /// Give of a pad, and the arc on which the knob moves.

@@ -38,12 +38,16 @@ const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
 /// `PAD_SHARE`.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
 /// Uncertainty of the place of a touch on the knob's round side, m.
+/// Choice: halved or doubled, none of 21 answers changes.
 const TOUCHED_M: f64 = 3e-5;
 /// Uncertainty of the resting place of a knob held by friction, m.
+/// Choice: halved or doubled, none of 21 answers changes.
 const RESTING_M: f64 = 5e-5;
 /// Share of the least force of a touch, over the rise, by which a finger moves the knob before the touch is seen.
+/// Choice: halved or doubled, none of 21 answers changes.
 const UNSEEN_TOUCH: f64 = 0.15;
 /// Largest delay of a touch, as a share of the way between two samples.
+/// Choice: halved or doubled, none of 21 answers changes.
 const TOUCH_STEP_SHARE: f64 = 0.7;
 
 /// Fits one recording.

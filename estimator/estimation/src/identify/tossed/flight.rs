@@ -5,14 +5,19 @@ use crate::identify::limits::{CERTAIN, LEAST_OF_PARABOLA, SIGNIFICANT};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Time at the beginning that shows undisturbed flight, s.
+/// Choice: halved or doubled, none of 6 answers changes.
 const FIRST_S: f64 = 0.068;
 /// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
+/// Choice: halved, 1 of 6 answers change; doubled, 3 of 6 answers change.
 const BLOW_REACH_S: f64 = 0.020;
 /// Least change of the velocity by a blow, m/s.
+/// Choice: halved or doubled, none of 6 answers changes.
 pub const BLOW_M_S: f64 = 0.15;
 /// Number of samples left out before a blow.
+/// Choice: halved, 0 of 6 answers change; doubled, 1 of 6 answers change.
 const GUARD: usize = 1;
 /// Least duration of a flight that is judged, s.
+/// Choice: halved or doubled, none of 6 answers changes.
 const LEAST_FLIGHT_S: f64 = 0.047;
 
 /// Samples of the shortest flight that tells something.
@@ -104,6 +109,7 @@ fn by_flight(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) ->
 /// The same for one flight, by the residuals of its samples, and the number of free ones; `None` if none is.
 fn by_sample(blocks: &[Block], values: &DVector<f64>, inverse: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     /// Largest correlation of neighbouring residuals.
+    /// Choice: no case of the ablation reads it.
     const MOST_ALIKE: f64 = 0.9;
     let left: Vec<DVector<f64>> = blocks.iter().map(|(a, b)| b - a * values).collect();
     let rss: f64 = left.iter().map(DVector::norm_squared).sum();

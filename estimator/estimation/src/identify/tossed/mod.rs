@@ -20,8 +20,10 @@ use pose::Track;
 const BODY: &str = "body";
 /// Largest relative difference of a throw's acceleration from gravity. A larger error of scale or clock is of another
 /// kind, and a body that falls more slowly is held by something.
+/// Choice: halved or doubled, none of 6 answers changes.
 const LIKE_GRAVITY: f64 = 0.2;
 /// Share of the recordings that must begin with a fall.
+/// Choice: halved or doubled, none of 6 answers changes.
 const FALLING_SHARE: f64 = 0.5;
 
 /// Estimates from recordings of one thrown body.

@@ -46,6 +46,7 @@ impl Track {
     /// Samples that come nearest to a time, one at least: the event has a duration, whatever the rate.
     pub fn steps(&self, seconds: f64) -> usize {
         /// Largest number of steps; more than any track has, for a clock that stands.
+        /// Choice: halved or doubled, none of 6 answers changes.
         const MOST: f64 = 1e9;
         (seconds / self.step_s()).round().clamp(1.0, MOST) as usize
     }

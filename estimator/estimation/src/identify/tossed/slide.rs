@@ -6,18 +6,25 @@ use foundation::signal::derive::polynomial;
 use nalgebra::Vector3;
 
 /// Time on either side over which velocities are taken, s.
+/// Choice: halved, 5 of 6 answers change; doubled, 5 of 6 answers change (3 to right).
 const VELOCITY_REACH_S: f64 = 0.0135;
 /// Least speed of a slide, m/s: a slower body may stick or creep.
+/// Choice: halved, 0 of 6 answers change; doubled, 1 of 6 answers change.
 const SLOW_M_S: f64 = 0.05;
 /// Largest angular velocity of a slide, rad/s: a faster body rolls or spins.
+/// Choice: halved or doubled, none of 6 answers changes.
 const TURNING_RAD_S: f64 = 0.6;
 /// Largest speed of rising or falling in a flat slide, m/s.
+/// Choice: halved or doubled, none of 6 answers changes.
 const RISING_M_S: f64 = 0.03;
 /// Largest range of heights in a slide, m.
+/// Choice: halved or doubled, none of 6 answers changes.
 const LEVEL_M: f64 = 2e-3;
 /// Limits of a flat slide by noise, in multiples of its effect.
+/// Choice: halved or doubled, none of 6 answers changes.
 const SLIDE_NOISES: f64 = 3.5;
 /// Largest ratio of these limits to the plain ones.
+/// Choice: halved or doubled, none of 6 answers changes.
 const LOOSER: f64 = 2.0;
 /// Largest speed of the edge's spin, as a share of the body's speed: friction then still goes against the speed, all
 /// but 4 % of it.
@@ -30,8 +37,10 @@ const FOOT: f64 = 1.1;
 /// Derived: 1.1 half widths of a body about a decimetre wide, as hands throw them.
 const FOOT_M: f64 = 0.055;
 /// Relative difference, between an even pressure and four corners, of the friction that does not go against the speed.
+/// Choice: halved or doubled, none of 6 answers changes.
 const FOOT_ERROR: f64 = 0.6;
 /// Least duration of a slide that is judged, s.
+/// Choice: halved or doubled, none of 6 answers changes.
 const LEAST_SLIDE_S: f64 = 0.05;
 
 /// One slide.

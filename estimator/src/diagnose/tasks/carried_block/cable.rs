@@ -13,17 +13,22 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Tried directions of the anchor from the middle of the carries, in turns.
+/// Choice: no case of the ablation reads it.
 const ANCHOR_DIRECTIONS: Axis = Axis::cells(20);
 /// Tried inverse distances of the anchor, in 1/half ranges; 0 is a wall.
+/// Choice: no case of the ablation reads it.
 const NEARNESS: Axis = Axis::even(0.0, 0.6, 3);
 /// Tried shares of the carries in which the cable is slack.
+/// Choice: no case of the ablation reads it.
 const SLACK_SHARES: Axis = Axis::even(0.15, 0.88, 5);
 /// Number of starting points that are refined.
+/// Choice: no case of the ablation reads it.
 const REFINED: usize = 4;
 /// Number of halvings of the step of a refinement.
 /// Derived: the last step is 1/512 of the first one, below the errors of any cable seen.
 const CABLE_HALVINGS: usize = 9;
 /// Most moves with one step size. Without a cable the search does not converge.
+/// Choice: no case of the ablation reads it.
 const MOVES: usize = 15;
 /// Distance of the anchor, in half ranges, from which a cable is a wall.
 /// Derived: at 200 half ranges the circle about the anchor departs from a line by only 1/400 of a half range.

@@ -24,6 +24,7 @@ const LIBRARY: [(&str, &str, f64); 2] = [
 ];
 /// Lengths of a carry, s. The shortest that is likely to suffice is asked for: a leak soon ends, and a drift does not
 /// stay linear for long.
+/// Choice: no case of the ablation reads it.
 const HELD_S: Axis = Axis::geometric(4.0, 16.0, 3);
 
 /// Predicted row: time, s, and kind.

@@ -11,8 +11,10 @@ use haptics::law::Kind;
 use std::iter::once;
 
 /// Durations of a slip, s, that are tried in every rest beside a slip without duration.
+/// Choice: no case of the ablation reads it.
 const SLIP_DURATIONS_S: Axis = Axis::geometric(0.1, 0.3, 2);
 /// Neighbouring rows, around which the start of the best slip is refined.
+/// Choice: no case of the ablation reads it.
 const NEXT_ROW: Axis = Axis::even(0.0, 1.0, 2);
 
 /// Candidate slips in every rest, and finer ones around the best. `model`: regressors of the height beside them.

@@ -23,8 +23,10 @@ use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
 
 /// Tried bends of the pads' law, from weak to strong, and tried ends of the foam.
+/// Choice: no case of the ablation reads it.
 const BENDS: Axis = Axis::cells(7);
 /// Compliance of a pad of usual size, m/N, for the test of excitation.
+/// Choice: no case of the ablation reads it.
 const USUAL_GIVE: f64 = 1.0 / 8000.0;
 
 /// The comparison with the data for its texts.

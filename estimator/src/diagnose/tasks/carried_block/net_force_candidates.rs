@@ -13,6 +13,7 @@ use crate::diagnose::recording::grip_axis_signs::TRAVEL_M;
 use haptics::law::Kind;
 
 /// Starts of a change of weight that are tried in every carry, in shares of its duration.
+/// Choice: no case of the ablation reads it.
 const WEIGHT_CHANGE_STARTS: Axis = Axis::even(1.0 / 7.0, 6.0 / 7.0, 6);
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];

@@ -17,14 +17,17 @@ use foundation::tasks::SystemState;
 use haptics::recording::Recording;
 
 /// Share of the usual lift below which part of the weight is supported.
+/// Choice: no case of the ablation reads it.
 const WHOLE_LIFT_SHARE: f64 = 0.75;
 /// Duration for which a block swings behind its pads after the lift, s.
+/// Choice: no case of the ablation reads it.
 const BLOCK_SWINGS_S: f64 = 0.12;
 /// Rows at either end of a carry. The ground may support the block before the first number. Those from the first to
 /// the second number define the carried lift, and a lift off it by `END_SHARE` is partly supported.
 /// Choice: not varied. Four rows are the time of a landing, and six more give a mean.
 const END_ROWS: (usize, usize) = (4, 10);
 /// Relative change of the lift that counts, at the ends of a carry and after a block was put down.
+/// Choice: no case of the ablation reads it.
 const END_SHARE: f64 = 0.025;
 
 /// One recording.

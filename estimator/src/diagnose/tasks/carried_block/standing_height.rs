@@ -30,6 +30,7 @@ use haptics::world::World;
 /// Derived: two, the least number of which one is left for the fit.
 const HELD_OUT_RESTS: usize = 2;
 /// Number of first rows of a rest that are never held out: only they show a slip at the beginning of the contact.
+/// Choice: no case of the ablation reads it.
 const RESTS_NEVER_HELD_OUT: usize = 4;
 
 /// The comparison with the data for its texts.

@@ -113,6 +113,7 @@ fn model_of(arm: &Arm) -> regression_data::Model {
 
 /// Largest residual of a mirrored axis, as a share of the residual before, if it is much larger than a measured noise.
 /// Many a change of sign reduces an effect that is large beside the noise.
+/// Choice: no case of the ablation reads it.
 const MIRRORED_RESIDUAL_SHARE: f64 = 0.1;
 
 fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {

@@ -20,6 +20,7 @@ use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
 /// Rounds in which weight and load converge.
+/// Choice: halved or doubled, none of 43 answers changes.
 const LOAD_ROUNDS: usize = 3;
 
 /// Adds the weight on the bearing to the load if the data favour it, and returns that weight, N. `gravity_m_s2` turns

@@ -17,6 +17,7 @@ use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 
 /// Window of the acceleration, s.
+/// Choice: halved or doubled, none of 43 answers changes.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
 
 /// Signals at the rate of the rows, each the mean of the same samples.

@@ -21,15 +21,20 @@ use haptics::world::MechanismPath;
 use std::ops::Range;
 
 /// Longest block as a share of a radian of the swing. A longer one would blur effects at a place or a reversal.
+/// Choice: no case of the ablation reads it.
 const LONGEST_RAD: f64 = 0.3;
 /// Ratio of noise to acceleration below which a block need not be longer.
+/// Choice: no case of the ablation reads it.
 const QUIET: f64 = 0.01;
 /// Share of the noise below which a measured rate is used. A rate that was derived from the positions, perhaps with a
 /// delay, is no better than they are.
+/// Choice: no case of the ablation reads it.
 const RATE_BETTER: f64 = 0.3;
 /// Deviation from an even clock, as a share of a step, up to which time stamps count as rounded.
+/// Choice: no case of the ablation reads it.
 const ROUNDED: f64 = 0.03;
 /// Order of the local polynomials between the rows, and their least number of samples on either side.
+/// Choice: no case of the ablation reads it.
 const ORDER: usize = 4;
 /// Derived: the least window with more samples than the five coefficients of a polynomial of order four.
 const LEAST_HALF: usize = 3;

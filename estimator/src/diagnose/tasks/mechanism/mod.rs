@@ -50,8 +50,10 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
 }
 
 /// Rounds in which an offset between force and motion is removed.
+/// Choice: halved or doubled, none of 5 answers changes.
 const OFFSET_ROUNDS: usize = 2;
 /// Share of the linear estimate of that offset that is used.
+/// Choice: halved, 1 of 2 answers change; doubled, 1 of 2 answers change.
 const OF_SKEW: f64 = 0.7;
 
 /// Recordings of one mechanism, compared with all causes.

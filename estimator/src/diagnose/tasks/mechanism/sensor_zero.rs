@@ -19,6 +19,7 @@ use haptics::law::Coordinate;
 use haptics::recording::Recording;
 
 /// Agreement of a rest with a value, as a share of the constant.
+/// Choice: no case of the ablation reads it.
 const SHARE: f64 = 0.15;
 
 /// Evidence from the rests of all recordings on the constant force that a study estimated.
@@ -45,6 +46,7 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
 /// Adds the question that stays open about a constant force after the rests, and the experiment for it.
 pub fn ask(found: &mut Named, track: &Track) {
     /// Expected power below which a proposed experiment asks for rests as well.
+    /// Choice: no case of the ablation reads it.
     const LEAST_POWER: f64 = 0.05;
     let by_direction = |c: &&Cause| c.id == friction_asymmetry::ID && c.parameters.iter().any(|p| p.name == "dFc");
     if track.zero == Zero::OfThePlant && track.coordinate == Coordinate::Linear {

@@ -15,8 +15,10 @@ use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
 /// Numbers of insertions. The least that is likely to suffice is proposed.
+/// Choice: halved or doubled, none of 15 answers changes.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
 /// Half of a stroke in the hole, m.
+/// Choice: halved or doubled, none of 15 answers changes.
 const HALF_STROKE_M: f64 = 2.5e-3;
 /// Time without touch before and after, s.
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \

@@ -6,6 +6,7 @@ use crate::diagnose::hypotheses::{hysteresis, stiffness_hardening, viscous_frict
 use haptics::law::object::MembraneLaw;
 
 /// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
+/// Choice: halved or doubled, none of 2 answers changes.
 pub const RIM_SHARE: f64 = 0.05;
 
 /// Names of the two forms of hardening.

@@ -50,6 +50,7 @@ const CLOSELY: [&str; 3] = [stribeck::ID, backlash::ID, local_resistance::ID];
 /// it.
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
 /// Step sizes of the refinement around the values found: those of the first grid, and half of them.
+/// Choice: halved or doubled, none of 14 answers changes.
 const HOLE_REFINEMENT: Axis = Axis::geometric(1.0, 0.5, 2);
 /// The comparison.
 pub struct Shaft<'a> {

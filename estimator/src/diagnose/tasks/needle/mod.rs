@@ -40,6 +40,7 @@ use haptics::recording::Recording;
 use rows::{Needle, Puncture};
 
 /// Relative scatter of the puncture forces of one sheet.
+/// Choice: halved, 0 of 15 answers change; doubled, 1 of 15 answers change (1 to wrong).
 const PUNCTURE_SHARE: f64 = 0.03;
 
 /// Diagnoses recordings of one needle and one sheet, all together.

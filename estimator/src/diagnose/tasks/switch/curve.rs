@@ -28,8 +28,10 @@ use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
 /// Least evidence of an unexplained term, as a multiple of a cause's threshold.
+/// Choice: halved or doubled, none of 12 answers changes.
 const STRANGE_CURVE_RATIO: f64 = 2.0;
 /// Tried widths of a local resistance, as shares of the travel.
+/// Choice: halved, 1 of 12 answers change (1 to wrong); doubled, 2 of 12 answers change.
 const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
 
 /// The comparison.

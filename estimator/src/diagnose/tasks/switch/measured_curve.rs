@@ -3,8 +3,10 @@
 use super::rows::{Place, Row, direction};
 
 /// Spacing of the nodes of the estimated curve, m.
+/// Choice: halved, 6 of 21 answers change; doubled, 11 of 21 answers change.
 const APART_M: f64 = 0.7e-3;
 /// Largest number of nodes of the estimated curve.
+/// Choice: halved, 1 of 21 answers change; doubled, 0 of 21 answers change.
 const MOST_PLACES: usize = 24;
 /// Position on the estimated curve, along the travel: rising in both directions.
 pub fn along_m(row: &Row) -> f64 {

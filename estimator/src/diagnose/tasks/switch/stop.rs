@@ -20,6 +20,7 @@ use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
 /// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
+/// Choice: halved or doubled, none of 12 answers changes.
 const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
 /// Derived: 1 − 1/10, because the stiffest pads are taken as ten times as stiff.

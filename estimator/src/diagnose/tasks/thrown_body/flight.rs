@@ -15,6 +15,7 @@ use haptics::law::Kind;
 use nalgebra::DVector;
 
 /// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously).
+/// Choice: halved or doubled, none of 3 answers changes.
 const CLOCKS: f64 = 1e-3;
 
 /// The scale as a cause, with a clock error as its alternative; `None` if the fall agrees with gravity.

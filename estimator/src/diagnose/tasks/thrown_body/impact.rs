@@ -29,13 +29,17 @@ const BESIDE_S: f64 = 0.054;
 /// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
 /// Least speed of a blow, m/s: the scatter of a slower one is as large as its restitution.
+/// Choice: halved or doubled, none of 6 answers changes.
 const SLOW_M_S: f64 = 0.4;
 /// Change of the velocity up to which a blow is over, and up to which two velocities are equal, m/s.
+/// Choice: halved or doubled, none of 6 answers changes.
 const STILL_M_S: f64 = 0.10;
 /// Height within which a second corner hits at the same time, in half widths.
+/// Choice: halved or doubled, none of 6 answers changes.
 const SECOND_CORNER_HEIGHT: f64 = 0.1;
 /// Scatter of the blows about one restitution, as a share of their speed, above which most were several blows. They
 /// then determine none.
+/// Choice: halved or doubled, none of 6 answers changes.
 const MIXED: f64 = 0.25;
 /// Ratio of a normal distribution's standard deviation to its median absolute value.
 /// Derived: 1/0.6745, the inverse median absolute deviation of a standard normal distribution (Hampel 1974).

@@ -6,6 +6,7 @@ use crate::diagnose::data::limits::SIGNIFICANT;
 use foundation::signal::task::{half_width, smooth, smooth_value};
 
 /// Speed below which its sign is uncertain, as a share of the largest speed.
+/// Choice: no case of the ablation reads it.
 const LEAST_SPEED: f64 = 1e-3;
 
 /// The input of one recording at its own rate.

@@ -8,9 +8,11 @@ use crate::diagnose::selection::refinement::{Refinement, refined};
 use foundation::estimate::EstimateError;
 
 /// Tried half gaps, as shares of the input's range.
+/// Choice: no case of the ablation reads it.
 const GAPS: Axis = Axis::geometric(3e-3, 0.1, 14);
 /// Standard error, as a share of the distance between tried values, up to which the grid is refined. Closer values
 /// cannot be separated.
+/// Choice: no case of the ablation reads it.
 const SHARPER: f64 = 0.3;
 
 /// Tried half gaps or presliding distances, finer around a value found.

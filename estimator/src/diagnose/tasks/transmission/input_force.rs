@@ -31,8 +31,10 @@ use haptics::law::{
 };
 
 /// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
+/// Choice: no case of the ablation reads it.
 const SLOW_SPEED_SHARE: f64 = 0.1;
 /// Direction of motion from which its sign is certain, of 1.
+/// Choice: no case of the ablation reads it.
 const SURE_POSTERIOR: f64 = 0.99;
 
 /// Rows with a certain direction of friction.
@@ -118,6 +120,7 @@ impl Told for Force {
 }
 
 /// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
+/// Choice: no case of the ablation reads it.
 const SHAPE: f64 = 0.03;
 
 /// Separability of a load from dry friction.

@@ -33,6 +33,7 @@ use haptics::recording::Recording;
 use rows::{Columns, Row, Seen, columns, stretches_of};
 
 /// Least share of the parts in which work is taken, if it is taken and not given for certain.
+/// Choice: no case of the ablation reads it.
 const PARTS_OF_ONE_SIGN: f64 = 0.9;
 
 /// True if [`driven`] handles these recordings.

@@ -13,6 +13,7 @@ use haptics::recording::Recording;
 use std::f64::consts::TAU;
 
 /// Number of rows in a period of the cut-off: closer neighbours repeat each other.
+/// Choice: no case of the ablation reads it.
 const ROWS_A_PERIOD: f64 = 4.0;
 
 /// One segment of a recording without a gap.

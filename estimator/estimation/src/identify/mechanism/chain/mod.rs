@@ -20,6 +20,7 @@ use joints::{Joints, joints};
 use solve::{Solution, solve, tried};
 
 /// Share of its motion elsewhere below which a joint is held: its holding force is not its sliding friction.
+/// Choice: no case of the ablation reads it.
 const HELD_SHARE: f64 = 0.05;
 
 /// Fits one chain to all `recordings` of it together.

@@ -10,6 +10,7 @@ use haptics::law::object::TWO_LINK;
 pub const OBJECT: &str = "chain";
 
 /// Least number of recordings that show by leaving one out how far they agree.
+/// Choice: no case of the ablation reads it.
 pub const LEAST_FOR_JACKKNIFE: usize = 4;
 /// Index of the coupling; over the second link's moment it is the length of the first link.
 /// Derived: position in [`TWO_LINK`].

@@ -17,8 +17,10 @@ const DRY: [usize; 2] = [7, 9];
 /// Derived: half an octave, √2.
 const CUTOFF_STEP: f64 = std::f64::consts::SQRT_2;
 /// Lowest cut-off, as a share of the frequency of the motion.
+/// Choice: no case of the ablation reads it.
 const BELOW_MOTION: f64 = 0.5;
 /// Highest cut-off, as a share of that of the light filter.
+/// Choice: no case of the ablation reads it.
 const BELOW_LIGHT: f64 = 1.0 / 3.0;
 
 /// One row of the regression.
