@@ -338,10 +338,9 @@ fn constants(folder: &str) -> Vec<(String, String, String)> {
             let name = words.iter().position(|word| *word == "const").and_then(|at| words.get(at + 1));
             // An id, a text or a flag is no tuning constant.
             let kinds = ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64", "Axis", "Demands"];
-            let kind = words.last().copied().unwrap_or_default();
             if let Some(name) = name.filter(|name| name.ends_with(':') && kinds.iter().any(|k| line.contains(k))) {
                 let name = name.trim_end_matches(':').to_owned();
-                if kind != "&str" {
+                if !line.contains("&str") && !line.contains("&'static str") {
                     found.push((shown(&path), name, std::mem::take(&mut comment)));
                 }
             }

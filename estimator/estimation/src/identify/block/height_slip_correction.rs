@@ -9,7 +9,7 @@ use crate::regression::linear::least_squares;
 use foundation::signal::task::half_width;
 
 /// Least decrease of −2 ln(likelihood) by a slip: no rows can be held out of so few, so it must be beyond doubt.
-const SURE: f64 = 50.0;
+const SURE_SLIP: f64 = 50.0;
 
 /// A slip of the grip at one end of a carry.
 pub(super) struct HeightSlip {
@@ -82,7 +82,7 @@ pub(super) fn height_slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<HeightSli
         let own = fit.std_errors[model.len() - 1];
         let (way_m, open_m) = heights.way_m(&left, best, variance_m2);
         let score = n as f64 * (squares / after).ln();
-        if score < SURE || best.way_m.abs() < LEAST_M.max(CERTAIN * own) {
+        if score < SURE_SLIP || best.way_m.abs() < LEAST_M.max(CERTAIN * own) {
             break;
         }
         let (rest, slip) = (rows.numbers[best.slip.rest], best.slip);

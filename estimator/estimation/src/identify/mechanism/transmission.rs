@@ -27,7 +27,7 @@ const LARGEST: f64 = 0.25;
 /// Choice: no case of the ablation reads it.
 const ROWS: usize = 3000;
 /// Share of the recording in which the gap's side is not known yet.
-const SETTLING: f64 = 0.02;
+const UNSETTLED_SHARE: f64 = 0.02;
 /// Least number of reversals of the input that show a gap.
 /// Choice: no case of the ablation reads it.
 const REVERSALS: usize = 2;
@@ -119,7 +119,7 @@ fn one(recording: &Recording) -> Option<Found> {
         return None;
     }
     let stride = input.len().div_ceil(ROWS);
-    let first = (SETTLING * input.len() as f64) as usize;
+    let first = (UNSETTLED_SHARE * input.len() as f64) as usize;
     let rows: Vec<usize> = (first..input.len()).step_by(stride).collect();
     let target: Vec<f64> = rows.iter().map(|&i| output[i]).collect();
     let columns = |half: f64, slope: bool| {
