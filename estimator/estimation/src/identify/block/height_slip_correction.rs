@@ -9,6 +9,7 @@ use crate::regression::linear::least_squares;
 use foundation::signal::task::half_width;
 
 /// Least decrease of −2 ln(likelihood) by a slip: no rows can be held out of so few, so it must be beyond doubt.
+/// Choice: no case of the ablation reads it.
 const SURE_SLIP: f64 = 50.0;
 
 /// A slip of the grip at one end of a carry.

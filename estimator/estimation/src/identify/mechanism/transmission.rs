@@ -27,6 +27,7 @@ const LARGEST: f64 = 0.25;
 /// Choice: no case of the ablation reads it.
 const ROWS: usize = 3000;
 /// Share of the recording in which the gap's side is not known yet.
+/// Choice: no case of the ablation reads it.
 const UNSETTLED_SHARE: f64 = 0.02;
 /// Least number of reversals of the input that show a gap.
 /// Choice: no case of the ablation reads it.
