@@ -323,8 +323,16 @@ fn a_cause_id_is_written_once() {
     assert!(sum <= MOST_ID_LITERALS, "{sum} literals of cause ids outside the hypotheses: {elsewhere:?}");
 }
 
-/// Numeric constants of a folder with their comments: file, name, comment.
-fn constants(folder: &str) -> Vec<(String, String, String)> {
+/// A numeric constant, or a grid or a set of limits made of numbers.
+struct Constant {
+    file: String,
+    name: String,
+    comment: String,
+    is_number: bool,
+}
+
+/// Constants of a folder. An id, a text or a flag is no tuning constant.
+fn constants(folder: &str) -> Vec<Constant> {
     let mut found = Vec::new();
     for path in sources(folder) {
         let mut comment = String::new();
@@ -336,32 +344,28 @@ fn constants(folder: &str) -> Vec<(String, String, String)> {
             }
             let words: Vec<&str> = line.split_whitespace().take_while(|word| *word != "=").collect();
             let name = words.iter().position(|word| *word == "const").and_then(|at| words.get(at + 1));
-            // An id, a text or a flag is no tuning constant.
-            let kinds = ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64", "Axis", "Demands"];
-            if let Some(name) = name.filter(|name| name.ends_with(':') && kinds.iter().any(|k| line.contains(k))) {
-                let name = name.trim_end_matches(':').to_owned();
-                if !line.contains("&str") && !line.contains("&'static str") {
-                    found.push((shown(&path), name, std::mem::take(&mut comment)));
-                }
+            let numbers = ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64"];
+            let is_number = numbers.iter().any(|kind| line.contains(kind));
+            let counts = is_number || line.contains("Axis") || line.contains("Demands");
+            if let Some(name) = name
+                .and_then(|name| name.strip_suffix(':'))
+                .filter(|_| counts && !words.iter().any(|word| word.contains("str")))
+            {
+                found.push(Constant { file: shown(&path), name: name.to_owned(), comment: comment.clone(), is_number });
             }
             comment.clear();
         }
     }
+    assert!(found.len() > 100, "{} constants of {folder} were looked at", found.len());
     found
 }
 
 #[test]
 fn a_constant_says_where_it_comes_from_or_what_changes_with_it() {
+    let begins = |line: &str| ["Source: ", "Derived: ", "Choice: "].iter().any(|with| line.trim().starts_with(with));
     for (folder, _) in MOST_CONSTANTS {
-        let all = constants(folder);
-        assert!(all.len() > 100, "{} constants of {folder} were looked at", all.len());
-        let says = |comment: &str| {
-            let lines = comment.lines().map(str::trim);
-            lines
-                .into_iter()
-                .any(|line| ["Source: ", "Derived: ", "Choice: "].iter().any(|with| line.starts_with(with)))
-        };
-        let silent: Vec<_> = all.iter().filter(|(.., comment)| !says(comment)).map(|(f, n, _)| (f, n)).collect();
+        let silent = constants(folder).into_iter().filter(|c| !c.comment.lines().any(begins));
+        let silent: Vec<String> = silent.map(|c| format!("{} in {}", c.name, c.file)).collect();
         assert!(silent.is_empty(), "no Source, Derived or Choice: {silent:?}");
     }
 }
@@ -369,23 +373,12 @@ fn a_constant_says_where_it_comes_from_or_what_changes_with_it() {
 #[test]
 fn constants_are_few_and_a_name_stands_in_one_file() {
     for (folder, most) in MOST_CONSTANTS {
-        let mut files: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        let mut count = 0;
-        for path in sources(folder) {
-            for line in product(&path).lines() {
-                let words: Vec<&str> = line.split_whitespace().take_while(|word| *word != "=").collect();
-                let name = words.iter().position(|word| *word == "const").and_then(|at| words.get(at + 1));
-                // An id, a text or a flag is no tuning constant.
-                let numbers = ["f64", "f32", "usize", "isize", "u32", "i32", "u64", "i64"];
-                let is_number = numbers.iter().any(|n| line.contains(n));
-                if let Some(name) = name.filter(|name| is_number && name.ends_with(':')) {
-                    files.entry((*name).to_owned()).or_default().insert(shown(&path));
-                    count += 1;
-                }
-            }
+        let numbers: Vec<Constant> = constants(folder).into_iter().filter(|c| c.is_number).collect();
+        assert!(numbers.len() <= most, "{} constants in {folder}", numbers.len());
+        let mut files: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for constant in &numbers {
+            files.entry(&constant.name).or_default().insert(&constant.file);
         }
-        assert!(count > 100, "{count} constants of {folder} were looked at");
-        assert!(count <= most, "{count} constants in {folder}");
         let several: Vec<_> = files.iter().filter(|(_, files)| files.len() > 1).collect();
         assert!(several.is_empty(), "{several:?}");
     }

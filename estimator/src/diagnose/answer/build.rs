@@ -103,7 +103,7 @@ pub struct Draft {
     is_strange: bool,
 }
 
-/// What the comparisons and the evidence beside them show.
+/// Findings of the comparisons and of the evidence beside them, without a verdict.
 pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let Evidence { model, mut causes, mut alternatives, not_excited, mut warnings, remarks, .. } = evidence;
     let compared = compare(parts, not_excited);

@@ -2,8 +2,8 @@
 
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited, PassedOver};
 
-/// What the comparisons name, and the experiment that would settle what they leave open. The task reads it by what it
-/// knows beside them.
+/// Causes that the comparisons name, and the experiment that would settle the open questions. The task corrects them by
+/// its own knowledge.
 pub struct Named {
     /// Named causes, then unnamed terms.
     pub causes: Vec<Cause>,

@@ -49,7 +49,7 @@ pub trait Told {
     fn shows(&self, _found: &Found<'_>) -> String {
         String::new()
     }
-    /// What the task knows beyond the sentence of the catalogue.
+    /// Addition of the task to the sentence of the catalogue.
     fn adds(&self, _candidate: &Candidate) -> &'static str {
         ""
     }
