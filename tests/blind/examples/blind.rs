@@ -7,10 +7,14 @@
 //! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
 //! `cargo run --release -p blind --example blind -- --only ID [SEED]` asks the cases of a whole battery in which one effect is hidden alone.
 //! `cargo run --release -p blind --example blind -- --list SEED…` asks whole batteries and prints every case in a line.
+//! `cargo run --release -p blind --example blind -- --structured SEED…` asks about recordings with structured model error and counts certain names; `--list-structured` has a line for each.
 //! `cargo run --release -p blind --example blind -- --again DIR SEED…` writes cases of whole batteries that a report names by their seeds.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
-use blind::{Bench, Chance, Counts, Effect, Job, Log, Set, Spec, ask, battery, dump, long, make, report, score};
+use blind::{
+    Bench, Chance, Counts, Effect, Job, Log, Set, Spec, Structure, StructureCounts, ask, battery, certain, dump, long,
+    make, report, score, structured,
+};
 use estimator::diagnose::diagnose;
 use std::path::Path;
 use std::process::ExitCode;
@@ -34,11 +38,16 @@ fn main() -> ExitCode {
         ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
         ["--only", id, rest @ ..] => only(id, number(rest.first(), 1)),
         ["--list", seeds @ ..] => seeds.iter().for_each(|seed| list(number(Some(seed), 1))),
+        ["--structured", seeds @ ..] => with_structure(seeds, false),
+        ["--list-structured", seeds @ ..] => with_structure(seeds, true),
         ["--again", folder, seeds @ ..] => again(Path::new(folder), seeds),
-        ["--table", rest @ ..] => table(number(rest.first(), 7)),
+        ["--table", rest @ ..] => {
+            table(number(rest.first(), 7));
+            table_of_structures(number(rest.first(), 7));
+        }
         _ => {
             eprintln!(
-                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --list SEED… | --again DIR SEED… | --table [SEED]"
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --list SEED… | --structured SEED… | --list-structured SEED… | --again DIR SEED… | --table [SEED]"
             );
             return ExitCode::from(2);
         }
@@ -106,6 +115,7 @@ fn one(folder: &Path, id: &str, rest: &[&str]) {
     let spec = Spec {
         effects: vec![(effect, number(0, 0.0) as u32)],
         ratio: number(1, 1.0),
+        structure: None,
         bench,
         log: Log::Mixed,
         rate_hz: number(2, 100.0),
@@ -148,6 +158,24 @@ fn list(seed: u64) {
     }
 }
 
+/// Asks about recordings with structured model error; prints tables over all seeds, or a line for each case.
+fn with_structure(seeds: &[&str], listed: bool) {
+    let start = Instant::now();
+    let jobs: Vec<Job> = seeds
+        .iter()
+        .filter_map(|text| text.parse().ok())
+        .flat_map(|seed| structured(StructureCounts::USUAL, seed))
+        .collect();
+    let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
+    if listed {
+        rows.iter().for_each(|row| println!("{}", certain::line(row)));
+        return;
+    }
+    println!("{} cases, seeds {}", rows.len(), seeds.join(" "));
+    println!("{}", certain::report(&rows));
+    println!("{:.0} s in all, generator included", start.elapsed().as_secs_f64());
+}
+
 /// Writes cases of whole batteries by the seeds that a report names them by.
 fn again(folder: &Path, seeds: &[&str]) {
     for seed in seeds.iter().filter_map(|text| text.parse::<u64>().ok()) {
@@ -177,7 +205,15 @@ fn table(seed: u64) {
             }
             for form in effect.forms_on(bench.is_crank()) {
                 let effects = vec![(effect, form)];
-                let spec = Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 20.0 };
+                let spec = Spec {
+                    effects,
+                    ratio: 1.0,
+                    structure: None,
+                    bench,
+                    log: Log::Mixed,
+                    rate_hz: 100.0,
+                    seconds: 20.0,
+                };
                 let start = Instant::now();
                 let (_, truth) = make(&spec, seed);
                 println!(
@@ -190,6 +226,32 @@ fn table(seed: u64) {
                     truth.noise_n,
                     start.elapsed().as_secs_f64()
                 );
+            }
+        }
+    }
+}
+
+/// Every structure in every form, once at each size.
+fn table_of_structures(seed: u64) {
+    for bench in [Bench::OneFinger, Bench::TwoFingers, Bench::Linear, Bench::Angular] {
+        let there = |effect: &Effect| match bench {
+            Bench::OneFinger => true,
+            Bench::TwoFingers => effect.on_two_fingers(),
+            Bench::Linear | Bench::Angular => effect.on_mechanism(bench == Bench::Angular),
+        };
+        for effect in Effect::STRUCTURES.into_iter().filter(there) {
+            for form in 0..effect.forms() {
+                let start = Instant::now();
+                let ratios = [1.0, 2.0, 4.0].map(|ratio| {
+                    let structure = Some(Structure { effect, form, ratio });
+                    let (log, rate_hz, seconds) = (Log::Mixed, 100.0, 20.0);
+                    let spec = Spec { effects: Vec::new(), ratio: 0.0, structure, bench, log, rate_hz, seconds };
+                    let (_, truth) = make(&spec, seed);
+                    format!("size {:10.3e} ratio {:.3}", truth.hidden[0].size, truth.ratio[0])
+                });
+                let (name, form) = (effect.id(), effect.form(form));
+                let took_s = start.elapsed().as_secs_f64();
+                println!("{:8} {name:30} {form:24} {} {took_s:.2} s", bench.name(), ratios.join(", "));
             }
         }
     }

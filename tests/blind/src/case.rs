@@ -12,6 +12,7 @@ use super::plant::Hidden;
 use super::record::{clock, record};
 use super::sensor::{self, Sensor};
 use super::simulate::{Sample, Setup};
+use super::structure;
 use estimator::diagnose::Experiment;
 use haptics::recording::Recording;
 
@@ -37,9 +38,9 @@ pub struct Case {
 pub struct Truth {
     /// What is hidden; empty in a null case.
     pub hidden: Vec<Hidden>,
-    /// Effect over noise that was asked for …
-    pub wanted_ratio: f64,
-    /// … and that came out, for each.
+    /// Effect over noise that was asked for, for each …
+    pub wanted_ratio: Vec<f64>,
+    /// … and that came out.
     pub ratio: Vec<f64>,
     /// What each leaves after the known model took what it can: root mean square, N (m for effects on the path).
     pub effect_rms: Vec<f64>,
@@ -69,7 +70,8 @@ impl Truth {
 
     /// True when a size was asked for and could not be had.
     pub fn missed(&self) -> bool {
-        self.ratio.iter().any(|r| r.is_finite() && (r / self.wanted_ratio - 1.0).abs() > 0.1)
+        let off = |(r, wanted): (&f64, &f64)| r.is_finite() && (r / wanted - 1.0).abs() > 0.1;
+        self.ratio.iter().zip(&self.wanted_ratio).any(off)
     }
 }
 
@@ -115,8 +117,9 @@ pub fn make_with_object(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth, O
     let mut setup = draw::setup(spec, &sensor, &arm, seed);
     let known = draw::known(spec);
     let mut samples = calm(&mut setup, &sensor, known);
-    scale(&mut setup, &sensor, &arm, known, spec.ratio, &mut samples);
-    tune_noise(&setup, &mut sensor, &arm, known, spec.ratio, &samples);
+    let wanted = spec.wanted_ratios();
+    scale(&mut setup, &sensor, &arm, known, &wanted, &mut samples);
+    tune_noise(&setup, &mut sensor, &arm, known, &wanted, &samples);
     let sizes: Vec<Size> =
         (0..setup.hidden.len()).map(|k| measure::size(&setup, &sensor, &arm, known, &samples, k)).collect();
     let mut zero_m = None;
@@ -130,7 +133,7 @@ pub fn make_with_object(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth, O
         recordings.push(record(&again, &next, &sensor, &arm, &samples, &mut chance, &mut zero_m));
     }
     let truth = Truth {
-        wanted_ratio: spec.ratio,
+        wanted_ratio: wanted,
         ratio: sizes.iter().map(Size::ratio).collect(),
         effect_rms: sizes.iter().map(Size::rms).collect(),
         effect: sizes
@@ -177,7 +180,7 @@ fn calm(setup: &mut Setup, sensor: &Sensor, known: Known) -> Vec<Sample> {
 }
 
 /// Scales what is hidden to its wanted size beside the noise: measure, rescale, simulate again.
-fn scale(setup: &mut Setup, sensor: &Sensor, arm: &Arm, known: Known, ratio: f64, samples: &mut Vec<Sample>) {
+fn scale(setup: &mut Setup, sensor: &Sensor, arm: &Arm, known: Known, wanted: &[f64], samples: &mut Vec<Sample>) {
     let peak = samples.iter().flat_map(|s| s.force_n).fold(0.0_f64, |m, f| m.max(f.abs()));
     for hidden in setup.hidden.iter_mut().filter(|h| h.effect == Effect::Saturation) {
         hidden.shape[1] = peak;
@@ -185,7 +188,7 @@ fn scale(setup: &mut Setup, sensor: &Sensor, arm: &Arm, known: Known, ratio: f64
     let mut last: Vec<Option<(f64, f64)>> = vec![None; setup.hidden.len()];
     for _ in 0..5 {
         let mut far = false;
-        for (k, last) in last.iter_mut().enumerate() {
+        for (k, (last, &ratio)) in last.iter_mut().zip(wanted).enumerate() {
             if setup.hidden[k].effect.shows() == Shows::Grossly {
                 continue;
             }
@@ -228,13 +231,14 @@ fn limited(setup: &Setup, which: usize, size: f64) -> f64 {
         Effect::Tilt => size.clamp(-0.7, 0.7),
         Effect::Leak => size.clamp(-0.9, 0.9),
         Effect::Gain | Effect::CrossAxis => size.clamp(-0.6, 0.6),
+        effect if effect.is_structure() => structure::limited(setup, &setup.hidden[which], size),
         _ => size,
     }
 }
 
 /// The last per cent: one effect alone gets exactly its ratio by a slightly better or worse instrument.
-fn tune_noise(setup: &Setup, sensor: &mut Sensor, arm: &Arm, known: Known, ratio: f64, samples: &[Sample]) {
-    let [hidden] = setup.hidden.as_slice() else { return };
+fn tune_noise(setup: &Setup, sensor: &mut Sensor, arm: &Arm, known: Known, wanted: &[f64], samples: &[Sample]) {
+    let ([hidden], [ratio]) = (setup.hidden.as_slice(), wanted) else { return };
     let now = measure::size(setup, sensor, arm, known, samples, 0).ratio() / ratio;
     if !(0.4..2.0).contains(&now) {
         return;

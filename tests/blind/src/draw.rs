@@ -9,6 +9,7 @@ use super::plan::{Log, Plan};
 use super::plant::{Hidden, Hung, Plant};
 use super::sensor::Sensor;
 use super::simulate::Setup;
+use super::structure;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Nominal link length, m.
@@ -60,6 +61,8 @@ pub struct Spec {
     pub effects: Vec<(Effect, u32)>,
     /// Effect over noise, each.
     pub ratio: f64,
+    /// Structured model error beside it.
+    pub structure: Option<Structure>,
     /// What it is hidden in.
     pub bench: Bench,
     /// How the hand moves.
@@ -68,6 +71,24 @@ pub struct Spec {
     pub rate_hz: f64,
     /// Length, s.
     pub seconds: f64,
+}
+
+/// A structured force that no law of the catalogue describes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Structure {
+    /// Family: one of [`Effect::STRUCTURES`].
+    pub effect: Effect,
+    /// Its form.
+    pub form: u32,
+    /// Structure over noise.
+    pub ratio: f64,
+}
+
+impl Spec {
+    /// Sizes over the noise that are asked for: the effects', then the structure's.
+    pub fn wanted_ratios(&self) -> Vec<f64> {
+        self.effects.iter().map(|_| self.ratio).chain(self.structure.map(|s| s.ratio)).collect()
+    }
 }
 
 /// The terms that the model of a mechanism starts from.
@@ -204,8 +225,11 @@ pub fn setup(spec: &Spec, sensor: &Sensor, arm: &Arm, seed: u64) -> Setup {
         [far * cos, far * sin]
     };
     let away_m = [away(), away()];
-    let hidden =
+    let mut hidden: Vec<Hidden> =
         spec.effects.iter().map(|&(effect, form)| guess(spec, &plant, sensor, effect, form, &mut chance)).collect();
+    if let Some(structure) = &spec.structure {
+        hidden.push(structure::guess(spec, &plant, sensor, structure, &mut Chance::new(seed, 13)));
+    }
     // A crank hangs where its weight pulls it; a mechanism stands somewhere.
     let start_angle = if center_m.is_some() { -FRAC_PI_2 } else { 0.0 };
     let filter_hz = (0.4 * spec.rate_hz).max(150.0);
@@ -259,7 +283,8 @@ fn guess(spec: &Spec, plant: &Plant, sensor: &Sensor, effect: Effect, form: u32,
         Effect::Saturation => 0.3,
         Effect::JointOffset => sign * 20.0 * path,
         Effect::LengthScale => sign * 60.0 * path,
-        Effect::AxisSign | Effect::ChannelFault => 1.0,
+        // A structure has its own guess.
+        _ => 1.0,
     };
     Hidden { effect, form, size, shape: shape(spec, effect, v, chance) }
 }

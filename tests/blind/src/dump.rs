@@ -36,13 +36,13 @@ pub fn truth_json(job: &Job, truth: &Truth) -> serde_json::Value {
         .map(|(k, h)| {
             serde_json::json!({
                 "id": h.effect.id(), "form": h.effect.form(h.form), "size": h.size, "shape": h.shape,
-                "effect_over_noise": truth.ratio[k], "effect_rms": truth.effect_rms[k],
+                "effect_over_noise": truth.ratio[k], "wanted_effect_over_noise": truth.wanted_ratio[k], "effect_rms": truth.effect_rms[k],
             })
         })
         .collect();
     serde_json::json!({
         "set": job.set.name(), "bench": job.spec.bench.name(), "log": job.spec.log.name(), "seed": job.seed,
-        "rate_hz": job.spec.rate_hz, "seconds": job.spec.seconds, "wanted_effect_over_noise": truth.wanted_ratio,
+        "rate_hz": job.spec.rate_hz, "seconds": job.spec.seconds, "wanted_effect_over_noise": job.spec.ratio,
         "hidden": hidden, "noise_N": truth.noise_n, "angle_noise": truth.angle_noise, "equals": truth.equals, "correlation": truth.correlation,
         "visible_inertia": truth.visible_inertia, "noise_free_N": truth.noise_free_n,
     })

@@ -37,6 +37,19 @@ pub enum Effect {
     SquareFriction,
     SquaredLoad,
     Shaking,
+    // Structured model error: no law of the catalogue describes these.
+    SensorWander,
+    SensorCreep,
+    AngleField,
+    SpeedField,
+    LoadField,
+    StateField,
+    FrictionOverAngle,
+    FrictionWander,
+    GraspCreep,
+    Ringing,
+    Hum,
+    Steps,
 }
 
 /// Where an effect shows.
@@ -86,6 +99,22 @@ impl Effect {
     /// What has no name.
     pub const NAMELESS: [Self; 4] = [Self::PositionViscous, Self::SquareFriction, Self::SquaredLoad, Self::Shaking];
 
+    /// Structured model error.
+    pub const STRUCTURES: [Self; 12] = [
+        Self::SensorWander,
+        Self::SensorCreep,
+        Self::AngleField,
+        Self::SpeedField,
+        Self::LoadField,
+        Self::StateField,
+        Self::FrictionOverAngle,
+        Self::FrictionWander,
+        Self::GraspCreep,
+        Self::Ringing,
+        Self::Hum,
+        Self::Steps,
+    ];
+
     /// The name, as answers have it.
     pub fn id(self) -> &'static str {
         match self {
@@ -121,17 +150,52 @@ impl Effect {
             Self::SquareFriction => "(friction that changes in steps with the angle)",
             Self::SquaredLoad => "(friction with the square of the load)",
             Self::Shaking => "(shaking from outside)",
+            Self::SensorWander => "structure:sensor-wander",
+            Self::SensorCreep => "structure:sensor-creep",
+            Self::AngleField => "structure:angle-field",
+            Self::SpeedField => "structure:speed-field",
+            Self::LoadField => "structure:load-field",
+            Self::StateField => "structure:state-field",
+            Self::FrictionOverAngle => "structure:friction-over-angle",
+            Self::FrictionWander => "structure:friction-wander",
+            Self::GraspCreep => "structure:grasp-creep",
+            Self::Ringing => "structure:ringing",
+            Self::Hum => "structure:hum",
+            Self::Steps => "structure:steps",
         }
     }
 
     /// The effect of an id.
     pub fn from_id(id: &str) -> Option<Self> {
-        Self::NAMED.into_iter().chain(Self::NAMELESS).find(|effect| effect.id() == id)
+        Self::NAMED.into_iter().chain(Self::NAMELESS).chain(Self::STRUCTURES).find(|effect| effect.id() == id)
     }
 
     /// True for what no table of causes knows.
     pub fn is_nameless(self) -> bool {
         Self::NAMELESS.contains(&self)
+    }
+
+    /// True for structured model error.
+    pub fn is_structure(self) -> bool {
+        Self::STRUCTURES.contains(&self)
+    }
+
+    /// True for what only a force sensor tells, and the handle does not feel.
+    pub fn is_in_force_sensor(self) -> bool {
+        matches!(
+            self,
+            Self::Delay
+                | Self::Bias
+                | Self::Drift
+                | Self::CrossAxis
+                | Self::Gain
+                | Self::Saturation
+                | Self::SensorWander
+                | Self::SensorCreep
+                | Self::Ringing
+                | Self::Hum
+                | Self::Steps
+        )
     }
 
     /// Where it shows.
@@ -156,6 +220,11 @@ impl Effect {
                 | Self::LengthScale
                 | Self::AxisSign
                 | Self::ChannelFault
+                | Self::SensorWander
+                | Self::SensorCreep
+                | Self::Ringing
+                | Self::Hum
+                | Self::Steps
         )
     }
 
@@ -168,7 +237,7 @@ impl Effect {
     pub fn on_two_fingers(self) -> bool {
         self.on_crank()
             && self.shows() == Shows::Force
-            && !matches!(self, Self::CrossAxis | Self::Gain | Self::Saturation | Self::Delay)
+            && !matches!(self, Self::CrossAxis | Self::Gain | Self::Saturation | Self::Delay | Self::GraspCreep)
     }
 
     /// True where a mechanism with one degree of freedom can have it and show it. A gap without a load to cross it, and
@@ -192,6 +261,7 @@ impl Effect {
             | Self::ChannelFault
             | Self::PositionViscous
             | Self::SquareFriction => true,
+            _ if self.is_structure() => !matches!(self, Self::LoadField | Self::GraspCreep),
             _ => false,
         }
     }
@@ -215,7 +285,15 @@ impl Effect {
             | Self::Delay
             | Self::Drift
             | Self::JointOffset
-            | Self::LengthScale => 2,
+            | Self::LengthScale
+            | Self::SensorWander
+            | Self::SensorCreep
+            | Self::AngleField
+            | Self::LoadField
+            | Self::FrictionOverAngle
+            | Self::FrictionWander
+            | Self::GraspCreep
+            | Self::Ringing => 2,
             _ => 1,
         }
     }
@@ -255,6 +333,14 @@ impl Effect {
             (Self::ChannelFault, 1) => "dropped samples",
             (Self::ChannelFault, 2) => "coarse force",
             (Self::ChannelFault, _) => "stuck motion",
+            (Self::SensorWander | Self::FrictionWander, 1) => "three scales",
+            (Self::SensorCreep, 1) => "two memories",
+            (Self::AngleField | Self::FrictionOverAngle, 0) => "bumps",
+            (Self::AngleField | Self::FrictionOverAngle, _) => "value noise",
+            (Self::LoadField, 1) => "of its magnitude",
+            (Self::GraspCreep, 0) => "by itself",
+            (Self::GraspCreep, _) => "after the force",
+            (Self::Ringing, 1) => "harder after long ways",
             _ => "plain",
         }
     }

@@ -7,7 +7,8 @@
 //! How a case is made: [`draw`] draws object, person, motion and instruments from a seed; [`simulate`] steps hand ([`hand`], [`plan`])
 //! and load ([`plant`]) together; [`measure`] says how large the effect is beside the noise after the known model took what it could;
 //! [`case`] rescales and runs again until that is what was asked for; [`record`] and [`sensor`] make a table of it. [`sets`] draws
-//! whole batteries, [`score`] opens truth and answer, [`tables`] prints. A new effect needs an entry in [`effect`], a law in [`plant`]
+//! whole batteries, [`score`] opens truth and answer, [`tables`] prints. [`structure`] has the forces that no law describes, made of the random functions
+//! in [`curve`]; [`certain`] says which names are given in their presence. A new effect needs an entry in [`effect`], a law in [`plant`]
 //! (or a fault in [`sensor`]) and a first size in [`draw`].
 //!
 //! The known part of a null case is known to the last bit: weight, load friction and viscous friction of a crank whose inertia nobody
@@ -15,8 +16,10 @@
 
 pub mod arm;
 pub mod case;
+pub mod certain;
 pub mod chance;
 pub mod clock;
+pub mod curve;
 pub mod draw;
 pub mod dump;
 pub mod effect;
@@ -33,18 +36,20 @@ pub mod score;
 pub mod sensor;
 pub mod sets;
 pub mod simulate;
+pub mod structure;
 pub mod tables;
+pub mod tolerated;
 
 pub use case::{Case, Truth, make, make_followed};
 pub use chance::Chance;
-pub use draw::{Bench, Spec};
+pub use draw::{Bench, Spec, Structure};
 pub use effect::Effect;
 pub use follow::Experiments;
 pub use interval::Share;
 pub use json::Said;
 pub use plan::Log;
 pub use score::{Figures, Row, ask};
-pub use sets::{Counts, Job, Set, battery, long};
+pub use sets::{Counts, Job, Set, StructureCounts, battery, long, structured};
 pub use tables::report;
 
 #[cfg(test)]

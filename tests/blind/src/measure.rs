@@ -5,6 +5,7 @@ use super::effect::{Effect, Shows};
 use super::plant::Hidden;
 use super::sensor::{self, Sensor};
 use super::simulate::{Sample, Setup};
+use super::structure::turned_n;
 
 /// The known terms of a mechanism's model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,10 +135,7 @@ pub fn size(setup: &Setup, sensor: &Sensor, arm: &Arm, known: Known, samples: &[
 
 fn force_size(setup: &Setup, sensor: &Sensor, known: Known, samples: &[Sample], which: usize, hidden: &Hidden) -> Size {
     let rows = moving(samples, setup.hold_s);
-    let instrument = matches!(
-        hidden.effect,
-        Effect::Delay | Effect::Bias | Effect::Drift | Effect::CrossAxis | Effect::Gain | Effect::Saturation
-    );
+    let instrument = hidden.effect.is_in_force_sensor();
     let wrong = |s: &Sample| {
         let with = sensor::force(&setup.hidden, None, s, setup.effects_s);
         let without = sensor::force(&setup.hidden, Some(which), s, setup.effects_s);
@@ -151,12 +149,20 @@ fn force_size(setup: &Setup, sensor: &Sensor, known: Known, samples: &[Sample], 
             if instrument {
                 let (direction, w) = (along(setup, s), wrong(s));
                 direction[0] * w[0] + direction[1] * w[1]
+            } else if hidden.effect == Effect::GraspCreep {
+                turned_n(hidden, s, setup.plant.radius_m)
             } else {
                 s.extra_n[which]
             }
         })
         .collect();
-    let columns = known_columns(setup, known, samples, &rows);
+    let mut columns = known_columns(setup, known, samples, &rows);
+    if hidden.effect == Effect::GraspCreep {
+        // A circle is laid through the path: it takes up whatever moves its centre.
+        let used = || samples.iter().zip(&rows).filter(|(_, use_it)| **use_it).map(|(s, _)| s);
+        columns.push(used().map(|s| s.across_n * s.angle.sin()).collect());
+        columns.push(used().map(|s| s.across_n * s.angle.cos()).collect());
+    }
     project_out(&mut values, columns);
     // The free finger shows what is wrong with the sensor, and nothing else.
     if instrument && setup.center_m.is_some() {

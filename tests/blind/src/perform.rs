@@ -158,7 +158,15 @@ mod tests {
     use super::*;
 
     fn spec(bench: Bench, effect: Effect) -> Spec {
-        Spec { effects: vec![(effect, 0)], ratio: 1.0, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 12.0 }
+        Spec {
+            effects: vec![(effect, 0)],
+            ratio: 1.0,
+            structure: None,
+            bench,
+            log: Log::Mixed,
+            rate_hz: 100.0,
+            seconds: 12.0,
+        }
     }
 
     fn asked(id: &str) -> Experiment {

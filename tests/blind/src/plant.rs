@@ -100,6 +100,11 @@ impl Loads {
 }
 
 impl Plant {
+    /// True for a crank: its handle has a weight.
+    pub fn is_crank(&self) -> bool {
+        self.weight_n > 0.0
+    }
+
     /// What the known part resists with.
     pub fn loads(&self, now: &Instant) -> Loads {
         let dry = self.load_friction * now.across_n.abs() + self.dry_n;
@@ -202,6 +207,7 @@ impl Hidden {
             }
             Effect::SquaredLoad => Loads::dry(size * now.across_n * now.across_n),
             Effect::Shaking => Loads::smooth(size * self.shaking(now.time_s)),
+            effect if effect.is_structure() => self.structured_loads(plant, base, now),
             _ => Loads::default(),
         }
     }
@@ -266,8 +272,7 @@ impl Hidden {
 
     fn local(&self, plant: &Plant, now: &Instant) -> Loads {
         // A crank comes round again, a mechanism's coordinate does not.
-        let distance =
-            if plant.weight_n > 0.0 { around(now.angle - self.shape[0]) } else { now.turned - self.shape[0] };
+        let distance = if plant.is_crank() { around(now.angle - self.shape[0]) } else { now.turned - self.shape[0] };
         let force = self.size * bump(distance, self.shape[1], self.form < 2);
         if self.form.is_multiple_of(2) { Loads::dry(force) } else { Loads::smooth(force) }
     }

@@ -32,8 +32,12 @@ pub struct Row {
     pub hidden: Vec<(Effect, u32)>,
     /// Effect over noise that was asked for.
     pub ratio: f64,
+    /// Sizes over the noise that came out, of each that is hidden.
+    pub ratios: Vec<f64>,
     /// The recording cannot show the effect in that size.
     pub missed: bool,
+    /// Noise of the force along the motion, N.
+    pub noise_n: f64,
     /// Causes that nobody can tell from a hidden one here.
     pub equals: Vec<&'static str>,
     /// Mean square of the effect, N²; not a number for effects without a force.
@@ -67,9 +71,12 @@ pub fn ask(jobs: &[Job], engine: &Engine<'_>) -> Vec<Row> {
             let answer = catch_unwind(AssertUnwindSafe(|| engine(&case.recordings, &options(&case))))
                 .unwrap_or_else(|_| Err("it panicked".to_owned()));
             let took_s = start.elapsed().as_secs_f64();
+            // Nothing is asked twice where names are counted only.
+            let once = matches!(job.set, Set::Structured | Set::Beside);
             let followed = answer
                 .as_ref()
                 .ok()
+                .filter(|_| !once)
                 .and_then(|answer| follow(&object, &case.recordings, answer, &options(&case), engine, job.seed));
             Row { followed, ..Row::new(job, &case, &truth, answer, took_s) }
         })
@@ -88,8 +95,10 @@ impl Row {
             seconds: job.spec.seconds,
             seed: job.seed,
             hidden: truth.hidden.iter().map(|h| (h.effect, h.form)).collect(),
-            ratio: truth.wanted_ratio,
+            ratio: job.spec.ratio,
+            ratios: truth.ratio.clone(),
             missed: truth.missed(),
+            noise_n: truth.noise_n,
             equals: truth.equals.clone(),
             share_of_oracle: if force {
                 answer.as_ref().map_or(f64::NAN, |a| share_of_oracle(a, truth))
@@ -355,6 +364,7 @@ mod tests {
             spec: super::super::draw::Spec {
                 effects: vec![(Effect::Eccentric, 0)],
                 ratio: 2.0,
+                structure: None,
                 bench: Bench::OneFinger,
                 log: Log::Mixed,
                 rate_hz: 100.0,

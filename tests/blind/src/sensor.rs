@@ -94,6 +94,7 @@ pub fn force(hidden: &[Hidden], without: Option<usize>, sample: &Sample, seconds
                 let level = b / (1.0 + h.size);
                 f = f.map(|v| v.clamp(-level, level));
             }
+            effect if effect.is_structure() => f = h.told(f, sample),
             _ => {}
         }
     }

@@ -2,9 +2,11 @@
 
 use super::case::{Case, Object, Truth, make, make_with_object};
 use super::chance::Chance;
-use super::draw::{Bench, Spec};
+use super::draw::{Bench, Spec, Structure};
 use super::effect::{Effect, Shows};
 use super::plan::Log;
+use super::structure::shows_in;
+use super::tolerated::tolerated;
 
 /// Which question a case asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +21,10 @@ pub enum Set {
     Nameless,
     /// One effect in a log that is hard: 20 Hz, short, slow, one way, pulled only.
     Hard,
+    /// Structured model error, and nothing else.
+    Structured,
+    /// One effect beside a weaker structured model error.
+    Beside,
 }
 
 impl Set {
@@ -30,6 +36,8 @@ impl Set {
             Self::Pair => "pair",
             Self::Nameless => "nameless",
             Self::Hard => "hard",
+            Self::Structured => "structured",
+            Self::Beside => "beside",
         }
     }
 }
@@ -77,6 +85,22 @@ impl Counts {
     pub const WHOLE: Self = Self { nulls: 600, per_effect: 3, pairs: 160, per_nameless: 20, hard: 200 };
     /// What fits into a minute.
     pub const FAST: Self = Self { nulls: 40, per_effect: 1, pairs: 10, per_nameless: 2, hard: 10 };
+}
+
+/// How many recordings with structured model error, for each family; some with nothing from the catalogue, some beside an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureCounts {
+    /// Cranks of 20 s: alone, beside an effect.
+    pub cranks: [usize; 2],
+    /// Cranks of 60 s, with a structure over the state.
+    pub long_cranks: [usize; 2],
+    /// Mechanisms of 20 s.
+    pub mechanisms: [usize; 2],
+}
+
+impl StructureCounts {
+    /// A few minutes on two cores.
+    pub const USUAL: Self = Self { cranks: [4, 2], long_cranks: [4, 2], mechanisms: [4, 2] };
 }
 
 /// Effect over noise in the main set.
@@ -133,8 +157,15 @@ fn nulls(count: usize, chance: &mut Chance) -> Vec<Job> {
             ]);
             let rate_hz = if k % 5 == 4 { 20.0 } else { chance.pick(&RATES_HZ) };
             let log = chance.pick(&[Log::Mixed, Log::Mixed, Log::Mixed, Log::OneWay, Log::PullOnly, Log::Slow]);
-            let spec =
-                Spec { effects: Vec::new(), ratio: 0.0, bench, log, rate_hz, seconds: length_s(rate_hz, chance) };
+            let spec = Spec {
+                effects: Vec::new(),
+                ratio: 0.0,
+                structure: None,
+                bench,
+                log,
+                rate_hz,
+                seconds: length_s(rate_hz, chance),
+            };
             Job { set: Set::Null, spec, seed: 0 }
         })
         .collect()
@@ -172,7 +203,7 @@ fn single(effect: Effect, ratio: f64, chance: &mut Chance) -> Job {
     let form = form_for(effect, bench, chance);
     let rate_hz = chance.pick(&RATES_HZ);
     let seconds = length_s(rate_hz, chance);
-    let spec = Spec { effects: vec![(effect, form)], ratio, bench, log: Log::Mixed, rate_hz, seconds };
+    let spec = Spec { effects: vec![(effect, form)], ratio, structure: None, bench, log: Log::Mixed, rate_hz, seconds };
     Job { set: Set::Single, spec, seed: 0 }
 }
 
@@ -203,7 +234,91 @@ fn pair(chance: &mut Chance) -> Job {
     let effects = [a, b].map(|e| (e, form_for(e, bench, chance))).to_vec();
     let rate_hz = chance.pick(&RATES_HZ);
     let seconds = length_s(rate_hz, chance);
-    Job { set: Set::Pair, spec: Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz, seconds }, seed: 0 }
+    Job {
+        set: Set::Pair,
+        spec: Spec { effects, ratio: 1.0, structure: None, bench, log: Log::Mixed, rate_hz, seconds },
+        seed: 0,
+    }
+}
+
+/// Structures that come again with the state, however long a recording is.
+const OVER_STATE: [Effect; 4] = [Effect::AngleField, Effect::SpeedField, Effect::LoadField, Effect::StateField];
+/// Structure over noise where nothing else is hidden.
+const STRUCTURE_RATIOS: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Recordings with structured model error, alone and beside one effect, from one seed.
+pub fn structured(counts: StructureCounts, seed: u64) -> Vec<Job> {
+    let mut chance = Chance::new(seed, 14);
+    let cranks = [Bench::OneFinger, Bench::OneFinger, Bench::OneFinger, Bench::OneFinger, Bench::TwoFingers];
+    let mechanisms = [Bench::Linear, Bench::Angular];
+    let groups: [(&[Effect], &[Bench], f64, [usize; 2]); 3] = [
+        (&Effect::STRUCTURES, &cranks, 20.0, counts.cranks),
+        (&OVER_STATE, &cranks, 60.0, counts.long_cranks),
+        (&Effect::STRUCTURES, &mechanisms, 20.0, counts.mechanisms),
+    ];
+    let mut jobs = Vec::new();
+    for (families, benches, seconds, [alone, beside]) in groups {
+        for family in families.iter().filter(|f| shows_in(**f, benches[0], Log::Mixed)) {
+            for k in 0..alone + beside {
+                let bench = loop {
+                    let bench = chance.pick(benches);
+                    if bench != Bench::TwoFingers || family.on_two_fingers() {
+                        break bench;
+                    }
+                };
+                jobs.push(with_structure(*family, bench, seconds, (k < alone).then_some(k), &mut chance));
+            }
+        }
+    }
+    for (k, job) in jobs.iter_mut().enumerate() {
+        job.seed = seed.wrapping_mul(1_000_003).wrapping_add(k as u64);
+    }
+    jobs
+}
+
+/// A case of a family: the one of number `alone`, or one beside an effect.
+fn with_structure(family: Effect, bench: Bench, seconds: f64, alone: Option<usize>, chance: &mut Chance) -> Job {
+    let form = chance.whole(0, family.forms() - 1);
+    let rate_hz = chance.pick(&[100.0, 200.0, 500.0]);
+    let Some(k) = alone else {
+        let effect = beside(family, bench, chance);
+        let effects = vec![(effect, form_for(effect, bench, chance))];
+        let structure = Some(Structure { effect: family, form, ratio: 1.0 });
+        let spec = Spec { effects, ratio: 2.0, structure, bench, log: Log::Mixed, rate_hz, seconds };
+        return Job { set: Set::Beside, spec, seed: 0 };
+    };
+    let logs = [Log::Mixed, Log::Mixed, Log::Mixed, Log::Mixed, Log::Mixed, Log::OneWay, Log::PullOnly, Log::Slow];
+    let log = loop {
+        let log = chance.pick(&logs);
+        if shows_in(family, bench, log) {
+            break log;
+        }
+    };
+    let ratio = STRUCTURE_RATIOS[k % STRUCTURE_RATIOS.len()];
+    let structure = Some(Structure { effect: family, form, ratio });
+    let spec = Spec { effects: Vec::new(), ratio: 0.0, structure, bench, log, rate_hz, seconds };
+    Job { set: Set::Structured, spec, seed: 0 }
+}
+
+/// An effect that can be told from a structure of that family.
+fn beside(family: Effect, bench: Bench, chance: &mut Chance) -> Effect {
+    let is_friction = matches!(family, Effect::LoadField | Effect::FrictionOverAngle | Effect::FrictionWander);
+    let there = |effect: Effect| match bench {
+        Bench::OneFinger => effect.on_crank(),
+        Bench::TwoFingers => effect.on_two_fingers(),
+        Bench::Linear | Bench::Angular => effect.on_mechanism(bench == Bench::Angular),
+    };
+    loop {
+        let effect = chance.pick(&Effect::NAMED);
+        // What replaces the known friction leaves none that could be modulated.
+        let replaces = matches!(effect, Effect::Backlash | Effect::Hysteresis | Effect::Coulomb | Effect::Viscous);
+        // A grasp that wanders bends the path far more than any effect on it.
+        let hides = family == Effect::GraspCreep && effect.shows() == Shows::Path;
+        let odd = effect.shows() == Shows::Grossly || matches!(effect, Effect::Gain | Effect::Saturation);
+        if there(effect) && !odd && !(is_friction && replaces) && !hides && !tolerated(family).contains(&effect.id()) {
+            return effect;
+        }
+    }
 }
 
 /// Minute-long recordings at 1 kHz, for the time that an answer takes.

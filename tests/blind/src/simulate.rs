@@ -5,6 +5,7 @@ use super::effect::Effect;
 use super::hand::{Habits, Hand};
 use super::plan::Plan;
 use super::plant::{Hidden, Instant, Loads, Memory, Plant};
+use super::structure::{Push, Wake};
 
 /// Steps a second.
 pub const STEPS_HZ: f64 = 20_000.0;
@@ -71,12 +72,15 @@ pub struct Sample {
     pub across_n: f64,
     /// Dry friction of the known part, N.
     pub dry_n: f64,
+    /// What the past left in a sensor or a pad with structure, for a size of 1.
+    pub wake_n: [f64; 2],
     /// True while the hand holds on.
     pub held: bool,
 }
 
-/// Channels that go through the filter: tip, speed, force, late force, base, extras, acceleration, speed, angle, across, dry.
-const FILTERED: usize = 16;
+/// Channels that go through the filter: tip, speed, force, late force, base, extras, acceleration, speed, angle, across, dry,
+/// wake.
+const FILTERED: usize = 18;
 
 /// State of a run between two steps.
 struct Course {
@@ -87,6 +91,8 @@ struct Course {
     filtered: [f64; FILTERED],
     past: Vec<[f64; 2]>,
     lag_n: [f64; 2],
+    wake: Wake,
+    wake_n: [f64; 2],
 }
 
 /// What a step ends with.
@@ -198,6 +204,7 @@ impl Setup {
                     let way = self.slipped(hidden, time_s);
                     [hidden.size * way * hidden.shape[0].cos(), hidden.size * way * hidden.shape[0].sin()]
                 }
+                Effect::GraspCreep => hidden.grasp_m(time_s, course.wake_n),
                 _ => [0.0; 2],
             };
             away = [away[0] + give[0], away[1] + give[1]];
@@ -246,6 +253,8 @@ impl Setup {
             filtered: [0.0; FILTERED],
             past: vec![[0.0; 2]; LONGEST_DELAY],
             lag_n: [0.0; 2],
+            wake: Wake::default(),
+            wake_n: [0.0; 2],
         };
         course.tip_m = self.tip(&course, 0.0, [0.0; 2]);
         let softness = self.find(Effect::Pad).map_or(1.0, |pad| 1.0 / (1.0 + self.habits.stiffness * pad.size));
@@ -267,12 +276,17 @@ impl Setup {
     }
 
     fn channels(&self, course: &mut Course, count: usize, time_s: f64, outcome: &Outcome) -> [f64; FILTERED] {
+        let (sin, cos) = (self.start_angle + course.turned).sin_cos();
         let force = if self.center_m.is_some() {
-            let (sin, cos) = (self.start_angle + course.turned).sin_cos();
             [outcome.across_n * cos - outcome.along_n * sin, outcome.across_n * sin + outcome.along_n * cos]
         } else {
             [outcome.along_n, 0.0]
         };
+        if let Some(hidden) = self.hidden.iter().find(|h| h.effect.is_structure()) {
+            let along = if self.center_m.is_some() { [-sin, cos] } else { [1.0, 0.0] };
+            let speed = course.speed / self.plant.radius_m;
+            course.wake_n = course.wake.follow(hidden, &Push { force_n: force, along, speed, step_s: 1.0 / STEPS_HZ });
+        }
         let tip = self.tip(course, time_s, force);
         let speed = [0, 1].map(|k: usize| (tip[k] - course.tip_m[k]) * STEPS_HZ);
         course.tip_m = tip;
@@ -294,6 +308,8 @@ impl Setup {
             course.turned,
             outcome.across_n,
             outcome.dry_n,
+            course.wake_n[0],
+            course.wake_n[1],
         ]
     }
 
@@ -312,6 +328,7 @@ impl Setup {
             angle: self.start_angle + f[13],
             across_n: f[14],
             dry_n: f[15],
+            wake_n: [f[16], f[17]],
             held: time_s >= self.hold_s[0] && time_s < self.hold_s[1],
         }
     }

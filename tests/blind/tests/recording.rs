@@ -22,7 +22,7 @@ fn plain(bench: Bench, log: Log, seed: u64) -> Case {
 }
 
 fn with(bench: Bench, log: Log, effects: Vec<(Effect, u32)>, seed: u64) -> Case {
-    make(&Spec { effects, ratio: 2.0, bench, log, rate_hz: 500.0, seconds: 25.0 }, seed).0
+    make(&Spec { effects, ratio: 2.0, structure: None, bench, log, rate_hz: 500.0, seconds: 25.0 }, seed).0
 }
 
 fn values<'a>(recording: &'a mut Recording, name: &str) -> &'a mut Vec<f64> {

@@ -53,7 +53,7 @@ fn job((bench, effects): Case, seed: u64) -> Job {
         1 => (Set::Single, 1.0),
         _ => (Set::Pair, 1.0),
     };
-    let spec = Spec { effects, ratio, bench, log: Log::Mixed, rate_hz: RATE_HZ, seconds: SECONDS };
+    let spec = Spec { effects, ratio, structure: None, bench, log: Log::Mixed, rate_hz: RATE_HZ, seconds: SECONDS };
     Job { set, spec, seed }
 }
 
