@@ -222,7 +222,7 @@ pub fn limited(setup: &Setup, hidden: &Hidden, size: f64) -> f64 {
         Effect::GraspCreep if hidden.form == 0 => size.min(0.2 * setup.plant.radius_m),
         Effect::SpeedField | Effect::StateField => {
             let damping = setup.habits.damping + setup.plant.viscous;
-            size.min(0.3 * damping * hidden.shape[1])
+            size.min(0.45 * damping * hidden.shape[1])
         }
         _ => size,
     }
@@ -242,6 +242,8 @@ pub fn turned_n(hidden: &Hidden, sample: &Sample, radius_m: f64) -> f64 {
 pub fn shows_in(effect: Effect, bench: Bench, log: Log) -> bool {
     match effect {
         Effect::Ringing => log.reverses() && log != Log::Slow,
+        // Curves over the speed that are steep enough would shake a slow hand.
+        Effect::SpeedField | Effect::StateField => log != Log::Slow,
         Effect::LoadField | Effect::GraspCreep => bench.is_crank(),
         _ => true,
     }
