@@ -38,9 +38,9 @@ pub struct Case {
 pub struct Truth {
     /// What is hidden; empty in a null case.
     pub hidden: Vec<Hidden>,
-    /// Effect over noise that was asked for, for each …
+    /// Effect over noise that was asked for, for each.
     pub wanted_ratio: Vec<f64>,
-    /// … and that came out.
+    /// Effect over noise that came out, for each.
     pub ratio: Vec<f64>,
     /// What each leaves after the known model took what it can: root mean square, N (m for effects on the path).
     pub effect_rms: Vec<f64>,

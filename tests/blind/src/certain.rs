@@ -92,9 +92,9 @@ impl Row {
 /// Counts of cases with structured model error and nothing else.
 #[derive(Clone, Debug)]
 pub struct Alone {
-    /// A wrong name is certain …
+    /// A wrong name is certain.
     pub false_certain: Share,
-    /// … that does not describe the structure.
+    /// A wrong name is certain that does not describe the structure.
     pub fair: Share,
     /// The verdict is `ambiguous`.
     pub ambiguous: Share,

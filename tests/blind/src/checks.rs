@@ -308,7 +308,7 @@ fn a_structure_leaves_object_hand_and_noise_as_they_were() {
     assert_eq!(format!("{:?}", with.plant), format!("{:?}", without.plant));
     assert_eq!(format!("{:?}{:?}", with.habits, with.plan), format!("{:?}{:?}", without.habits, without.plan));
     assert!(without.hidden.is_empty() && with.hidden.len() == 1);
-    // What only a sensor tells does not change the motion either.
+    // A fault that only a sensor tells does not change the motion either.
     let samples = setup(&structured_spec(Effect::Hum, 0, 1.0), 9).run();
     let clean = without.run();
     assert!(samples.iter().zip(&clean).all(|(a, b)| a.tip_m == b.tip_m && a.force_n == b.force_n));

@@ -283,9 +283,10 @@ fn guess(spec: &Spec, plant: &Plant, sensor: &Sensor, effect: Effect, form: u32,
         Effect::Saturation => 0.3,
         Effect::JointOffset => sign * 20.0 * path,
         Effect::LengthScale => sign * 60.0 * path,
-        Effect::AxisSign | Effect::ChannelFault => 1.0,
         // Structures have a guess of their own.
-        Effect::SensorWander
+        Effect::AxisSign
+        | Effect::ChannelFault
+        | Effect::SensorWander
         | Effect::SensorCreep
         | Effect::AngleField
         | Effect::SpeedField

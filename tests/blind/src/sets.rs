@@ -87,7 +87,7 @@ impl Counts {
     pub const FAST: Self = Self { nulls: 40, per_effect: 1, pairs: 10, per_nameless: 2, hard: 10 };
 }
 
-/// How many recordings with structured model error, for each family; some with nothing from the catalogue, some beside an effect.
+/// Numbers of recordings with structured model error, for each family: with nothing from the catalogue, and beside an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureCounts {
     /// Cranks of 20 s: alone, beside an effect.
@@ -307,7 +307,7 @@ fn beside(family: Effect, bench: Bench, chance: &mut Chance) -> Effect {
         Bench::Linear | Bench::Angular => effect.on_mechanism(bench == Bench::Angular),
     };
     let fits = |effect: Effect| {
-        // What replaces the known friction leaves none that could be modulated.
+        // These replace the known friction, or leave none that could be modulated.
         let replaces = matches!(effect, Effect::Backlash | Effect::Hysteresis | Effect::Coulomb | Effect::Viscous);
         // A grasp that wanders bends the path far more than any effect on it.
         let hides = family == Effect::GraspCreep && effect.shows() == Shows::Path;
