@@ -226,7 +226,15 @@ mod tests {
     }
 
     fn spec(bench: Bench, rate_hz: f64) -> Spec {
-        Spec { effects: vec![(Effect::Eccentric, 0)], ratio: 2.0, structure: None, bench, log: Log::Mixed, rate_hz, seconds: 15.0 }
+        Spec {
+            effects: vec![(Effect::Eccentric, 0)],
+            ratio: 2.0,
+            structure: None,
+            bench,
+            log: Log::Mixed,
+            rate_hz,
+            seconds: 15.0,
+        }
     }
 
     #[test]

@@ -168,7 +168,9 @@ fn with_structure(seeds: &[&str], listed: bool) {
         .collect();
     let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
     if listed {
-        rows.iter().for_each(|row| println!("{}", certain::line(row)));
+        for row in &rows {
+            println!("{}", certain::line(row));
+        }
         return;
     }
     println!("{} cases, seeds {}", rows.len(), seeds.join(" "));

@@ -38,9 +38,9 @@ pub struct Case {
 pub struct Truth {
     /// What is hidden; empty in a null case.
     pub hidden: Vec<Hidden>,
-    /// Effect over noise that was asked for, for each …
+    /// Effect over noise that was asked for, for each.
     pub wanted_ratio: Vec<f64>,
-    /// … and that came out.
+    /// Effect over noise that came out, for each.
     pub ratio: Vec<f64>,
     /// What each leaves after the known model took what it can: root mean square, N (m for effects on the path).
     pub effect_rms: Vec<f64>,
@@ -240,7 +240,8 @@ fn limited(setup: &Setup, which: usize, size: f64) -> f64 {
 fn tune_noise(setup: &Setup, sensor: &mut Sensor, arm: &Arm, known: Known, wanted: &[f64], samples: &[Sample]) {
     let ([hidden], [ratio]) = (setup.hidden.as_slice(), wanted) else { return };
     let now = measure::size(setup, sensor, arm, known, samples, 0).ratio() / ratio;
-    if !(0.4..2.0).contains(&now) {
+    let least = if hidden.effect.is_structure() { 0.25 } else { 0.4 };
+    if !(least..2.0).contains(&now) {
         return;
     }
     match hidden.effect.shows() {

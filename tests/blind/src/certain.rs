@@ -67,8 +67,7 @@ impl Row {
     /// The same, or the hidden cause is among what the answer says it could be.
     pub fn right_or_in_set(&self) -> bool {
         let set = self.ambiguity_set();
-        let is_in = |id: &&str| set.contains(id);
-        self.right_for_certain() || self.ids().iter().any(|id| is_in(id)) || self.equals.iter().any(|id| is_in(id))
+        self.right_for_certain() || self.ids().iter().chain(&self.equals).any(|id| set.contains(id))
     }
 
     fn has_verdict(&self, verdict: Verdict) -> bool {
@@ -93,28 +92,32 @@ impl Row {
 /// Counts of cases with structured model error and nothing else.
 #[derive(Clone, Debug)]
 pub struct Alone {
-    /// A wrong name is certain …
+    /// A wrong name is certain.
     pub false_certain: Share,
-    /// … that does not describe the structure.
+    /// A wrong name is certain that does not describe the structure.
     pub fair: Share,
     /// The verdict is `ambiguous`.
     pub ambiguous: Share,
     /// The verdict is `unexplained`.
     pub unexplained: Share,
-    /// Stated noise floor over the noise, median.
+    /// Stated noise floor over its clean value, median.
     pub floor: f64,
+    /// Stated noise floor over the noise of a reading, median: with the structure, and without it.
+    pub floor_over_noise: [f64; 2],
 }
 
 impl Alone {
     /// Counts.
     pub fn of(rows: &[&Row]) -> Self {
         let rows = || rows.iter().filter(|r| r.set == Set::Structured && !r.missed);
+        let median = |of: &dyn Fn(&Row) -> f64| quantile(&rows().map(|r| of(r)).collect::<Vec<f64>>(), 0.5);
         Self {
             false_certain: Share::count(rows(), |r| r.false_certain()[0] > 0),
             fair: Share::count(rows(), |r| r.false_certain()[1] > 0),
             ambiguous: Share::count(rows(), |r| r.has_verdict(Verdict::Ambiguous)),
             unexplained: Share::count(rows(), |r| r.has_verdict(Verdict::Unexplained)),
-            floor: quantile(&rows().map(|r| r.floor_over_noise()).collect::<Vec<f64>>(), 0.5),
+            floor: median(&|r| r.floor_over_noise() / r.clean_floor),
+            floor_over_noise: [median(&|r| r.floor_over_noise()), median(&|r| r.clean_floor)],
         }
     }
 }
@@ -177,14 +180,15 @@ fn grouped<'a>(rows: &'a [Row], name: &dyn Fn(&Row) -> String) -> Vec<(String, V
 
 fn alone(groups: &[(String, Vec<&Row>)]) -> String {
     let mut text = format!(
-        "structure alone: {:<4} {:<30} {:<30} {:<30} {:<30} floor/noise\n",
+        "structure alone: {:<4} {:<30} {:<30} {:<30} {:<30} noise floor over clean (over noise, clean)\n",
         "", "false certain", "fair", "ambiguous", "unexplained"
     );
     for (group, rows) in groups {
         let a = Alone::of(rows);
+        let [with, clean] = a.floor_over_noise;
         let shares =
             [a.false_certain, a.fair, a.ambiguous, a.unexplained].map(|s| format!("{s:<30}", s = s.to_string()));
-        let _ = writeln!(text, "  {group:<19} {} {:.2}", shares.join(" "), a.floor);
+        let _ = writeln!(text, "  {group:<19} {} {:.2} ({:.2}, {clean:.2})", shares.join(" "), a.floor, with);
     }
     text
 }
@@ -260,4 +264,74 @@ pub fn line(r: &Row) -> String {
         names.join(", "),
         if r.missed { "|missed" } else { "" }
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::draw::{Bench, Spec, Structure};
+    use super::super::plan::Log;
+    use super::super::sets::Job;
+    use super::*;
+    use estimator::diagnose::{Diagnosis, Findings};
+
+    /// An answer with names and their posteriors.
+    fn said(verdict: &str, names: &[(&str, f64)], instead: &[&str]) -> Findings {
+        let causes: Vec<_> = names
+            .iter()
+            .map(|(id, posterior)| {
+                serde_json::json!({"id": id, "kind": "plant", "parameters": [], "p_value": 0.0, "posterior": posterior,
+                    "gain": {"heldout_rms_before": 0.0, "heldout_rms_after": 0.0, "share_of_explainable": 0.0,
+                        "interval": [0.0, 0.0]}, "evidence": ""})
+            })
+            .collect();
+        let place = names.first().map_or("", |(id, _)| id);
+        let alternatives: Vec<_> = instead
+            .iter()
+            .map(|id| serde_json::json!({"id": id, "instead_of": place, "posterior": 0.4, "why": ""}))
+            .collect();
+        let diagnosis: Diagnosis = serde_json::from_value(serde_json::json!({
+            "verdict": verdict,
+            "baseline": {"model": "", "rms_N": 0.0, "heldout_rms_N": 0.0, "whiteness_p": 0.0},
+            "noise_floor_N": 0.5, "causes": causes, "alternatives": alternatives, "not_excited": [],
+            "next_experiment": null, "final": {"heldout_rms_N": 0.0, "whiteness_p": 0.0}
+        }))
+        .expect("a diagnosis");
+        diagnosis.into()
+    }
+
+    #[test]
+    fn certain_names_are_counted_right_wrong_and_fairly() {
+        let structure = Some(Structure { effect: Effect::AngleField, form: 0, ratio: 1.0 });
+        let (bench, log, rate_hz, seconds) = (Bench::Linear, Log::Mixed, 100.0, 8.0);
+        let alone = Spec { effects: Vec::new(), ratio: 0.0, structure, bench, log, rate_hz, seconds };
+        let with = Spec { effects: vec![(Effect::Drag, 0)], ratio: 2.0, ..alone.clone() };
+        let made = [(Set::Structured, alone), (Set::Beside, with)].map(|(set, spec)| {
+            let job = Job { set, spec, seed: 3 };
+            let (case, truth) = job.make();
+            (job, case, truth)
+        });
+        let row = |k: usize, answer: Findings| {
+            let (job, case, truth) = &made[k];
+            Row { missed: false, noise_n: 0.25, clean_floor: 0.8, ..Row::new(job, case, truth, Ok(answer), 0.1) }
+        };
+        let rows = [
+            row(0, said("causes", &[("position-ripple", 0.99), ("backlash", 0.9)], &[])),
+            row(0, said("causes", &[("stribeck", 0.99), ("other:load", 0.99)], &[])),
+            row(0, said("ambiguous", &[("stribeck", 0.99)], &["backlash"])),
+            row(0, said("unexplained", &[], &[])),
+            row(1, said("causes", &[("quadratic-drag", 0.99), ("position-ripple", 0.99), ("inertia", 0.96)], &[])),
+            row(1, said("ambiguous", &[("stribeck", 0.6)], &["quadratic-drag"])),
+        ];
+        let all: Vec<&Row> = rows.iter().collect();
+        let (alone, beside) = (Alone::of(&all), Beside::of(&all));
+        assert_eq!((alone.false_certain.hits, alone.fair.hits, alone.fair.of), (2, 1, 4));
+        assert_eq!((alone.ambiguous.hits, alone.unexplained.hits, alone.floor), (1, 1, 2.0 / 0.8));
+        assert_eq!((beside.right.hits, beside.in_set.hits, beside.in_set.of), (1, 2, 2));
+        assert_eq!(beside.false_certain, [1.0, 0.5]);
+        let [all, fair] = bins(&rows)[4];
+        assert_eq!((all, fair), (Share { hits: 1, of: 6 }, Share { hits: 1, of: 4 }));
+        let text = report(&rows);
+        assert!(text.contains("mechanisms") && text.contains("angle-field"), "{text}");
+        assert!(line(&rows[4]).contains("quadratic-drag (right) 0.990"), "{}", line(&rows[4]));
+    }
 }

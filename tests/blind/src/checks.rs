@@ -2,14 +2,14 @@
 
 use super::case::{make, make_followed};
 use super::chance::Chance;
-use super::draw::{self, Bench, Spec};
+use super::draw::{self, Bench, Spec, Structure};
 use super::effect::Effect;
 use super::interval::Share;
 use super::plan::Log;
 use super::plant::Hidden;
 use super::score::{Figures, Row, ask};
 use super::sensor::quantised;
-use super::sets::{Counts, Job, Set, battery};
+use super::sets::{Counts, Job, Set, StructureCounts, battery, structured};
 use super::simulate::Setup;
 use estimator::diagnose::{Diagnosis, Findings};
 
@@ -264,4 +264,72 @@ fn a_battery_is_asked_in_order_and_panics_count_as_errors() {
     for (row, job) in rows.iter().zip(&jobs) {
         assert_eq!(row.answer.is_err(), job.spec.bench == Bench::Linear);
     }
+}
+
+/// A structure of the form `form` at `ratio` times the noise, and nothing else.
+fn structured_spec(effect: Effect, form: u32, ratio: f64) -> Spec {
+    let bench = Bench::OneFinger;
+    let structure = Some(Structure { effect, form, ratio });
+    Spec { ratio: 0.0, structure, rate_hz: 100.0, seconds: 12.0, ..spec(bench, Vec::new()) }
+}
+
+#[test]
+fn every_structure_gets_the_size_it_was_asked_for_and_varies() {
+    for (effect, seed) in Effect::STRUCTURES.into_iter().zip(40..) {
+        for bench in [Bench::OneFinger, Bench::Linear] {
+            if bench == Bench::Linear && !effect.on_mechanism(false) {
+                continue;
+            }
+            let (form, ratio) = (effect.forms() - 1, if seed % 2 == 0 { 1.0 } else { 2.0 });
+            let (_, truth) = make(&Spec { bench, ..structured_spec(effect, form, ratio) }, seed);
+            assert!(!truth.missed(), "{} at {ratio}: {:?}", effect.id(), truth.ratio);
+            assert_eq!((truth.ids(), truth.wanted_ratio.clone()), (vec![effect.id()], vec![ratio]));
+            let values: Vec<f64> = truth.effect.iter().map(|(_, n)| *n).collect();
+            let (low, high) = (super::interval::quantile(&values, 0.02), super::interval::quantile(&values, 0.98));
+            assert!(high - low > ratio * truth.noise_n, "{}: {low} {high}", effect.id());
+        }
+    }
+}
+
+#[test]
+fn a_structure_beside_an_effect_has_a_size_of_its_own() {
+    for (family, seed) in [Effect::AngleField, Effect::SensorWander, Effect::FrictionWander].into_iter().zip(60..) {
+        let spec = Spec { effects: vec![(Effect::Drag, 0)], ratio: 2.0, ..structured_spec(family, 0, 1.0) };
+        let (_, truth) = make(&spec, seed);
+        assert_eq!(truth.ids(), ["quadratic-drag", family.id()]);
+        assert!(!truth.missed() && truth.wanted_ratio == [2.0, 1.0], "{:?}", truth.ratio);
+    }
+}
+
+#[test]
+fn a_structure_leaves_object_hand_and_noise_as_they_were() {
+    let with = setup(&structured_spec(Effect::SpeedField, 0, 1.0), 9);
+    let without = setup(&Spec { structure: None, ..structured_spec(Effect::SpeedField, 0, 1.0) }, 9);
+    assert_eq!(format!("{:?}", with.plant), format!("{:?}", without.plant));
+    assert_eq!(format!("{:?}{:?}", with.habits, with.plan), format!("{:?}{:?}", without.habits, without.plan));
+    assert!(without.hidden.is_empty() && with.hidden.len() == 1);
+    // A fault that only a sensor tells does not change the motion either.
+    let samples = setup(&structured_spec(Effect::Hum, 0, 1.0), 9).run();
+    let clean = without.run();
+    assert!(samples.iter().zip(&clean).all(|(a, b)| a.tip_m == b.tip_m && a.force_n == b.force_n));
+}
+
+#[test]
+fn recordings_with_structure_cover_every_family_and_a_seed_repeats_them() {
+    let counts = StructureCounts { cranks: [3, 1], long_cranks: [1, 1], mechanisms: [2, 1] };
+    let jobs = structured(counts, 5);
+    assert_eq!(jobs.len(), 12 * 4 + 4 * 2 + 10 * 3);
+    for (job, again) in jobs.iter().zip(structured(counts, 5)) {
+        assert_eq!(format!("{job:?}"), format!("{again:?}"));
+        let family = job.spec.structure.expect("a structure").effect;
+        match job.set {
+            Set::Structured => assert!(job.spec.effects.is_empty()),
+            Set::Beside => {
+                assert!(!super::tolerated::tolerated(family).contains(&job.spec.effects[0].0.id()), "{job:?}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let long = |job: &&Job| job.spec.seconds > 40.0;
+    assert!(jobs.iter().filter(long).all(|job| job.spec.bench.is_crank()));
 }

@@ -2,7 +2,7 @@
 
 /// Knots stand this far from their regular place at most, in knots.
 ///
-/// Choice: unequal gaps that stay above half a knot.
+/// Choice: gaps are unequal and stay above half a knot.
 const JITTER: f64 = 0.25;
 /// Units of a network.
 ///

@@ -283,8 +283,21 @@ fn guess(spec: &Spec, plant: &Plant, sensor: &Sensor, effect: Effect, form: u32,
         Effect::Saturation => 0.3,
         Effect::JointOffset => sign * 20.0 * path,
         Effect::LengthScale => sign * 60.0 * path,
-        // A structure has its own guess.
-        _ => 1.0,
+        // Structures have a guess of their own.
+        Effect::AxisSign
+        | Effect::ChannelFault
+        | Effect::SensorWander
+        | Effect::SensorCreep
+        | Effect::AngleField
+        | Effect::SpeedField
+        | Effect::LoadField
+        | Effect::StateField
+        | Effect::FrictionOverAngle
+        | Effect::FrictionWander
+        | Effect::GraspCreep
+        | Effect::Ringing
+        | Effect::Hum
+        | Effect::Steps => 1.0,
     };
     Hidden { effect, form, size, shape: shape(spec, effect, v, chance) }
 }

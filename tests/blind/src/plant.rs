@@ -207,8 +207,7 @@ impl Hidden {
             }
             Effect::SquaredLoad => Loads::dry(size * now.across_n * now.across_n),
             Effect::Shaking => Loads::smooth(size * self.shaking(now.time_s)),
-            effect if effect.is_structure() => self.structured_loads(plant, base, now),
-            _ => Loads::default(),
+            _ => self.structured_loads(plant, base, now),
         }
     }
 

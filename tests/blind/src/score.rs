@@ -1,7 +1,7 @@
 //! Opens the truth beside an answer. Nothing but this looks into both.
 
 use super::case::{Case, Truth};
-use super::draw::Bench;
+use super::draw::{Bench, Spec};
 use super::effect::{Effect, Shows};
 use super::follow::{Followed, follow};
 use super::interval::{Share, quantile};
@@ -46,6 +46,8 @@ pub struct Row {
     pub share_of_oracle: f64,
     /// The answer, or the sentence of the error.
     pub answer: Result<Findings, String>,
+    /// Stated noise floor over the noise where the structured model error of this case is left out; not a number elsewhere.
+    pub clean_floor: f64,
     /// How long the answer took, s.
     pub took_s: f64,
     /// What came of the experiment that the answer asks for.
@@ -78,9 +80,18 @@ pub fn ask(jobs: &[Job], engine: &Engine<'_>) -> Vec<Row> {
                 .ok()
                 .filter(|_| !once)
                 .and_then(|answer| follow(&object, &case.recordings, answer, &options(&case), engine, job.seed));
-            Row { followed, ..Row::new(job, &case, &truth, answer, took_s) }
+            let clean_floor = if job.set == Set::Structured { clean_floor(job, engine) } else { f64::NAN };
+            Row { clean_floor, followed, ..Row::new(job, &case, &truth, answer, took_s) }
         })
         .collect()
+}
+
+/// Noise floor over the noise that is stated for the same object and hand without structured model error.
+fn clean_floor(job: &Job, engine: &Engine<'_>) -> f64 {
+    let clean = Job { spec: Spec { structure: None, ..job.spec.clone() }, ..job.clone() };
+    let (case, truth) = clean.make();
+    let answer = catch_unwind(AssertUnwindSafe(|| engine(&case.recordings, &options(&case))));
+    answer.ok().and_then(Result::ok).map_or(f64::NAN, |a| a.noise_floor_n / truth.noise_n)
 }
 
 impl Row {
@@ -107,6 +118,7 @@ impl Row {
             },
             effect_n2: if force { truth.effect_rms[0].powi(2) } else { f64::NAN },
             answer,
+            clean_floor: f64::NAN,
             took_s,
             followed: None,
         }
@@ -361,7 +373,7 @@ mod tests {
     fn who_takes_nothing_off_gains_nothing_and_the_truth_itself_gains_all() {
         let job = Job {
             set: Set::Single,
-            spec: super::super::draw::Spec {
+            spec: Spec {
                 effects: vec![(Effect::Eccentric, 0)],
                 ratio: 2.0,
                 structure: None,

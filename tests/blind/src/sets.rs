@@ -87,7 +87,7 @@ impl Counts {
     pub const FAST: Self = Self { nulls: 40, per_effect: 1, pairs: 10, per_nameless: 2, hard: 10 };
 }
 
-/// How many recordings with structured model error, for each family; some with nothing from the catalogue, some beside an effect.
+/// Numbers of recordings with structured model error, for each family: with nothing from the catalogue, and beside an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureCounts {
     /// Cranks of 20 s: alone, beside an effect.
@@ -251,13 +251,8 @@ pub fn structured(counts: StructureCounts, seed: u64) -> Vec<Job> {
     let mut chance = Chance::new(seed, 14);
     let cranks = [Bench::OneFinger, Bench::OneFinger, Bench::OneFinger, Bench::OneFinger, Bench::TwoFingers];
     let mechanisms = [Bench::Linear, Bench::Angular];
-    let groups: [(&[Effect], &[Bench], f64, [usize; 2]); 3] = [
-        (&Effect::STRUCTURES, &cranks, 20.0, counts.cranks),
-        (&OVER_STATE, &cranks, 60.0, counts.long_cranks),
-        (&Effect::STRUCTURES, &mechanisms, 20.0, counts.mechanisms),
-    ];
     let mut jobs = Vec::new();
-    for (families, benches, seconds, [alone, beside]) in groups {
+    let mut group = |families: &[Effect], benches: &[Bench], seconds: f64, [alone, beside]: [usize; 2]| {
         for family in families.iter().filter(|f| shows_in(**f, benches[0], Log::Mixed)) {
             for k in 0..alone + beside {
                 let bench = loop {
@@ -269,7 +264,10 @@ pub fn structured(counts: StructureCounts, seed: u64) -> Vec<Job> {
                 jobs.push(with_structure(*family, bench, seconds, (k < alone).then_some(k), &mut chance));
             }
         }
-    }
+    };
+    group(&Effect::STRUCTURES, &cranks, 20.0, counts.cranks);
+    group(&OVER_STATE, &cranks, 60.0, counts.long_cranks);
+    group(&Effect::STRUCTURES, &mechanisms, 20.0, counts.mechanisms);
     for (k, job) in jobs.iter_mut().enumerate() {
         job.seed = seed.wrapping_mul(1_000_003).wrapping_add(k as u64);
     }
@@ -308,14 +306,18 @@ fn beside(family: Effect, bench: Bench, chance: &mut Chance) -> Effect {
         Bench::TwoFingers => effect.on_two_fingers(),
         Bench::Linear | Bench::Angular => effect.on_mechanism(bench == Bench::Angular),
     };
-    loop {
-        let effect = chance.pick(&Effect::NAMED);
-        // What replaces the known friction leaves none that could be modulated.
+    let fits = |effect: Effect| {
+        // These replace the known friction, or leave none that could be modulated.
         let replaces = matches!(effect, Effect::Backlash | Effect::Hysteresis | Effect::Coulomb | Effect::Viscous);
         // A grasp that wanders bends the path far more than any effect on it.
         let hides = family == Effect::GraspCreep && effect.shows() == Shows::Path;
         let odd = effect.shows() == Shows::Grossly || matches!(effect, Effect::Gain | Effect::Saturation);
-        if there(effect) && !odd && !(is_friction && replaces) && !hides && !tolerated(family).contains(&effect.id()) {
+        let unfit = odd || hides || (is_friction && replaces) || tolerated(family).contains(&effect.id());
+        there(effect) && !unfit
+    };
+    loop {
+        let effect = chance.pick(&Effect::NAMED);
+        if fits(effect) {
             return effect;
         }
     }

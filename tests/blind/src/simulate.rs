@@ -72,7 +72,7 @@ pub struct Sample {
     pub across_n: f64,
     /// Dry friction of the known part, N.
     pub dry_n: f64,
-    /// What the past left in a sensor or a pad with structure, for a size of 1.
+    /// Traces of the past in a sensor or a pad with structure, for a size of 1.
     pub wake_n: [f64; 2],
     /// True while the hand holds on.
     pub held: bool,

@@ -47,7 +47,7 @@ impl Hidden {
         Loads { forward_n: base.forward_n * more, backward_n: base.backward_n * more, ..Loads::default() }
     }
 
-    /// What a structure adds to the resistance of `plant`, whose own is `base`.
+    /// Resistance that a structure adds to that of `plant`, whose own is `base`; none for anything else.
     pub fn structured_loads(&self, plant: &Plant, base: &Loads, now: &Instant) -> Loads {
         let smooth = |force_n: f64| Loads { smooth_n: force_n, ..Loads::default() };
         match self.effect {
@@ -75,7 +75,7 @@ impl Hidden {
         }
     }
 
-    /// What a sensor with this structure tells of the force `f`.
+    /// The force `f` as a sensor with this structure tells it.
     pub fn told(&self, f: [f64; 2], sample: &Sample) -> [f64; 2] {
         let with = |wrong: [f64; 2]| [f[0] + self.size * wrong[0], f[1] + self.size * wrong[1]];
         match self.effect {
@@ -97,7 +97,7 @@ impl Hidden {
         (1.0 + 0.6 * wander(1)) * (TAU * hz * time_s + 1.5 * wander(2)).sin()
     }
 
-    /// How far the grasp has wandered from the handle, m: by itself, or as the pad gives way to the force in time.
+    /// Way from the handle to where the grasp has wandered, m: by itself, or as the pad gives way to the force in time.
     pub fn grasp_m(&self, time_s: f64, wake_n: [f64; 2]) -> [f64; 2] {
         if self.form == 0 {
             let period_s = self.shape[1];
@@ -108,7 +108,7 @@ impl Hidden {
     }
 }
 
-/// What the past has left in a sensor or a pad.
+/// Traces of the past in a sensor or a pad.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wake {
     /// The force through a slow and a slower low-pass, N.
@@ -121,7 +121,7 @@ pub struct Wake {
     turns: i64,
 }
 
-/// What moves a [`Wake`] on.
+/// One step of the motion, as a [`Wake`] feels it.
 pub struct Push {
     /// Force on the handle, N.
     pub force_n: [f64; 2],
@@ -222,13 +222,13 @@ pub fn limited(setup: &Setup, hidden: &Hidden, size: f64) -> f64 {
         Effect::GraspCreep if hidden.form == 0 => size.min(0.2 * setup.plant.radius_m),
         Effect::SpeedField | Effect::StateField => {
             let damping = setup.habits.damping + setup.plant.viscous;
-            size.min(0.3 * damping * hidden.shape[1])
+            size.min(0.45 * damping * hidden.shape[1])
         }
         _ => size,
     }
 }
 
-/// What a wandering grasp adds to the force along the motion, at one sample: the force is split along a direction that is a little
+/// Force that a wandering grasp adds to the one along the motion, at one sample: the force is split along a direction that is a little
 /// off. `direction` is the true one, `radius_m` the crank's.
 pub fn turned_n(hidden: &Hidden, sample: &Sample, radius_m: f64) -> f64 {
     let (sin, cos) = sample.angle.sin_cos();
@@ -242,6 +242,8 @@ pub fn turned_n(hidden: &Hidden, sample: &Sample, radius_m: f64) -> f64 {
 pub fn shows_in(effect: Effect, bench: Bench, log: Log) -> bool {
     match effect {
         Effect::Ringing => log.reverses() && log != Log::Slow,
+        // Curves over the speed that are steep enough would shake a slow hand.
+        Effect::SpeedField | Effect::StateField => log != Log::Slow,
         Effect::LoadField | Effect::GraspCreep => bench.is_crank(),
         _ => true,
     }
