@@ -148,10 +148,53 @@ pub struct Cause {
     pub p_value: f64,
     /// Probability among the causes that could stand in its place.
     pub posterior: f64,
+    /// Evidence against structured errors in its place; nothing for faults of samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standing: Option<Standing>,
     /// What it is worth.
     pub gain: Gain,
     /// One sentence: what in the residual shows it.
     pub evidence: String,
+}
+
+/// Evidence of a cause against structured errors that no law describes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Standing {
+    /// Logarithm of the Bayes factor of the best model with the cause over the best one without it, in which structured
+    /// errors may take its place.
+    pub ln_bayes_factor: f64,
+    /// Power of the cause as a share of its own and that of the structured errors beside it.
+    pub share: f64,
+    /// Evidence with the effective number of rows, 2 ln(likelihood) less the penalty of the parameters.
+    pub effective_evidence: f64,
+}
+
+/// Structured force (of other channels: length, speed) that is there and that no law of the catalogue describes.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct ModelError {
+    /// Root mean square, in the unit of the baseline's figures.
+    #[serde(rename = "rms_N")]
+    pub rms_n: f64,
+    /// The same by its unit's name, if that is a torque.
+    #[serde(rename = "rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub rms_nm: Option<f64>,
+    /// Share of the power that the base model leaves beyond the noise.
+    pub share: f64,
+    /// Variables that it goes with, the largest part first.
+    pub over: Vec<OverVariable>,
+}
+
+/// Part of a model error that is a function of one variable.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct OverVariable {
+    /// Name of the variable.
+    pub variable: String,
+    /// Root mean square.
+    #[serde(rename = "rms_N")]
+    pub rms_n: f64,
+    /// The same by its unit's name, if that is a torque.
+    #[serde(rename = "rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub rms_nm: Option<f64>,
 }
 
 /// A cause that would explain the recording as well.
@@ -325,6 +368,9 @@ pub struct Diagnosis {
     pub alternatives: Vec<Alternative>,
     /// What this recording could not have shown.
     pub not_excited: Vec<NotExcited>,
+    /// Structured force that no law of the catalogue describes; nothing if the rows show none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_error: Option<ModelError>,
     /// What was looked for and not named, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub passed_over: Vec<PassedOver>,
@@ -352,6 +398,10 @@ impl Diagnosis {
             self.baseline.heldout_rms_nm = Some(self.baseline.heldout_rms_n);
             self.noise_floor_nm = Some(self.noise_floor_n);
             self.end.heldout_rms_nm = Some(self.end.heldout_rms_n);
+            for error in &mut self.model_error {
+                error.rms_nm = Some(error.rms_n);
+                error.over.iter_mut().for_each(|o| o.rms_nm = Some(o.rms_n));
+            }
         }
     }
 }

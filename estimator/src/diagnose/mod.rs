@@ -11,6 +11,7 @@ pub(crate) mod extension;
 pub(crate) mod findings;
 pub(crate) mod free_run;
 pub(crate) mod hypotheses;
+pub mod model_error;
 pub(crate) mod options;
 pub(crate) mod progress;
 pub(crate) mod recording;

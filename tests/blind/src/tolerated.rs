@@ -26,8 +26,8 @@ pub fn tolerated(family: Effect) -> &'static [&'static str] {
         Effect::FrictionWander => &["friction-change"],
         // The grasp moves, by itself or as the pad gives way.
         Effect::GraspCreep => &["fingertip-slip", "pad-compliance"],
-        // Coarse readings are a fault of the channel.
-        Effect::Steps => &["channel-fault"],
+        // Coarse readings are a fault of the channel; the tread on which zero lies is a bias.
+        Effect::Steps => &["channel-fault", "force-bias"],
         // No cause of the catalogue rings or hums.
         _ => &[],
     }

@@ -3,13 +3,14 @@
 //! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use super::atlas::Atlas;
-use super::cause::{Unnamed, rivals};
-use super::named::Named;
+use super::cause::Unnamed;
+use super::named::{Named, is_certain};
 use super::part::{Part, Role};
 use super::put_back::PutBack;
 use crate::diagnose::contract::{
     Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -101,6 +102,8 @@ pub struct Draft {
     open: f64,
     /// True if more of the residuals is unexplained than noise.
     is_strange: bool,
+    /// True if structured errors have more power than the causes.
+    is_mostly_error: bool,
 }
 
 /// Findings of the comparisons and of the evidence beside them, without a verdict.
@@ -128,13 +131,16 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > limit).cloned().collect();
     let next = (evidence.next)(&open);
-    let mut figures = told(parts).map_or(evidence.figures, Part::figures);
+    let told = told(parts);
+    let mut figures = told.map_or(evidence.figures, Part::figures);
+    let model_error = told.and_then(Part::model_error);
+    let is_mostly_error = told.and_then(|p| p.study.competition.as_ref()).is_some_and(|c| c.share > HALF);
     figures.baseline.model = model;
     let residuals = parts.iter().flat_map(Part::residuals).collect();
     let atlas = if evidence.atlas { parts.iter().filter_map(Part::atlas).collect() } else { Vec::new() };
     let simulated: Vec<_> = parts.iter().filter_map(|p| Some((p.study, p.in_world?))).collect();
     let findings = Findings {
-        diagnosis: Diagnosis { residuals, warnings, ..Diagnosis::default() },
+        diagnosis: Diagnosis { residuals, warnings, model_error, ..Diagnosis::default() },
         kept: parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect(),
         delay: evidence.delay,
         skew_s: evidence.skew_s,
@@ -143,21 +149,23 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
         ..Findings::default()
     };
     let named = Named { causes, alternatives, not_excited, passed_over, next };
-    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange }
+    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange, is_mostly_error }
 }
 
 impl Draft {
     /// The answer with its verdict. `put_back`: shift of the forces before the comparison.
     pub fn finish(self, put_back: Option<&PutBack<'_>>) -> Findings {
-        let Self { mut named, mut findings, mut figures, terms, open, is_strange } = self;
+        let Self { mut named, mut findings, mut figures, terms, open, is_strange, is_mostly_error } = self;
+        named.certain_first();
         let is_open = named.alternatives.iter().any(|a| a.posterior > open);
         if let Some(put_back) = put_back {
             figures = put_back.name(&mut named, &mut findings.delay, figures);
         }
         let Named { causes, alternatives, not_excited, passed_over, next } = named;
-        let is_named = causes.iter().any(|c| !terms.contains(&c.id));
+        let first = causes.iter().find(|c| !terms.contains(&c.id));
+        let is_certain = first.is_some_and(|c| is_certain(c, &alternatives)) && !is_mostly_error;
         findings.diagnosis = Diagnosis {
-            verdict: verdict(is_named, is_strange, is_open),
+            verdict: verdict(is_certain, is_strange || first.is_some(), is_open),
             baseline: figures.baseline,
             end: figures.end,
             noise_floor_n: figures.noise_floor,
@@ -190,8 +198,12 @@ fn compare(parts: &[Part<'_>], not_excited: Vec<NotExcited>) -> Compared {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
             if !part.told.is_cause(k) {
                 all.excuses.extend(part.told.excuse(k));
-            } else if all.ranking.add(part.role, chosen.score, part.cause(k)) {
-                all.alternatives.extend(rivals(part.study, chosen));
+                continue;
+            }
+            let cause = part.cause(k);
+            let rivals = part.rivals(k, cause.posterior);
+            if all.ranking.add(part.role, chosen.score, cause) {
+                all.alternatives.extend(rivals);
             }
         }
         if part.role != Role::Path {
@@ -244,9 +256,9 @@ fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
     channels.max_by(|a, b| a.strongest().total_cmp(&b.strongest()))
 }
 
-/// Verdict of the answer: a cause is named, a term has no name, a name is ambiguous.
-fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
-    match (is_named, is_strange) {
+/// Verdict of the answer. `is_certain`: of its first cause. `is_strange`: something has no certain name.
+fn verdict(is_certain: bool, is_strange: bool, is_open: bool) -> Verdict {
+    match (is_certain, is_strange) {
         (false, false) => Verdict::None,
         (false, true) => Verdict::Unexplained,
         (true, _) if is_open => Verdict::Ambiguous,

@@ -1,7 +1,7 @@
 //! One cause of an answer: parameters, probability, gain and evidence sentence.
 
 use super::part::{Found, Part, Role};
-use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parameter};
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, Standing, parameter};
 use crate::diagnose::free_run::windows::NO_LAW;
 use crate::diagnose::hypotheses::all::twins;
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -30,15 +30,26 @@ impl Part<'_> {
         } else {
             self.by_law(&gain, chosen)
         };
+        let standing = self.standing(k);
         Cause {
             id: candidate.id.to_owned(),
             kind: candidate.kind,
             parameters,
             p_value: p_value(self.study, chosen),
-            posterior: 1.0 / total_odds(self.study, chosen),
+            posterior: standing.map_or(1.0, |s| s.probability(&gain)) / total_odds(self.study, chosen),
+            standing,
             gain,
             evidence,
         }
+    }
+
+    fn standing(&self, k: usize) -> Option<Standing> {
+        self.study.competition.as_ref().and_then(|c| c.causes.get(k)).copied()
+    }
+
+    /// Causes that explain the recording nearly as well as the k-th, which has this posterior.
+    pub fn rivals(&self, k: usize, posterior: f64) -> Vec<Alternative> {
+        rivals(self.study, &self.study.chosen[k], posterior)
     }
 
     /// Evidence sentence of a channel that has sentences of its own.
@@ -109,6 +120,7 @@ impl Part<'_> {
             parameters,
             p_value: chi_square_tail(score, candidate.cost),
             posterior: 1.0 / odds.max(1.0),
+            standing: None,
             gain: self.in_its_unit(gain).run(Err(NO_LAW.to_owned())),
             evidence: format!("what is left{of} goes with {expression}; no known cause does so here"),
         };
@@ -194,13 +206,12 @@ fn p_value(study: &ChannelFit, chosen: &SelectedTerm) -> f64 {
 }
 
 /// Causes that explain the recording nearly as well as a chosen one.
-pub fn rivals(study: &ChannelFit, chosen: &SelectedTerm) -> Vec<Alternative> {
+fn rivals(study: &ChannelFit, chosen: &SelectedTerm, posterior: f64) -> Vec<Alternative> {
     let own = study.candidates[chosen.candidate].id;
-    let total = total_odds(study, chosen);
     let alternative = |id: &str, odds: f64, why: String| Alternative {
         id: id.to_owned(),
         instead_of: own.to_owned(),
-        posterior: odds / total,
+        posterior: posterior * odds,
         why,
     };
     let near = chosen.rivals.iter().map(|(c, behind)| {

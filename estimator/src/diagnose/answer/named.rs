@@ -1,6 +1,7 @@
 //! Entries of an answer before its verdict.
 
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited, PassedOver};
+use crate::diagnose::selection::normal_equations::ROUNDING;
 
 /// Causes that the comparisons name, and the experiment that would settle the open questions. The task corrects them by
 /// its own knowledge.
@@ -11,4 +12,22 @@ pub struct Named {
     pub not_excited: Vec<NotExcited>,
     pub passed_over: Vec<PassedOver>,
     pub next: Option<NextExperiment>,
+}
+
+/// Probability from which a cause is certain.
+/// Derived: the level of all confidence intervals.
+const CERTAIN_FROM: f64 = 0.95;
+
+/// True if a cause, or one of the alternatives to it, is certainly there.
+pub fn is_certain(cause: &Cause, alternatives: &[Alternative]) -> bool {
+    let instead = alternatives.iter().filter(|a| a.instead_of == cause.id).map(|a| a.posterior);
+    cause.posterior + instead.sum::<f64>() >= CERTAIN_FROM - ROUNDING
+}
+
+impl Named {
+    /// Moves the certain causes to the front.
+    pub fn certain_first(&mut self) {
+        let alternatives = &self.alternatives;
+        self.causes.sort_by_key(|c| !is_certain(c, alternatives));
+    }
 }

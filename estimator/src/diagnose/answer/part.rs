@@ -1,7 +1,7 @@
 //! One compared channel as a part of an answer.
 
 use super::atlas::{Against, Channel, strongest};
-use crate::diagnose::contract::{Baseline, CauseParameter, Final, NotExcited, Residual};
+use crate::diagnose::contract::{Baseline, CauseParameter, Final, ModelError, NotExcited, OverVariable, Residual};
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
 use crate::diagnose::free_run::FreeRun;
@@ -189,6 +189,21 @@ impl<'a> Part<'a> {
             // The final residual contains the noise, so the noise floor is no larger.
             noise_floor: if is_one_of_several && end > 0.0 { self.floor.min(end) } else { self.floor },
         }
+    }
+
+    /// Structured error of the channel.
+    pub fn model_error(&self) -> Option<ModelError> {
+        let competition = self.study.competition.as_ref().filter(|c| !c.over.is_empty())?;
+        let (_, plain) = rms(self.study, &[], self.along);
+        let explainable = plain * plain - self.floor.min(plain).powi(2);
+        let share = (competition.rms.powi(2) / explainable.max(competition.rms.powi(2))).min(1.0);
+        let one = |(variable, rms_n): &(&'static str, f64)| OverVariable {
+            variable: (*variable).to_owned(),
+            rms_n: *rms_n,
+            rms_nm: None,
+        };
+        let over = competition.over.iter().map(one).collect();
+        Some(ModelError { rms_n: competition.rms, rms_nm: None, share, over })
     }
 
     /// Residuals of the channel, state by state.

@@ -73,6 +73,7 @@ fn unnamed_before(first: &Findings, late_s: f64) -> Cause {
         parameters: vec![parameter("tau", late_s, 0.0, "s")],
         p_value: 0.0,
         posterior: 1.0,
+        standing: None,
         gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },
         evidence: format!(
             "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",

@@ -112,6 +112,7 @@ fn certain(id: &str, parameters: Vec<CauseParameter>, evidence: String) -> Cause
         parameters,
         p_value: 0.0,
         posterior: 1.0,
+        standing: None,
         gain: Gain::default(),
         evidence,
     }

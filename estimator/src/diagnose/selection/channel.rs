@@ -96,6 +96,7 @@ impl Channel {
             layout,
             rules,
             shares_of: [1.0, 0.0],
+            competition: None,
         })
     }
 }

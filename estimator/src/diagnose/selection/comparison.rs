@@ -4,6 +4,7 @@ use super::rules::Rules;
 use super::stepwise::{SelectedTerm, Stepwise, without};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::model_error::competition::Competition;
 use foundation::tasks::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
@@ -58,6 +59,8 @@ pub struct ChannelFit {
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
     pub shares_of: [f64; 2],
+    /// The chosen causes beside structured errors.
+    pub competition: Option<Competition>,
 }
 
 impl ChannelFit {
@@ -102,7 +105,18 @@ impl ChannelFit {
         let chosen: Vec<SelectedTerm> = self.chosen.iter().enumerate().map(as_before).collect();
         let solved = system.solve(&(0..chosen.len()).collect::<Vec<usize>>());
         let (y, base, layout, shares_of) = (y.clone(), base.clone(), layout.clone(), self.shares_of);
-        Self { candidates, chosen, system, solved, target: y, baseline: base, layout, rules: *rules, shares_of }
+        Self {
+            candidates,
+            chosen,
+            system,
+            solved,
+            target: y,
+            baseline: base,
+            layout,
+            rules: *rules,
+            shares_of,
+            competition: None,
+        }
     }
 
     /// Each of these candidates with its coefficients. `values`: of the model's regressors, then of the candidates' ones.

@@ -39,6 +39,18 @@ fn residual(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
     weighted(study, &study.residual(picks))
 }
 
+/// The same beside the structured error of the channel.
+fn residual_beside(study: &ChannelFit, picks: &[usize]) -> Vec<f64> {
+    weighted(study, &without_error(study, study.residual(picks)))
+}
+
+/// A residual without the structured error of the channel.
+fn without_error(study: &ChannelFit, mut residual: Vec<f64>) -> Vec<f64> {
+    let error = study.competition.iter().flat_map(|c| &c.error);
+    residual.iter_mut().zip(error).for_each(|(r, e)| *r -= e);
+    residual
+}
+
 fn weighted(study: &ChannelFit, residual: &[f64]) -> Vec<f64> {
     residual.iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
 }
@@ -71,7 +83,7 @@ pub fn gain_between(study: &ChannelFit, rest: &[usize], picks: &[usize], floor: 
     let parts = if in_turn {
         parts_in_turn(study, rest, picks)
     } else {
-        parts(study, &residual(study, rest), &residual(study, picks), shows_beside(study, &more))
+        parts(study, &residual_beside(study, rest), &residual_beside(study, picks), shows_beside(study, &more))
     };
     if parts.rows.is_empty() {
         return Gain { no_share: Some("there were too few rows to hold any out".to_owned()), ..Gain::default() };
@@ -109,7 +121,7 @@ fn parts_in_turn(study: &ChannelFit, rest: &[usize], picks: &[usize]) -> Parts {
         let others = &study.system.train - products;
         let residual = |picks: &[usize]| {
             let solved = solve(&others, &study.system.columns(picks), others.ncols() - 1)?;
-            Some(weighted(study, &study.residual_of(picks, &solved)))
+            Some(weighted(study, &without_error(study, study.residual_of(picks, &solved))))
         };
         let (Some(before), Some(after)) = (residual(rest), residual(picks)) else { continue };
         let own: Vec<usize> = (0..before.len()).filter(|i| study.system.uses[*i] == Use::Fold(fold)).collect();
@@ -135,7 +147,7 @@ pub fn is_tested(study: &ChannelFit, k: usize) -> bool {
 fn held_out(study: &ChannelFit, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
     let rest = study.picks_without(k);
-    let white = |picks: &[usize]| whitened(study, picks);
+    let white = |picks: &[usize]| whitened(study, &residual_beside(study, picks));
     let (before, after) = (white(&rest), white(&picks));
     let over = |wanted: &dyn Fn(Use) -> bool, of: &dyn Fn(f64, f64) -> f64| {
         let rows = study.system.uses.iter().zip(before.iter().zip(&after)).filter(|(used, _)| wanted(**used));
@@ -148,8 +160,8 @@ fn held_out(study: &ChannelFit, k: usize, of: &dyn Fn(f64, f64) -> f64) -> f64 {
 }
 
 /// Rows whitened by the noise's autoregression; `None` at the start of a segment, before enough rows precede.
-fn whitened(study: &ChannelFit, picks: &[usize]) -> Vec<Option<f64>> {
-    let (values, segment, coefficients) = (residual(study, picks), &study.layout.segment, &study.system.coefficients);
+fn whitened(study: &ChannelFit, values: &[f64]) -> Vec<Option<f64>> {
+    let (segment, coefficients) = (&study.layout.segment, &study.system.coefficients);
     let mut since = 0;
     (0..values.len())
         .map(|i| {
@@ -232,7 +244,7 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
 /// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own
 /// autoregression.
 pub fn whiteness_p(study: &ChannelFit, picks: &[usize]) -> f64 {
-    let white: Vec<f64> = whitened(study, picks).into_iter().flatten().collect();
+    let white: Vec<f64> = whitened(study, &residual(study, picks)).into_iter().flatten().collect();
     let n = white.len() as f64;
     let power: f64 = white.iter().map(|v| v * v).sum();
     if white.len() < 3 * LAGS || power <= 0.0 {

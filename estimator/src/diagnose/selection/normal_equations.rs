@@ -262,6 +262,37 @@ impl System {
         self.train.ncols() - 1
     }
 
+    /// Takes the last columns of the base out by their posterior, given the prior precision of each coefficient relative
+    /// to the noise's: Gram matrices become those of rows whose noise includes these columns. False if that fails.
+    pub fn marginalize(&mut self, from: usize, precision: &[f64]) -> bool {
+        let out = from..from + precision.len();
+        let kept: Vec<usize> = (0..self.train.ncols()).filter(|c| !out.contains(c)).collect();
+        let left = |gram: &DMatrix<f64>| -> Option<DMatrix<f64>> {
+            let size = out.len();
+            let mut own = gram.view((from, from), (size, size)).into_owned();
+            (0..size).for_each(|i| own[(i, i)] += precision[i]);
+            let beside = DMatrix::from_fn(size, kept.len(), |i, j| gram[(from + i, kept[j])]);
+            let solved = own.cholesky()?.l_dirty().solve_lower_triangular(&beside)?;
+            let mut rest = DMatrix::from_fn(kept.len(), kept.len(), |i, j| gram[(kept[i], kept[j])]);
+            rest.gemm_tr(-1.0, &solved, &solved, 1.0);
+            Some(rest)
+        };
+        let Some(train) = left(&self.train) else { return false };
+        for (fold, _) in &mut self.folds {
+            let Some(others) = left(&(&self.train - &*fold)) else { return false };
+            *fold = &train - others;
+        }
+        self.always = train.clone();
+        self.folds.iter().for_each(|(fold, _)| self.always -= fold);
+        self.train = train;
+        self.base = from;
+        let shift = |place: &mut Range<usize>| *place = place.start - out.len()..place.end - out.len();
+        self.places.iter_mut().for_each(shift);
+        self.energy.drain(out.clone());
+        self.whitened.drain(out);
+        true
+    }
+
     /// Columns of the base and of the chosen candidates.
     pub fn columns(&self, chosen: &[usize]) -> Vec<usize> {
         (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()

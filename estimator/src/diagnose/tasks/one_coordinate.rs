@@ -15,6 +15,8 @@ use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
     backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
 };
+use crate::diagnose::model_error::competition::settle;
+use crate::diagnose::model_error::of_coordinate;
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
@@ -67,7 +69,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelF
         }
     }
     leave_out_what_is_unsure(&mut made);
-    Ok(made)
+    Ok(settle(made, &|made| of_coordinate::discrepancies(track, made)))
 }
 
 /// A comparison on a track, with what is common to all rounds.

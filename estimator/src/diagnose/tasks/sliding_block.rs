@@ -366,6 +366,7 @@ fn scales(found: &mut Named, ratio: f64, error: f64) {
         parameters: vec![parameter("g - 1", ratio - 1.0, error, "1")],
         p_value: held_out_gain::chi_square_tail((off / error).powi(2), 1.0),
         posterior: 0.5,
+        standing: None,
         gain: Gain::default().run(Err(AT_ONCE.to_owned())),
         evidence: format!(
             "the block needs {:+.1} % of force for its accelerations beyond what its known weight asks for",

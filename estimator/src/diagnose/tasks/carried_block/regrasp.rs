@@ -51,6 +51,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
         parameters: vec![parameter("dy", way, error, "m")],
         p_value: chi_square_tail((way / error).powi(2), 1.0),
         posterior: 1.0,
+        standing: None,
         gain: Gain {
             heldout_rms_before: way.abs(),
             heldout_rms_after: error,

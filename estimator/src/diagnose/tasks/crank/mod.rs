@@ -128,7 +128,9 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
         let path = signals.path(recording);
         found.short.extend(path::short_arc(&path, &circle.arm, &circle.study));
         let terms = path::unexplained(&path, &circle.arm, &circle.study);
-        found.paths.push(PathFit { study: circle.study, terms, link: None });
+        let mut study = circle.study;
+        study.competition = path::competition(&path, &circle.arm, &study);
+        found.paths.push(PathFit { study, terms, link: None });
     }
     Ok(found)
 }

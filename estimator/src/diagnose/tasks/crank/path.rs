@@ -8,6 +8,8 @@ use crate::diagnose::data::limits::MOST_ROUNDS;
 use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
+use crate::diagnose::model_error::competition::{Competition, compete};
+use crate::diagnose::model_error::of_path::discrepancies;
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
@@ -315,4 +317,11 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
             1e3 * error_m
         )
     })
+}
+
+/// Causes of the path beside its generic discrepancies.
+pub fn competition(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<Competition> {
+    let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
+    let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
+    compete(study, &discrepancies(&outward, &time_s))
 }

@@ -152,6 +152,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
         ],
         p_value: chi_square_tail(scatter, n - 1.0),
         posterior: 1.0,
+        standing: None,
         gain: Gain {
             no_share: Some("each puncture is one observation: none was held out".to_owned()),
             no_rollout: Some(AT_AN_INSTANT.to_owned()),

@@ -36,6 +36,7 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
         parameters: vec![parameter("epsilon", value, error, "1")],
         p_value: chi_square_tail(lambda, 1.0),
         posterior,
+        standing: None,
         gain: held_out(&seen.tracks, gravity_m_s2),
         evidence: format!(
             "in {} flights the body falls with {:.3} ± {:.3} m/s² where gravity is {gravity_m_s2}: lengths are recorded {:+.2} % off",

@@ -1,0 +1,335 @@
+//! Competition of the chosen causes of a channel with structured errors that no law describes.
+//!
+//! A cause is certain only if the best model without it, in which structured errors may take its place, is clearly
+//! worse. The model error is a rival here, where Kennedy & O'Hagan (2001) add it to every model.
+
+use super::evidence::{Element, Fitted, Prior, Products};
+use super::smooth::Discrepancy;
+use crate::diagnose::contract::{Gain, Standing};
+use crate::diagnose::selection::channel::leave_out_what_is_unsure;
+use crate::diagnose::selection::comparison::ChannelFit;
+use crate::diagnose::selection::gram::gram;
+use crate::diagnose::selection::layout::Use;
+use crate::diagnose::selection::noise_model::{Whitening, whitener};
+use crate::diagnose::selection::normal_equations::{System, counted};
+use crate::diagnose::selection::stepwise::Stepwise;
+
+/// Evidence that a discrepancy must add, ln(likelihood).
+const OF_A_DISCREPANCY: f64 = 7.0;
+/// Most discrepancies at once.
+const MOST: usize = 5;
+/// Number of discrepancies, best first by their screening, whose variances are optimised in one step.
+const LEADERS: usize = 2;
+/// Prior odds against a cause, ln.
+const AGAINST_A_CAUSE: f64 = 3.0;
+
+/// Evidence, ln(Bayes factor), from which a cause may be certain.
+const CERTAIN_LN_BAYES: f64 = 12.0;
+/// Share of its own and the discrepancies' power from which a cause may be certain.
+const CERTAIN_SHARE: f64 = 0.6;
+/// Lower end of the held-out share from which a cause beside discrepancies may be certain; alone it must be positive.
+const CERTAIN_HELD_OUT: f64 = 0.3;
+
+impl Standing {
+    /// Calibrated probability that the cause, or one that could stand in its place, is there: its weakest test decides.
+    pub(crate) fn probability(self, gain: &Gain) -> f64 {
+        let is_alone = self.share > 1.0 - ALONE;
+        let held_out = if gain.no_share.is_some() {
+            f64::INFINITY
+        } else {
+            (gain.interval[0] + if is_alone { ALONE_HELD_OUT } else { 0.0 }) / CERTAIN_HELD_OUT
+        };
+        let weakest = (self.ln_bayes_factor / CERTAIN_LN_BAYES).min(self.share / CERTAIN_SHARE).min(held_out);
+        let log_odds = 3.0 + 10.0 * (weakest.clamp(0.0, 1.15) - 1.0);
+        1.0 / (1.0 + (-log_odds).exp())
+    }
+}
+
+/// The same for a cause beside which no discrepancy is found, relative to the one above.
+const ALONE_HELD_OUT: f64 = 0.2;
+/// Share of the discrepancies' power below which there are none.
+const ALONE: f64 = 0.005;
+
+/// Result of a competition.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Competition {
+    /// Standing of every chosen cause, in the order of the choice.
+    pub causes: Vec<Standing>,
+    /// Sum of all discrepancies of the best model, row by row, and its RMS.
+    pub error: Vec<f64>,
+    pub rms: f64,
+    /// Variables of these discrepancies, with the RMS of each.
+    pub over: Vec<(&'static str, f64)>,
+    /// Power of the discrepancies as a share of theirs and that of the causes.
+    pub share: f64,
+    /// Discrepancies of the best model with the variances of their coefficients beside that of the noise.
+    pub used: Vec<(usize, f64)>,
+    /// Autoregression of the noise that the best model leaves.
+    pub coefficients: Vec<f64>,
+}
+
+/// Lets each chosen cause of a channel compete. `None` if the rows determine nothing.
+pub fn compete(study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<Competition> {
+    let first = Round::of(study, discrepancies, &study.system.coefficients)?;
+    // The autoregression of the first round took part of the slow structure for noise.
+    let used = vec![Use::Always; study.layout.rows()];
+    let coefficients = whitener(&first.residual(study), &study.layout, &used);
+    let found = Round::of(study, discrepancies, &coefficients)?.competition(study, discrepancies)?;
+    Some(Competition { coefficients, ..found })
+}
+
+/// Rivals in a model: elements of causes come first, then those of discrepancies.
+struct Rivals {
+    products: Products,
+    /// Penalty of each cause, ln.
+    penalty: Vec<f64>,
+    discrepancies: Vec<usize>,
+}
+
+impl Rivals {
+    fn score(&self, model: &Fitted) -> f64 {
+        let cost = |e: usize| self.penalty.get(e).copied().unwrap_or(OF_A_DISCREPANCY);
+        model.ln_evidence - model.used.iter().map(|(e, _)| cost(*e)).sum::<f64>()
+    }
+
+    /// The model with the discrepancies that its rows ask for: added as long as one adds enough, then removed as long
+    /// as one is superfluous.
+    fn settled(&self, mut model: Fitted) -> Option<Fitted> {
+        while let Some(more) = self.extended(&model)?.filter(|more| self.score(more) > self.score(&model)) {
+            model = more;
+        }
+        while let Some(less) = self.reduced(&model).filter(|less| self.score(less) >= self.score(&model)) {
+            model = less;
+        }
+        Some(model)
+    }
+
+    /// The best model with one more discrepancy.
+    fn extended(&self, model: &Fitted) -> Option<Option<Fitted>> {
+        let is_open = |e: &usize| model.used.iter().all(|(u, _)| u != e);
+        let open: Vec<usize> = self.discrepancies.iter().copied().filter(is_open).collect();
+        if self.discrepancies.len() >= MOST + open.len() {
+            return Some(None);
+        }
+        let mut screened = self.products.screen(model, &open)?;
+        screened.retain(|s| s.gain > 0.5 * OF_A_DISCREPANCY);
+        screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let with = screened.iter().take(LEADERS).filter_map(|s| {
+            let mut used = model.used.clone();
+            used.push((s.element, s.variance));
+            self.products.fit(used, Some(model.noise))
+        });
+        Some(with.max_by(|a, b| a.ln_evidence.total_cmp(&b.ln_evidence)))
+    }
+
+    /// The best model with one discrepancy less.
+    fn reduced(&self, model: &Fitted) -> Option<Fitted> {
+        let used = model.used.iter().filter(|(e, _)| self.discrepancies.contains(e));
+        let less = used.filter_map(|(e, _)| self.products.without(model, *e));
+        less.max_by(|a, b| self.score(a).total_cmp(&self.score(b)))
+    }
+
+    /// Standing of each cause. The one that discrepancies replace best leaves the model first, because it must not
+    /// count for the others. `best`: the model at the end.
+    fn standings(&self, best: &mut Fitted) -> Option<Vec<Standing>> {
+        let causes = self.penalty.len();
+        let mut standings = vec![Standing::default(); causes];
+        loop {
+            let present: Vec<usize> = best.used.iter().map(|(e, _)| *e).filter(|e| *e < causes).collect();
+            let mut weakest: Option<(f64, Fitted)> = None;
+            for k in present {
+                let without = self.settled(self.products.without(best, k)?)?;
+                let ln_bayes_factor = self.score(best) - self.score(&without);
+                let [own, errors] =
+                    [self.products.power_of(best, &[k]), self.products.power_of(best, &self.discrepancies)];
+                standings[k].ln_bayes_factor = ln_bayes_factor;
+                standings[k].share = own / (own + errors).max(f64::MIN_POSITIVE);
+                if weakest.as_ref().is_none_or(|w| ln_bayes_factor < w.0) {
+                    weakest = Some((ln_bayes_factor, without));
+                }
+            }
+            match weakest {
+                Some((ln_bayes_factor, without)) if ln_bayes_factor < 0.0 => *best = without,
+                _ => return Some(standings),
+            }
+        }
+    }
+}
+
+/// One competition with one whitening.
+struct Round<'a> {
+    rivals: Rivals,
+    /// Columns of base model, causes, discrepancies, and the target.
+    raw: Vec<&'a [f64]>,
+    gram: nalgebra::DMatrix<f64>,
+    best: Fitted,
+    standings: Vec<Standing>,
+}
+
+impl<'a> Round<'a> {
+    fn of(study: &'a ChannelFit, discrepancies: &'a [Discrepancy], coefficients: &[f64]) -> Option<Self> {
+        let picks = study.picks();
+        let white = Whitening::new(&study.layout.segment, &study.layout.weight, coefficients);
+        let whole = white.leaves();
+        let picked: Vec<usize> = (0..study.layout.rows()).filter(|i| whole[*i]).collect();
+        let of_base = study.baseline.iter().map(Vec::as_slice);
+        let of_causes = picks.iter().flat_map(|p| study.candidates[*p].regressors.iter().map(|c| c.as_slice()));
+        let of_errors = discrepancies.iter().flat_map(|d| d.columns.iter().map(Vec::as_slice));
+        let raw: Vec<&[f64]> = of_base.chain(of_causes).chain(of_errors).chain([study.target.as_slice()]).collect();
+        let columns: Vec<Vec<f64>> = raw.iter().map(|c| white.of(c)).collect();
+        let gram = gram(&columns, &picked);
+        let products = Products::new(
+            &gram,
+            study.baseline.len(),
+            counted(&picked, &study.layout),
+            elements(study, discrepancies, &picked),
+        )?;
+        let tried = |p: usize| study.candidates.iter().filter(|c| c.id == study.candidates[p].id).count() as f64;
+        let rivals = Rivals {
+            products,
+            penalty: picks.iter().map(|p| AGAINST_A_CAUSE + tried(*p).ln()).collect(),
+            discrepancies: (picks.len()..picks.len() + discrepancies.len()).collect(),
+        };
+        let named = (0..picks.len()).map(|k| (k, 1.0)).collect();
+        let mut best = rivals.settled(rivals.products.fit(named, None)?)?;
+        let standings = rivals.standings(&mut best)?;
+        Some(Self { rivals, raw, gram, best, standings })
+    }
+
+    /// Weighted residual of the best model.
+    fn residual(&self, study: &ChannelFit) -> Vec<f64> {
+        let mut left = self.raw[self.raw.len() - 1].to_vec();
+        for (column, value) in self.rivals.products.values(&self.best, &self.gram, study.baseline.len()) {
+            left.iter_mut().zip(self.raw[column]).for_each(|(l, c)| *l -= value * c);
+        }
+        left.iter().zip(&study.layout.weight).map(|(l, w)| l * w).collect()
+    }
+
+    fn competition(self, study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<Competition> {
+        let Self { rivals, raw, best, mut standings, .. } = self;
+        let picks = study.picks();
+        for (k, standing) in standings.iter_mut().enumerate() {
+            let cost = study.candidates[picks[k]].cost;
+            standing.effective_evidence = effective_evidence(study, &study.picks_without(k), cost);
+        }
+        let rows = study.layout.rows();
+        let mut sum = vec![0.0; rows];
+        let mut over: Vec<(&'static str, f64)> = Vec::new();
+        for e in rivals.discrepancies.iter().filter(|e| best.used.iter().any(|(u, _)| u == *e)) {
+            let mut own = vec![0.0; rows];
+            for (column, value) in rivals.products.values_of(&best, *e) {
+                own.iter_mut().zip(raw[study.baseline.len() + column]).for_each(|(o, c)| *o += value * c);
+            }
+            over.push((discrepancies[e - picks.len()].over, rms(&own, &study.layout.weight)));
+            sum.iter_mut().zip(&own).for_each(|(s, o)| *s += o);
+        }
+        over.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let causes: Vec<usize> = (0..picks.len()).collect();
+        let [named, errors] = [&causes, &rivals.discrepancies].map(|of| rivals.products.power_of(&best, of));
+        let share = errors / (named + errors).max(f64::MIN_POSITIVE);
+        let used = best.used.iter().filter(|(e, _)| *e >= picks.len()).map(|(e, v)| (e - picks.len(), v / best.noise));
+        Some(Competition {
+            causes: standings,
+            rms: rms(&sum, &study.layout.weight),
+            error: sum,
+            over,
+            share,
+            used: used.collect(),
+            coefficients: Vec::new(),
+        })
+    }
+}
+
+/// Causes and discrepancies with their priors. A cause may explain all that the base model leaves.
+fn elements(study: &ChannelFit, discrepancies: &[Discrepancy], picked: &[usize]) -> Vec<Element> {
+    let plain = study.residual(&[]);
+    let mean_square = |of: &[f64]| picked.iter().map(|i| (study.layout.weight[*i] * of[*i]).powi(2)).sum::<f64>();
+    let left = mean_square(&plain);
+    let mut at = 0;
+    let mut place = |columns: usize| {
+        at += columns;
+        at - columns..at
+    };
+    let of_cause = |pick: &usize| {
+        let own = &study.candidates[*pick].regressors;
+        let variance = |c: &[f64]| left / (own.len() as f64 * mean_square(c)).max(f64::MIN_POSITIVE);
+        (own.len(), Prior::Fixed(own.iter().map(|c| variance(c)).collect()))
+    };
+    let picks = study.picks();
+    let causes = picks.iter().map(of_cause);
+    let errors = discrepancies.iter().map(|d| (d.columns.len(), Prior::Estimated));
+    causes.chain(errors).map(|(columns, prior)| Element { columns: place(columns), prior }).collect()
+}
+
+fn rms(values: &[f64], weight: &[f64]) -> f64 {
+    let acting = || values.iter().zip(weight).filter(|(v, _)| **v != 0.0);
+    let rows: f64 = acting().map(|(_, w)| w * w).sum();
+    (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// Evidence of a cause by the effective number of rows, 2 ln(likelihood) less the penalty of its parameters: N/t of
+/// them, where t is the autocorrelation time of the residual in rows. It holds for a structure of any shape, unless that
+/// comes back in the course of the recording.
+fn effective_evidence(study: &ChannelFit, rest: &[usize], cost: f64) -> f64 {
+    /// Correlation from which rows count as independent.
+    const INDEPENDENT: f64 = 0.05;
+    let weigh = |picks: &[usize]| -> Vec<f64> {
+        study.residual(picks).iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
+    };
+    let (before, after) = (weigh(rest), weigh(&study.picks()));
+    let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().max(f64::MIN_POSITIVE);
+    let mut time = 1.0;
+    for lag in 1..after.len() / 4 {
+        let pairs = (lag..after.len()).filter(|i| study.layout.segment[*i] == study.layout.segment[*i - lag]);
+        let correlation = pairs.map(|i| after[i] * after[i - lag]).sum::<f64>() / power(&after);
+        if correlation <= INDEPENDENT {
+            break;
+        }
+        time += 2.0 * correlation;
+    }
+    let rows = (study.system.rows / time).max(1.0);
+    rows * (power(&before) / power(&after)).ln() - cost * rows.ln()
+}
+
+/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays.
+pub fn settle(mut study: ChannelFit, discrepancies: &dyn Fn(&ChannelFit) -> Vec<Discrepancy>) -> ChannelFit {
+    /// Most new choices.
+    const CHOICES: usize = 2;
+    let errors = discrepancies(&study);
+    study.competition = compete(&study, &errors);
+    for _ in 0..CHOICES {
+        let before = study.picks();
+        if !choose_beside(&mut study, &errors) {
+            break;
+        }
+        leave_out_what_is_unsure(&mut study);
+        if study.picks() == before {
+            break;
+        }
+        study.competition = compete(&study, &errors);
+    }
+    study
+}
+
+/// Chooses the causes anew beside the discrepancies of the competition. False without any.
+fn choose_beside(study: &mut ChannelFit, discrepancies: &[Discrepancy]) -> bool {
+    let Some(found) = study.competition.as_ref().filter(|c| !c.used.is_empty()) else { return false };
+    let columns = found.used.iter().flat_map(|(d, _)| &discrepancies[*d].columns);
+    let precision: Vec<f64> =
+        found.used.iter().flat_map(|(d, v)| vec![v.recip(); discrepancies[*d].columns.len()]).collect();
+    let ChannelFit { baseline, candidates, target, layout, .. } = &*study;
+    let base: Vec<Vec<f64>> = baseline.iter().chain(columns).cloned().collect();
+    let mut system = System::new(&base, candidates, target, layout, found.coefficients.clone());
+    if !system.marginalize(baseline.len(), &precision) {
+        return false;
+    }
+    let error = Whitening::new(&layout.segment, &layout.weight, &found.coefficients).of(&found.error);
+    let last = system.target();
+    system.whitened[last].iter_mut().zip(&error).for_each(|(target, error)| *target -= error);
+    system.resisting.clone_from(&study.system.resisting);
+    system.pieces.clone_from(&study.system.pieces);
+    study.chosen = Stepwise::new(&system, candidates, &study.rules).run(&study.picks());
+    study.system = system;
+    study.solved = study.system.solve(&study.picks());
+    true
+}

@@ -1,0 +1,8 @@
+//! Structured force that no law of the catalogue describes, as a rival of the causes.
+
+pub(crate) mod competition;
+pub(crate) mod evidence;
+pub(crate) mod of_channel;
+pub(crate) mod of_coordinate;
+pub(crate) mod of_path;
+pub(crate) mod smooth;

@@ -1,0 +1,168 @@
+//! Structured errors of a motion along one coordinate.
+
+use super::smooth::{Discrepancy, field, over_range, over_time, periodic};
+use crate::diagnose::data::regression_data::{Place, Row, Track};
+use crate::diagnose::selection::comparison::ChannelFit;
+
+/// Harmonics of a function of the angle.
+const HARMONICS: u32 = 10;
+/// Half waves of a function of place, speed or load.
+const HALF_WAVES: usize = 12;
+/// Half waves of a function of time, of one sensor axis or of the friction.
+const WAVES_OF_TIME: usize = 64;
+
+/// All discrepancies of the rows of a comparison.
+pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
+    let (rows, time_s) = (&track.rows, study.layout.time_s.as_slice());
+    let predicted: Vec<f64> = study.target.iter().zip(study.residual(&[])).map(|(y, r)| y - r).collect();
+    let along: Vec<bool> = rows.iter().map(|r| r.place == Place::Along).collect();
+    let of = |value: &dyn Fn(&Row) -> f64| -> Vec<f64> {
+        rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()
+    };
+    let usual = |values: &[f64]| {
+        let square: f64 = values.iter().map(|v| v * v).sum();
+        (square / along.iter().filter(|a| **a).count().max(1) as f64).sqrt().max(1e-300)
+    };
+    let unit = |values: Vec<f64>| {
+        let scale = usual(&values);
+        values.into_iter().map(|v| v / scale).collect::<Vec<f64>>()
+    };
+    let one = of(&|_| 1.0);
+    let speed = unit(of(&|r| r.motion.velocity));
+    let direction = of(&|r| r.motion.direction);
+    let load = track.planar.then(|| unit(of(&|r| r.motion.normal_force_n)));
+    let friction: Vec<f64> = match &load {
+        Some(load) => direction.iter().zip(load).map(|(d, l)| d * l.abs()).collect(),
+        None => direction.clone(),
+    };
+    let angle = of(&|r| r.angle_rad);
+    let turns = track.radius_m.is_some();
+    let place = if turns { periodic(&angle, HARMONICS) } else { over_range(&angle, &along, 0.06, 2 * HALF_WAVES) };
+    let fast: Vec<f64> = speed.iter().map(|v| v.abs()).collect();
+    let over_speed = over_range(&fast, &along, 0.15, HALF_WAVES);
+    let slow = |hz: f64| over_time(time_s, hz, 1.0, WAVES_OF_TIME);
+    let (sensor, wear) = (slow(1.5), slow(0.4));
+    let mut found = vec![
+        Discrepancy::of("position", &one, &place),
+        Discrepancy::of("position (friction)", &friction, &place),
+        Discrepancy::of("position (viscous friction)", &speed, &place),
+        Discrepancy::of("speed", &one, &over_speed),
+        Discrepancy::of("speed (friction)", &direction, &over_speed),
+        Discrepancy::of("time (friction)", &friction, &wear),
+        Discrepancy::of("time (viscous friction)", &speed, &wear),
+        Discrepancy::of("way since the last reversal", &friction, &since_reversal(track, &along)),
+    ];
+    if let Some(load) = &load {
+        let over_load = over_range(load, &along, 0.15, HALF_WAVES);
+        found.push(Discrepancy::of("position (load)", load, &place));
+        found.push(Discrepancy::of("load", &one, &over_load));
+        found.push(Discrepancy::of("load (friction)", &direction, &over_load));
+    }
+    found.push(state(&angle, turns, (&speed, load.as_deref()), &along));
+    found.push(wander(track, &sensor));
+    found.push(creep(track, time_s, &predicted));
+    found.push(reading(track, &predicted));
+    found.into_iter().flatten().collect()
+}
+
+/// A function of the whole state.
+fn state(angle: &[f64], turns: bool, (speed, load): (&[f64], Option<&[f64]>), along: &[bool]) -> Option<Discrepancy> {
+    const FEATURES: usize = 64;
+    let mut variables: Vec<Vec<f64>> = if turns {
+        vec![angle.iter().map(|a| 2.0 * a.cos()).collect(), angle.iter().map(|a| 2.0 * a.sin()).collect()]
+    } else {
+        let used: Vec<f64> = angle.iter().zip(along).filter(|(_, u)| **u).map(|(a, _)| *a).collect();
+        let (low, high) = used.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+        vec![angle.iter().map(|a| 6.0 * (a - low) / (high - low).max(1e-300)).collect()]
+    };
+    variables.push(speed.to_vec());
+    variables.extend(load.map(<[f64]>::to_vec));
+    let on: Vec<f64> = along.iter().map(|a| f64::from(u8::from(*a))).collect();
+    Discrepancy::of("state", &on, &field(&variables, FEATURES))
+}
+
+/// Slow error of the force sensor, along each of its axes.
+fn wander(track: &Track, slow: &[Vec<f64>]) -> Option<Discrepancy> {
+    let axis = |row: &Row, k: usize| match row.place {
+        Place::Along if track.planar => [row.along.x, row.along.y][k],
+        Place::Along => f64::from(u8::from(k == 0)),
+        Place::FreeX => f64::from(u8::from(k == 0)),
+        Place::FreeY => f64::from(u8::from(k == 1)),
+        Place::Stuck { .. } => 0.0,
+    };
+    let axes = if track.planar { 2 } else { 1 };
+    let one =
+        |k: usize| slow.iter().map(move |wave| track.rows.iter().zip(wave).map(|(r, w)| axis(r, k) * w).collect());
+    Discrepancy::new("time", (0..axes).flat_map(one).collect())
+}
+
+/// The sensor's reading as a function of the force, along each of its axes: a bent or coarse scale.
+fn reading(track: &Track, predicted: &[f64]) -> Option<Discrepancy> {
+    let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let axis = |k: usize| -> Vec<Vec<f64>> {
+        let share = |row: &Row| if track.planar { [row.along.x, row.along.y][k] } else { 1.0 };
+        let force: Vec<f64> = track.rows.iter().zip(predicted).map(|(row, p)| force(track, row, *p)[k]).collect();
+        let mut waves = over_range(&force, &along, 0.06, 20);
+        for wave in &mut waves {
+            wave.iter_mut().zip(&track.rows).for_each(|(w, row)| *w *= share(row));
+        }
+        waves
+    };
+    Discrepancy::new("force", (0..if track.planar { 2 } else { 1 }).flat_map(axis).collect())
+}
+
+/// Predicted force along the motion and measured force across it, along the axes of the sensor.
+fn force(track: &Track, row: &Row, predicted: f64) -> [f64; 2] {
+    if !track.planar {
+        return [predicted, 0.0];
+    }
+    let across = row.motion.normal_force_n;
+    [predicted * row.along.x + across * row.along.y, predicted * row.along.y - across * row.along.x]
+}
+
+/// Creep and relaxation: the predicted force, late by first-order lags of a tenth of a second to some seconds.
+fn creep(track: &Track, time_s: &[f64], predicted: &[f64]) -> Option<Discrepancy> {
+    const LAGS_S: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 8.0];
+    let late = |lag_s: f64| {
+        let mut state = [0.0; 2];
+        let mut last: Option<(usize, f64)> = None;
+        let value = |(i, row): (usize, &Row)| {
+            if row.place != Place::Along {
+                return 0.0;
+            }
+            let force = force(track, row, predicted[i]);
+            let passed = last.filter(|(recording, _)| *recording == row.recording).map(|(_, t)| time_s[i] - t);
+            let keep = passed.map_or(0.0, |dt| (-dt.max(0.0) / lag_s).exp());
+            (0..2).for_each(|k| state[k] = force[k] + keep * (state[k] - force[k]));
+            last = Some((row.recording, time_s[i]));
+            let behind = [state[0] - force[0], state[1] - force[1]];
+            if track.planar { behind[0] * row.along.x + behind[1] * row.along.y } else { behind[0] }
+        };
+        track.rows.iter().enumerate().map(value).collect::<Vec<f64>>()
+    };
+    Discrepancy::new("past force", LAGS_S.into_iter().map(late).collect())
+}
+
+/// Functions of the distance since the last reversal, in which distances far above the usual one are alike.
+fn since_reversal(track: &Track, along: &[bool]) -> Vec<Vec<f64>> {
+    let (mut way, mut side) = (0.0, 0.0);
+    let mut last: Option<(usize, f64)> = None;
+    let mut ways = Vec::with_capacity(track.rows.len());
+    for (row, along) in track.rows.iter().zip(along) {
+        if *along {
+            let step = last.filter(|(s, _)| *s == row.segment).map_or(0.0, |(_, p)| row.motion.position - p);
+            let turned = row.motion.direction * side < 0.0;
+            if row.motion.direction.abs() > 0.5 {
+                side = row.motion.direction.signum();
+            }
+            way = if turned { 0.0 } else { way + step.abs() };
+            last = Some((row.segment, row.motion.position));
+        }
+        ways.push(way);
+    }
+    let mut sorted: Vec<f64> = ways.iter().zip(along).filter(|(_, a)| **a).map(|(w, _)| *w).collect();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() / 4).copied().unwrap_or(0.0).max(1e-300);
+    let bent: Vec<f64> = ways.iter().map(|w| w / (w + usual)).collect();
+    over_range(&bent, along, 0.15, 8)
+}
