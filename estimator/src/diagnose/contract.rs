@@ -165,6 +165,8 @@ pub struct Standing {
     pub ln_bayes_factor: f64,
     /// Power of the cause as a share of its own and that of the structured errors beside it.
     pub share: f64,
+    /// Evidence on rows that took no part in the choice and the fit, 2 ln(likelihood).
+    pub held_out_evidence: f64,
     /// Evidence with the effective number of rows, 2 ln(likelihood) less the penalty of the parameters.
     pub effective_evidence: f64,
 }
@@ -178,6 +180,8 @@ pub struct ModelError {
     /// The same by its unit's name, if that is a torque.
     #[serde(rename = "rms_Nm", default, skip_serializing_if = "Option::is_none")]
     pub rms_nm: Option<f64>,
+    /// Evidence of all of it together, ln(likelihood) less the penalty.
+    pub evidence: f64,
     /// Share of the power that the base model leaves beyond the noise.
     pub share: f64,
     /// Variables that it goes with, the largest part first.
@@ -398,7 +402,7 @@ impl Diagnosis {
             self.baseline.heldout_rms_nm = Some(self.baseline.heldout_rms_n);
             self.noise_floor_nm = Some(self.noise_floor_n);
             self.end.heldout_rms_nm = Some(self.end.heldout_rms_n);
-            for error in &mut self.model_error {
+            if let Some(error) = &mut self.model_error {
                 error.rms_nm = Some(error.rms_n);
                 error.over.iter_mut().for_each(|o| o.rms_nm = Some(o.rms_n));
             }

@@ -10,7 +10,6 @@ use super::put_back::PutBack;
 use crate::diagnose::contract::{
     Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
 };
-use crate::diagnose::data::limits::HALF;
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -102,8 +101,8 @@ pub struct Draft {
     open: f64,
     /// True if more of the residuals is unexplained than noise.
     is_strange: bool,
-    /// True if structured errors have more power than the causes.
-    is_mostly_error: bool,
+    /// Ids of the causes that have less power together than the structured errors of their channel.
+    outweighed: Vec<String>,
 }
 
 /// Findings of the comparisons and of the evidence beside them, without a verdict.
@@ -134,13 +133,13 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let told = told(parts);
     let mut figures = told.map_or(evidence.figures, Part::figures);
     let model_error = told.and_then(Part::model_error);
-    let is_mostly_error = told.and_then(|p| p.study.competition.as_ref()).is_some_and(|c| c.share > HALF);
+    let outweighed = parts.iter().flat_map(Part::outweighed).collect();
     figures.baseline.model = model;
     let residuals = parts.iter().flat_map(Part::residuals).collect();
     let atlas = if evidence.atlas { parts.iter().filter_map(Part::atlas).collect() } else { Vec::new() };
     let simulated: Vec<_> = parts.iter().filter_map(|p| Some((p.study, p.in_world?))).collect();
     let findings = Findings {
-        diagnosis: Diagnosis { residuals, warnings, model_error, ..Diagnosis::default() },
+        diagnosis: Diagnosis { residuals, model_error, warnings, ..Diagnosis::default() },
         kept: parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect(),
         delay: evidence.delay,
         skew_s: evidence.skew_s,
@@ -149,21 +148,22 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
         ..Findings::default()
     };
     let named = Named { causes, alternatives, not_excited, passed_over, next };
-    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange, is_mostly_error }
+    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange, outweighed }
 }
 
 impl Draft {
     /// The answer with its verdict. `put_back`: shift of the forces before the comparison.
     pub fn finish(self, put_back: Option<&PutBack<'_>>) -> Findings {
-        let Self { mut named, mut findings, mut figures, terms, open, is_strange, is_mostly_error } = self;
+        let Self { mut named, mut findings, mut figures, terms, open, is_strange, outweighed } = self;
         named.certain_first();
-        let is_open = named.alternatives.iter().any(|a| a.posterior > open);
+        let is_open = named.is_open(open);
         if let Some(put_back) = put_back {
             figures = put_back.name(&mut named, &mut findings.delay, figures);
         }
         let Named { causes, alternatives, not_excited, passed_over, next } = named;
         let first = causes.iter().find(|c| !terms.contains(&c.id));
-        let is_certain = first.is_some_and(|c| is_certain(c, &alternatives)) && !is_mostly_error;
+        let carries_less = |c: &Cause| outweighed.contains(&c.id);
+        let is_certain = first.is_some_and(|c| is_certain(c, &alternatives) && !carries_less(c));
         findings.diagnosis = Diagnosis {
             verdict: verdict(is_certain, is_strange || first.is_some(), is_open),
             baseline: figures.baseline,
@@ -240,8 +240,10 @@ fn left_over(parts: &[Part<'_>], is_nothing_named: bool) -> Left {
             Role::Path => false,
         };
         let much = if may_be_much { part.much_left() } else { None };
-        left.is_strange |= much.is_some() || unnamed.is_some();
+        let error = part.structured();
+        left.is_strange |= much.is_some() || unnamed.is_some() || error.is_some();
         left.much.extend(much);
+        left.much.extend(error);
         let is_new = |u: &Unnamed| part.role == Role::Channel || left.unnamed.iter().all(|o| o.cause.id != u.cause.id);
         let unnamed = unnamed.filter(is_new);
         left.unnamed.extend(unnamed);

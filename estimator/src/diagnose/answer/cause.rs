@@ -36,7 +36,8 @@ impl Part<'_> {
             kind: candidate.kind,
             parameters,
             p_value: p_value(self.study, chosen),
-            posterior: standing.map_or(1.0, |s| s.probability(&gain)) / total_odds(self.study, chosen),
+            posterior: standing.map_or(1.0, |s| s.probability(&gain, &self.study.rules))
+                / total_odds(self.study, chosen),
             standing,
             gain,
             evidence,
@@ -164,7 +165,7 @@ pub fn unexplained(study: &ChannelFit) -> Option<(usize, f64)> {
         let gain = gain_between(study, &picks, &[picks.as_slice(), &[term]].concat(), 0.0);
         gain.heldout_rms_after > rules.overfit * gain.heldout_rms_before
     };
-    let strongest = study.of_each().unexplained(&picks);
+    let strongest = study.of_each_alone().unexplained(&picks);
     strongest.filter(|(term, score)| *score > rules.unexplained && !is_overfit(*term))
 }
 

@@ -30,4 +30,12 @@ impl Named {
         let alternatives = &self.alternatives;
         self.causes.sort_by_key(|c| !is_certain(c, alternatives));
     }
+
+    /// True if a certain cause has an alternative above this probability.
+    pub fn is_open(&self, limit: f64) -> bool {
+        let certain = self.causes.iter().filter(|c| is_certain(c, &self.alternatives));
+        let ids: Vec<&str> = certain.map(|c| c.id.as_str()).collect();
+        let is_of_certain = |a: &Alternative| a.instead_of.is_empty() || ids.contains(&a.instead_of.as_str());
+        self.alternatives.iter().any(|a| a.posterior > limit && is_of_certain(a))
+    }
 }

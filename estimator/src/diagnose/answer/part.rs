@@ -2,6 +2,7 @@
 
 use super::atlas::{Against, Channel, strongest};
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, ModelError, NotExcited, OverVariable, Residual};
+use crate::diagnose::data::limits::{HALF, SURE};
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
 use crate::diagnose::free_run::FreeRun;
@@ -10,6 +11,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::held_out_gain::{rms, whiteness_p};
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::entries;
 use std::collections::BTreeSet;
 
@@ -203,7 +205,35 @@ impl<'a> Part<'a> {
             rms_nm: None,
         };
         let over = competition.over.iter().map(one).collect();
-        Some(ModelError { rms_n: competition.rms, rms_nm: None, share, over })
+        Some(ModelError { rms_n: competition.rms, rms_nm: None, evidence: competition.evidence, share, over })
+    }
+
+    /// Ids of the causes if structured errors have more power than all of them.
+    pub fn outweighed(&self) -> Vec<String> {
+        let outweighs = self.study.competition.as_ref().is_some_and(|c| c.share > HALF);
+        let ids = self.study.picks().into_iter().filter(|_| outweighs);
+        ids.map(|p| self.study.candidates[p].id.to_owned()).collect()
+    }
+
+    /// Sentence on a structured error beyond doubt.
+    pub fn structured(&self) -> Option<String> {
+        let competition = self.study.competition.as_ref()?;
+        let is_large = competition.rms > HALF * self.floor && 2.0 * competition.evidence > SURE;
+        let is_told = self.role != Role::Path && is_large;
+        is_told.then(|| {
+            let mut over: Vec<&str> = Vec::new();
+            for (variable, _) in &competition.over {
+                if !over.contains(variable) {
+                    over.push(variable);
+                }
+            }
+            format!(
+                "{} RMS of the {} go with {}, and no known cause describes them",
+                amount(competition.rms, self.unit),
+                self.channel,
+                over.join(", ")
+            )
+        })
     }
 
     /// Residuals of the channel, state by state.

@@ -5,68 +5,17 @@
 
 use super::evidence::{Element, Fitted, Prior, Products};
 use super::smooth::Discrepancy;
-use crate::diagnose::contract::{Gain, Standing};
+use super::standing::Competition;
+use crate::diagnose::contract::Standing;
+use crate::diagnose::data::limits::{HALF, MOST_ROUNDS};
 use crate::diagnose::selection::channel::leave_out_what_is_unsure;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::gram::gram;
+use crate::diagnose::selection::held_out_gain::confirmed;
 use crate::diagnose::selection::layout::Use;
 use crate::diagnose::selection::noise_model::{Whitening, whitener};
 use crate::diagnose::selection::normal_equations::{System, counted};
 use crate::diagnose::selection::stepwise::Stepwise;
-
-/// Evidence that a discrepancy must add, ln(likelihood).
-const OF_A_DISCREPANCY: f64 = 7.0;
-/// Most discrepancies at once.
-const MOST: usize = 5;
-/// Number of discrepancies, best first by their screening, whose variances are optimised in one step.
-const LEADERS: usize = 2;
-/// Prior odds against a cause, ln.
-const AGAINST_A_CAUSE: f64 = 3.0;
-
-/// Evidence, ln(Bayes factor), from which a cause may be certain.
-const CERTAIN_LN_BAYES: f64 = 12.0;
-/// Share of its own and the discrepancies' power from which a cause may be certain.
-const CERTAIN_SHARE: f64 = 0.6;
-/// Lower end of the held-out share from which a cause beside discrepancies may be certain; alone it must be positive.
-const CERTAIN_HELD_OUT: f64 = 0.3;
-
-impl Standing {
-    /// Calibrated probability that the cause, or one that could stand in its place, is there: its weakest test decides.
-    pub(crate) fn probability(self, gain: &Gain) -> f64 {
-        let is_alone = self.share > 1.0 - ALONE;
-        let held_out = if gain.no_share.is_some() {
-            f64::INFINITY
-        } else {
-            (gain.interval[0] + if is_alone { ALONE_HELD_OUT } else { 0.0 }) / CERTAIN_HELD_OUT
-        };
-        let weakest = (self.ln_bayes_factor / CERTAIN_LN_BAYES).min(self.share / CERTAIN_SHARE).min(held_out);
-        let log_odds = 3.0 + 10.0 * (weakest.clamp(0.0, 1.15) - 1.0);
-        1.0 / (1.0 + (-log_odds).exp())
-    }
-}
-
-/// The same for a cause beside which no discrepancy is found, relative to the one above.
-const ALONE_HELD_OUT: f64 = 0.2;
-/// Share of the discrepancies' power below which there are none.
-const ALONE: f64 = 0.005;
-
-/// Result of a competition.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Competition {
-    /// Standing of every chosen cause, in the order of the choice.
-    pub causes: Vec<Standing>,
-    /// Sum of all discrepancies of the best model, row by row, and its RMS.
-    pub error: Vec<f64>,
-    pub rms: f64,
-    /// Variables of these discrepancies, with the RMS of each.
-    pub over: Vec<(&'static str, f64)>,
-    /// Power of the discrepancies as a share of theirs and that of the causes.
-    pub share: f64,
-    /// Discrepancies of the best model with the variances of their coefficients beside that of the noise.
-    pub used: Vec<(usize, f64)>,
-    /// Autoregression of the noise that the best model leaves.
-    pub coefficients: Vec<f64>,
-}
 
 /// Lets each chosen cause of a channel compete. `None` if the rows determine nothing.
 pub fn compete(study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<Competition> {
@@ -83,43 +32,40 @@ struct Rivals {
     products: Products,
     /// Penalty of each cause, ln.
     penalty: Vec<f64>,
+    /// Penalty of a discrepancy, ln.
+    discrepancy: f64,
     discrepancies: Vec<usize>,
 }
 
 impl Rivals {
     fn score(&self, model: &Fitted) -> f64 {
-        let cost = |e: usize| self.penalty.get(e).copied().unwrap_or(OF_A_DISCREPANCY);
+        let cost = |e: usize| self.penalty.get(e).copied().unwrap_or(self.discrepancy);
         model.ln_evidence - model.used.iter().map(|(e, _)| cost(*e)).sum::<f64>()
     }
 
     /// The model with the discrepancies that its rows ask for: added as long as one adds enough, then removed as long
     /// as one is superfluous.
-    fn settled(&self, mut model: Fitted) -> Option<Fitted> {
-        while let Some(more) = self.extended(&model)?.filter(|more| self.score(more) > self.score(&model)) {
+    fn settled(&self, mut model: Fitted) -> Fitted {
+        while let Some(more) = self.extended(&model).filter(|more| self.score(more) > self.score(&model)) {
             model = more;
         }
         while let Some(less) = self.reduced(&model).filter(|less| self.score(less) >= self.score(&model)) {
             model = less;
         }
-        Some(model)
+        model
     }
 
-    /// The best model with one more discrepancy.
-    fn extended(&self, model: &Fitted) -> Option<Option<Fitted>> {
+    /// The model with the discrepancy that would add most, if that may be enough.
+    fn extended(&self, model: &Fitted) -> Option<Fitted> {
         let is_open = |e: &usize| model.used.iter().all(|(u, _)| u != e);
         let open: Vec<usize> = self.discrepancies.iter().copied().filter(is_open).collect();
-        if self.discrepancies.len() >= MOST + open.len() {
-            return Some(None);
+        if self.discrepancies.len() >= MOST_ROUNDS + open.len() {
+            return None;
         }
-        let mut screened = self.products.screen(model, &open)?;
-        screened.retain(|s| s.gain > 0.5 * OF_A_DISCREPANCY);
-        screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let with = screened.iter().take(LEADERS).filter_map(|s| {
-            let mut used = model.used.clone();
-            used.push((s.element, s.variance));
-            self.products.fit(used, Some(model.noise))
-        });
-        Some(with.max_by(|a, b| a.ln_evidence.total_cmp(&b.ln_evidence)))
+        let screened = self.products.screen(model, &open)?.into_iter().max_by(|a, b| a.gain.total_cmp(&b.gain));
+        let best = screened.filter(|s| s.gain > HALF * self.discrepancy)?;
+        let used = model.used.iter().copied().chain([(best.element, best.variance)]).collect();
+        self.products.fit(used, Some(model.noise))
     }
 
     /// The best model with one discrepancy less.
@@ -138,7 +84,7 @@ impl Rivals {
             let present: Vec<usize> = best.used.iter().map(|(e, _)| *e).filter(|e| *e < causes).collect();
             let mut weakest: Option<(f64, Fitted)> = None;
             for k in present {
-                let without = self.settled(self.products.without(best, k)?)?;
+                let without = self.settled(self.products.without(best, k)?);
                 let ln_bayes_factor = self.score(best) - self.score(&without);
                 let [own, errors] =
                     [self.products.power_of(best, &[k]), self.products.power_of(best, &self.discrepancies)];
@@ -187,11 +133,12 @@ impl<'a> Round<'a> {
         let tried = |p: usize| study.candidates.iter().filter(|c| c.id == study.candidates[p].id).count() as f64;
         let rivals = Rivals {
             products,
-            penalty: picks.iter().map(|p| AGAINST_A_CAUSE + tried(*p).ln()).collect(),
+            penalty: picks.iter().map(|p| study.rules.unlikely + tried(*p).ln()).collect(),
+            discrepancy: study.rules.discrepancy,
             discrepancies: (picks.len()..picks.len() + discrepancies.len()).collect(),
         };
         let named = (0..picks.len()).map(|k| (k, 1.0)).collect();
-        let mut best = rivals.settled(rivals.products.fit(named, None)?)?;
+        let mut best = rivals.settled(rivals.products.fit(named, None)?);
         let standings = rivals.standings(&mut best)?;
         Some(Self { rivals, raw, gram, best, standings })
     }
@@ -211,6 +158,7 @@ impl<'a> Round<'a> {
         for (k, standing) in standings.iter_mut().enumerate() {
             let cost = study.candidates[picks[k]].cost;
             standing.effective_evidence = effective_evidence(study, &study.picks_without(k), cost);
+            standing.held_out_evidence = confirmed(study, k);
         }
         let rows = study.layout.rows();
         let mut sum = vec![0.0; rows];
@@ -226,6 +174,8 @@ impl<'a> Round<'a> {
         over.sort_by(|a, b| b.1.total_cmp(&a.1));
         let causes: Vec<usize> = (0..picks.len()).collect();
         let [named, errors] = [&causes, &rivals.discrepancies].map(|of| rivals.products.power_of(&best, of));
+        let named_alone = best.used.iter().filter(|(e, _)| *e < picks.len()).copied().collect();
+        let evidence = rivals.score(&best) - rivals.score(&rivals.products.fit(named_alone, Some(best.noise))?);
         let share = errors / (named + errors).max(f64::MIN_POSITIVE);
         let used = best.used.iter().filter(|(e, _)| *e >= picks.len()).map(|(e, v)| (e - picks.len(), v / best.noise));
         Some(Competition {
@@ -233,6 +183,7 @@ impl<'a> Round<'a> {
             rms: rms(&sum, &study.layout.weight),
             error: sum,
             over,
+            evidence,
             share,
             used: used.collect(),
             coefficients: Vec::new(),
@@ -271,8 +222,6 @@ fn rms(values: &[f64], weight: &[f64]) -> f64 {
 /// them, where t is the autocorrelation time of the residual in rows. It holds for a structure of any shape, unless that
 /// comes back in the course of the recording.
 fn effective_evidence(study: &ChannelFit, rest: &[usize], cost: f64) -> f64 {
-    /// Correlation from which rows count as independent.
-    const INDEPENDENT: f64 = 0.05;
     let weigh = |picks: &[usize]| -> Vec<f64> {
         study.residual(picks).iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
     };
@@ -282,7 +231,7 @@ fn effective_evidence(study: &ChannelFit, rest: &[usize], cost: f64) -> f64 {
     for lag in 1..after.len() / 4 {
         let pairs = (lag..after.len()).filter(|i| study.layout.segment[*i] == study.layout.segment[*i - lag]);
         let correlation = pairs.map(|i| after[i] * after[i - lag]).sum::<f64>() / power(&after);
-        if correlation <= INDEPENDENT {
+        if correlation <= 0.0 {
             break;
         }
         time += 2.0 * correlation;
@@ -291,22 +240,20 @@ fn effective_evidence(study: &ChannelFit, rest: &[usize], cost: f64) -> f64 {
     rows * (power(&before) / power(&after)).ln() - cost * rows.ln()
 }
 
-/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays.
-pub fn settle(mut study: ChannelFit, discrepancies: &dyn Fn(&ChannelFit) -> Vec<Discrepancy>) -> ChannelFit {
-    /// Most new choices.
-    const CHOICES: usize = 2;
-    let errors = discrepancies(&study);
-    study.competition = compete(&study, &errors);
-    for _ in 0..CHOICES {
+/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays, at
+/// most so often.
+pub fn settle(mut study: ChannelFit, errors: &[Discrepancy], most: usize) -> ChannelFit {
+    study.competition = compete(&study, errors);
+    for _ in 0..most {
         let before = study.picks();
-        if !choose_beside(&mut study, &errors) {
+        if !choose_beside(&mut study, errors) {
             break;
         }
         leave_out_what_is_unsure(&mut study);
         if study.picks() == before {
             break;
         }
-        study.competition = compete(&study, &errors);
+        study.competition = compete(&study, errors);
     }
     study
 }
@@ -329,7 +276,8 @@ fn choose_beside(study: &mut ChannelFit, discrepancies: &[Discrepancy]) -> bool 
     system.resisting.clone_from(&study.system.resisting);
     system.pieces.clone_from(&study.system.pieces);
     study.chosen = Stepwise::new(&system, candidates, &study.rules).run(&study.picks());
-    study.system = system;
+    let plain = std::mem::replace(&mut study.system, system);
+    study.plain.get_or_insert(plain);
     study.solved = study.system.solve(&study.picks());
     true
 }

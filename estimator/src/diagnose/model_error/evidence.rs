@@ -2,8 +2,10 @@
 //!
 //! Rows y = X b + Σ A θ + Σ Z w + e: the model's regressors X with flat priors, causes A with fixed prior variances,
 //! and discrepancies Z whose coefficients share one variance each. The variances of the discrepancies and of the noise
-//! are those that maximise the evidence (MacKay 1992, "Bayesian interpolation").
+//! are those that maximise the evidence (`MacKay` 1992, Bayesian interpolation).
 
+use crate::diagnose::data::limits::MOST_ROUNDS;
+use crate::diagnose::selection::normal_equations::NUMERICAL_RIDGE;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
@@ -62,17 +64,15 @@ struct Posterior {
     ln_evidence: f64,
 }
 
-/// Updates of the variances: from a start nearby, the evidence then changes by less than 0.1.
-const UPDATES: usize = 6;
-/// Range of a discrepancy's variance beside that of the target: a smaller one is nothing, a larger one is flat.
-const VARIANCES: Range<f64> = 1e-6..1e4;
+/// Smallest and largest variance of a discrepancy beside a target of this mean square: nothing, and flat.
+fn variances(power: f64) -> [f64; 2] {
+    [1e-6 * power, 1e4 * power]
+}
 
 impl Products {
     /// `gram`: products of base columns, elements and target, in this order. `rows`: effective number of rows.
     /// `None` if the base cannot be solved.
     pub fn new(gram: &DMatrix<f64>, base: usize, rows: f64, elements: Vec<Element>) -> Option<Self> {
-        /// Derived: far above the rounding of a scaled sum of squares (1e-16).
-        const NUMERICAL_RIDGE: f64 = 1e-10;
         let size = gram.ncols();
         let mut of_base = gram.view((0, 0), (base, base)).into_owned();
         (0..base).for_each(|i| of_base[(i, i)] = of_base[(i, i)] * (1.0 + NUMERICAL_RIDGE) + f64::MIN_POSITIVE);
@@ -161,7 +161,8 @@ impl Products {
                 freedom += determined;
                 if matches!(self.elements[*e].prior, Prior::Estimated) {
                     let square: f64 = mean[own].iter().map(|m| m * m).sum();
-                    *variance = (square / determined.max(1e-9)).clamp(VARIANCES.start * power, VARIANCES.end * power);
+                    let [least, most] = variances(power);
+                    *variance = (square / determined.max(1e-9)).clamp(least, most);
                 }
             }
             let rss = self.rss(&posterior.columns, &mean);
@@ -181,13 +182,13 @@ impl Products {
 
     /// The model of these elements alone; discrepancies begin with these variances.
     pub fn fit(&self, used: Vec<(usize, f64)>, noise: Option<f64>) -> Option<Fitted> {
-        self.update(used, noise.unwrap_or_else(|| self.power()), UPDATES)
+        self.update(used, noise.unwrap_or_else(|| self.power()), MOST_ROUNDS)
     }
 
     /// The same model without an element.
     pub fn without(&self, model: &Fitted, element: usize) -> Option<Fitted> {
         let used = model.used.iter().filter(|(e, _)| *e != element).copied().collect();
-        self.update(used, model.noise, UPDATES)
+        self.update(used, model.noise, MOST_ROUNDS)
     }
 
     /// Evidence that each of these discrepancies would add to a model whose other variances stay, with its best
@@ -216,8 +217,9 @@ impl Products {
                     })
                     .sum::<f64>()
             };
-            // Eight steps per decade and a half: the maximum is flat.
-            let tried = (0..24).map(|k| power * VARIANCES.start * 10.0_f64.powf(0.4 * f64::from(k)));
+            // The maximum is flat: two and a half steps per decade.
+            let [least, most] = variances(power);
+            let tried = (0..26).map(|k| least * (most / least).powf(f64::from(k) / 25.0));
             let best = tried.map(|v| (gain(v), v)).max_by(|a, b| a.0.total_cmp(&b.0))?;
             Some(Screened { element: *element, gain: best.0, variance: best.1 })
         };
@@ -235,9 +237,78 @@ impl Products {
         let right =
             DVector::from_fn(base, |i, _| gram[(i, target)] - own.iter().map(|(c, m)| gram[(i, *c)] * m).sum::<f64>());
         let mut of_base = gram.view((0, 0), (base, base)).into_owned();
-        (0..base).for_each(|i| of_base[(i, i)] = of_base[(i, i)] * (1.0 + 1e-10) + f64::MIN_POSITIVE);
+        (0..base).for_each(|i| of_base[(i, i)] = of_base[(i, i)] * (1.0 + NUMERICAL_RIDGE) + f64::MIN_POSITIVE);
         let solved = of_base.cholesky().map(|f| f.solve(&right));
         let values = solved.map_or_else(Vec::new, |v| v.iter().copied().enumerate().collect());
         values.into_iter().chain(own).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    const ROWS: usize = 40;
+
+    fn normal(rng: &mut StdRng, count: usize) -> Vec<f64> {
+        (0..count).map(|_| StandardNormal.sample(rng)).collect()
+    }
+
+    fn gram(columns: &[Vec<f64>]) -> DMatrix<f64> {
+        let product = |i: usize, j: usize| columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum::<f64>();
+        DMatrix::from_fn(columns.len(), columns.len(), product)
+    }
+
+    /// Two columns of a cause, three of a discrepancy, and a target.
+    fn some(rng: &mut StdRng) -> (Vec<Vec<f64>>, Vec<Element>) {
+        let columns = (0..6).map(|_| normal(rng, ROWS)).collect();
+        let cause = Element { columns: 0..2, prior: Prior::Fixed(vec![0.5, 2.0]) };
+        (columns, vec![cause, Element { columns: 2..5, prior: Prior::Estimated }])
+    }
+
+    #[test]
+    fn the_evidence_is_the_density_of_the_target_under_the_covariance_of_all_parts() {
+        let (columns, elements) = some(&mut StdRng::seed_from_u64(3));
+        let products = Products::new(&gram(&columns), 0, ROWS as f64, elements).expect("no base");
+        let (noise, variances) = (0.7, [0.5, 2.0, 0.3, 0.3, 0.3]);
+        let found = products.update(vec![(0, 1.0), (1, 0.3)], noise, 0).expect("regular");
+        let covariance = DMatrix::from_fn(ROWS, ROWS, |i, j| {
+            let parts = columns.iter().zip(variances).map(|(c, v)| v * c[i] * c[j]).sum::<f64>();
+            parts + if i == j { noise } else { 0.0 }
+        });
+        let target = DVector::from_column_slice(&columns[5]);
+        let factor = covariance.cholesky().expect("positive");
+        let square = target.dot(&factor.solve(&target));
+        let wanted = -0.5 * (square + factor.determinant().ln() + ROWS as f64 * std::f64::consts::TAU.ln());
+        assert!((found.ln_evidence - wanted).abs() < 1e-8, "{} {wanted}", found.ln_evidence);
+    }
+
+    #[test]
+    fn screening_states_the_evidence_that_the_whole_model_has() {
+        let (columns, elements) = some(&mut StdRng::seed_from_u64(4));
+        let products = Products::new(&gram(&columns), 0, ROWS as f64, elements).expect("no base");
+        let model = products.update(vec![(0, 1.0)], 0.9, 0).expect("regular");
+        let screened = &products.screen(&model, &[1]).expect("regular")[0];
+        let whole = products.update(vec![(0, 1.0), (1, screened.variance)], 0.9, 0).expect("regular");
+        assert!((whole.ln_evidence - model.ln_evidence - screened.gain).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_discrepancy_that_is_there_gets_its_variance_and_the_noise_its_own() {
+        let mut rng = StdRng::seed_from_u64(5);
+        let mut columns: Vec<Vec<f64>> = (0..30).map(|_| normal(&mut rng, 4000)).collect();
+        let size = normal(&mut rng, 30);
+        let noise = normal(&mut rng, 4000);
+        let sum = |i: usize| columns.iter().zip(&size).map(|(c, s)| 0.3 * s * c[i]).sum::<f64>();
+        let target = (0..4000).map(|i| sum(i) + 0.5 * noise[i]).collect();
+        columns.push(target);
+        let elements = vec![Element { columns: 0..30, prior: Prior::Estimated }];
+        let products = Products::new(&gram(&columns), 0, 4000.0, elements).expect("no base");
+        let found = products.fit(vec![(0, 1.0)], None).expect("regular");
+        assert!((found.noise.sqrt() - 0.5).abs() < 0.02, "{}", found.noise);
+        assert!((0.2..0.4).contains(&found.used[0].1.sqrt()), "{:?}", found.used);
     }
 }

@@ -2,14 +2,15 @@
 
 use super::smooth::{Discrepancy, field, over_range, over_time, periodic};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
+use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::selection::comparison::ChannelFit;
 
-/// Harmonics of a function of the angle.
-const HARMONICS: u32 = 10;
-/// Half waves of a function of place, speed or load.
-const HALF_WAVES: usize = 12;
-/// Half waves of a function of time, of one sensor axis or of the friction.
-const WAVES_OF_TIME: usize = 64;
+/// Terms of a function of one variable.
+const TERMS: usize = 12;
+/// Terms of a function of time or of several variables.
+const MANY_TERMS: usize = 64;
+/// Lags of creep and relaxation, s: from the filter of a sensor to the rest between two motions.
+const CREEP_LAGS_S: Axis = Axis::geometric(0.1, 8.0, 5);
 
 /// All discrepancies of the rows of a comparison.
 pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
@@ -37,26 +38,26 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
     };
     let angle = of(&|r| r.angle_rad);
     let turns = track.radius_m.is_some();
-    let place = if turns { periodic(&angle, HARMONICS) } else { over_range(&angle, &along, 0.06, 2 * HALF_WAVES) };
+    let place = if turns { periodic(&angle, TERMS as u32) } else { over_range(&angle, &along, 0.06, 2 * TERMS) };
     let fast: Vec<f64> = speed.iter().map(|v| v.abs()).collect();
-    let over_speed = over_range(&fast, &along, 0.15, HALF_WAVES);
-    let slow = |hz: f64| over_time(time_s, hz, 1.0, WAVES_OF_TIME);
+    let over_speed = over_range(&fast, &along, 0.15, TERMS);
+    let slow = |hz: f64| over_time(time_s, hz, 1.0, MANY_TERMS);
     let (sensor, wear) = (slow(1.5), slow(0.4));
     let mut found = vec![
         Discrepancy::of("position", &one, &place),
-        Discrepancy::of("position (friction)", &friction, &place),
-        Discrepancy::of("position (viscous friction)", &speed, &place),
+        Discrepancy::of("friction over the position", &friction, &place),
+        Discrepancy::of("viscous friction over the position", &speed, &place),
         Discrepancy::of("speed", &one, &over_speed),
-        Discrepancy::of("speed (friction)", &direction, &over_speed),
-        Discrepancy::of("time (friction)", &friction, &wear),
-        Discrepancy::of("time (viscous friction)", &speed, &wear),
-        Discrepancy::of("way since the last reversal", &friction, &since_reversal(track, &along)),
+        Discrepancy::of("friction over the speed", &direction, &over_speed),
+        Discrepancy::of("friction over time", &friction, &wear),
+        Discrepancy::of("viscous friction over time", &speed, &wear),
+        Discrepancy::of("friction over the way since the last reversal", &friction, &since_reversal(track, &along)),
     ];
     if let Some(load) = &load {
-        let over_load = over_range(load, &along, 0.15, HALF_WAVES);
-        found.push(Discrepancy::of("position (load)", load, &place));
+        let over_load = over_range(load, &along, 0.15, TERMS);
+        found.push(Discrepancy::of("load and position", load, &place));
         found.push(Discrepancy::of("load", &one, &over_load));
-        found.push(Discrepancy::of("load (friction)", &direction, &over_load));
+        found.push(Discrepancy::of("friction over the load", &direction, &over_load));
     }
     found.push(state(&angle, turns, (&speed, load.as_deref()), &along));
     found.push(wander(track, &sensor));
@@ -67,7 +68,6 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
 
 /// A function of the whole state.
 fn state(angle: &[f64], turns: bool, (speed, load): (&[f64], Option<&[f64]>), along: &[bool]) -> Option<Discrepancy> {
-    const FEATURES: usize = 64;
     let mut variables: Vec<Vec<f64>> = if turns {
         vec![angle.iter().map(|a| 2.0 * a.cos()).collect(), angle.iter().map(|a| 2.0 * a.sin()).collect()]
     } else {
@@ -78,15 +78,14 @@ fn state(angle: &[f64], turns: bool, (speed, load): (&[f64], Option<&[f64]>), al
     variables.push(speed.to_vec());
     variables.extend(load.map(<[f64]>::to_vec));
     let on: Vec<f64> = along.iter().map(|a| f64::from(u8::from(*a))).collect();
-    Discrepancy::of("state", &on, &field(&variables, FEATURES))
+    Discrepancy::of("position, speed and load together", &on, &field(&variables, MANY_TERMS))
 }
 
 /// Slow error of the force sensor, along each of its axes.
 fn wander(track: &Track, slow: &[Vec<f64>]) -> Option<Discrepancy> {
     let axis = |row: &Row, k: usize| match row.place {
         Place::Along if track.planar => [row.along.x, row.along.y][k],
-        Place::Along => f64::from(u8::from(k == 0)),
-        Place::FreeX => f64::from(u8::from(k == 0)),
+        Place::Along | Place::FreeX => f64::from(u8::from(k == 0)),
         Place::FreeY => f64::from(u8::from(k == 1)),
         Place::Stuck { .. } => 0.0,
     };
@@ -102,7 +101,9 @@ fn reading(track: &Track, predicted: &[f64]) -> Option<Discrepancy> {
     let axis = |k: usize| -> Vec<Vec<f64>> {
         let share = |row: &Row| if track.planar { [row.along.x, row.along.y][k] } else { 1.0 };
         let force: Vec<f64> = track.rows.iter().zip(predicted).map(|(row, p)| force(track, row, *p)[k]).collect();
-        let mut waves = over_range(&force, &along, 0.06, 20);
+        let mut waves = over_range(&force, &along, 0.06, 2 * TERMS);
+        // A reading that is off by a constant while a force acts.
+        waves.push(along.iter().map(|a| f64::from(u8::from(*a))).collect());
         for wave in &mut waves {
             wave.iter_mut().zip(&track.rows).for_each(|(w, row)| *w *= share(row));
         }
@@ -122,7 +123,6 @@ fn force(track: &Track, row: &Row, predicted: f64) -> [f64; 2] {
 
 /// Creep and relaxation: the predicted force, late by first-order lags of a tenth of a second to some seconds.
 fn creep(track: &Track, time_s: &[f64], predicted: &[f64]) -> Option<Discrepancy> {
-    const LAGS_S: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 8.0];
     let late = |lag_s: f64| {
         let mut state = [0.0; 2];
         let mut last: Option<(usize, f64)> = None;
@@ -140,7 +140,7 @@ fn creep(track: &Track, time_s: &[f64], predicted: &[f64]) -> Option<Discrepancy
         };
         track.rows.iter().enumerate().map(value).collect::<Vec<f64>>()
     };
-    Discrepancy::new("past force", LAGS_S.into_iter().map(late).collect())
+    Discrepancy::new("past force", CREEP_LAGS_S.values().map(late).collect())
 }
 
 /// Functions of the distance since the last reversal, in which distances far above the usual one are alike.
@@ -164,5 +164,5 @@ fn since_reversal(track: &Track, along: &[bool]) -> Vec<Vec<f64>> {
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 4).copied().unwrap_or(0.0).max(1e-300);
     let bent: Vec<f64> = ways.iter().map(|w| w / (w + usual)).collect();
-    over_range(&bent, along, 0.15, 8)
+    over_range(&bent, along, 0.15, TERMS)
 }

@@ -101,8 +101,7 @@ pub fn field(variables: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
                 let frequency = (-2.0 * uniform().ln()).sqrt() * (2.0 * PI * uniform()).cos();
                 phase.iter_mut().zip(variable).for_each(|(p, v)| *p += frequency * v);
             }
-            phase.iter_mut().for_each(|p| *p = p.cos());
-            phase
+            phase.into_iter().map(f64::cos).collect()
         })
         .collect()
 }

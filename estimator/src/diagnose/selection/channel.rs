@@ -6,7 +6,7 @@
 pub(crate) mod tests;
 
 use super::comparison::{ChannelFit, residual};
-use super::held_out_gain::{confirmed, gain, holds_out, is_tested};
+use super::held_out_gain::{LEAST_CHANGE_SHARE, confirmed, gain, holds_out, is_tested};
 use super::layout::Layout;
 use super::noise_model::whitener;
 use super::normal_equations::{System, columns_of, solve, uses};
@@ -17,10 +17,6 @@ use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
 use foundation::estimate::EstimateError;
-
-/// Part of a cause beyond the model below which it counts as none.
-/// Choice: halved or doubled, none of 90 answers changes.
-const LEAST_OWN_PART: f64 = 1e-4;
 
 /// One measured quantity and all that may explain it.
 #[derive(Clone)]
@@ -96,6 +92,7 @@ impl Channel {
             layout,
             rules,
             shares_of: [1.0, 0.0],
+            plain: None,
             competition: None,
         })
     }
@@ -124,7 +121,7 @@ fn whitening(
     let rough = rough.system();
     let own = |k: &usize| {
         let others: Vec<usize> = causes.iter().filter(|c| *c != k).copied().collect();
-        rough.distinct(*k, &others).max(LEAST_OWN_PART)
+        rough.distinct(*k, &others).max(LEAST_CHANGE_SHARE)
     };
     let mut kept_out: Vec<f64> =
         causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].regressors.len()]).collect();

@@ -4,7 +4,7 @@ use super::rules::Rules;
 use super::stepwise::{SelectedTerm, Stepwise, without};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::diagnose::model_error::competition::Competition;
+use crate::diagnose::model_error::standing::Competition;
 use foundation::tasks::SystemState;
 
 /// A compared channel, with everything but the words of its answer.
@@ -59,6 +59,8 @@ pub struct ChannelFit {
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
     pub shares_of: [f64; 2],
+    /// The system without structured errors, if `system` is one beside those.
+    pub plain: Option<System>,
     /// The chosen causes beside structured errors.
     pub competition: Option<Competition>,
 }
@@ -77,6 +79,11 @@ impl ChannelFit {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.chosen.iter().any(|c| self.candidates[c.candidate].id == id)
+    }
+
+    /// Evidence of single candidates, structured errors left out.
+    pub fn of_each_alone(&self) -> Stepwise<'_> {
+        Stepwise::of_each(self.plain.as_ref().unwrap_or(&self.system), &self.candidates)
     }
 
     /// Evidence of single candidates.
@@ -115,6 +122,7 @@ impl ChannelFit {
             layout,
             rules: *rules,
             shares_of,
+            plain: None,
             competition: None,
         }
     }

@@ -29,6 +29,9 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 /// Least remaining share of a column's power. Below it, no remaining row determines the coefficient.
 /// Choice: halved, 1 of 90 answers change (1 to right); doubled, 1 of 90 answers change.
 pub(crate) const LEAST_LEFT: f64 = 0.3;
+/// Ridge of scaled normal equations, which keeps them regular for equal columns.
+/// Derived: far above the rounding of a scaled sum of squares (1e-16) and far below the distinct share of any regressor.
+pub(crate) const NUMERICAL_RIDGE: f64 = 1e-10;
 /// Folds of the cross-validation.
 /// Choice: halved, 3 of 90 answers change; doubled, 2 of 90 answers change.
 pub const FOLDS: usize = 5;
@@ -390,9 +393,6 @@ pub(crate) struct Scaled {
 
 /// Factors the normal equations. A small ridge keeps them regular for equal columns.
 pub(crate) fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
-    /// Derived: far above the rounding of a scaled sum of squares (1e-16) and far below the distinct share of any
-    /// regressor.
-    const NUMERICAL_RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =
         columns.iter().map(|c| gram[(*c, *c)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();

@@ -71,6 +71,14 @@ pub struct Rules {
     pub visible: f64,
     /// Probability of an alternative above which its question is open.
     pub open: f64,
+    /// Evidence that a discrepancy must add, ln(likelihood).
+    pub discrepancy: f64,
+    /// Prior odds against a cause, ln.
+    pub unlikely: f64,
+    /// ln(Bayes factor) from which a cause may be certain.
+    pub certain: f64,
+    /// Share of its own and the discrepancies' power from which a cause may be certain.
+    pub certain_share: f64,
 }
 
 impl Rules {
@@ -96,6 +104,10 @@ impl Rules {
             surely_not_white: 1e-12,
             visible: THRESHOLD_SLOW,
             open: OPEN,
+            discrepancy: 7.0,
+            unlikely: 3.0,
+            certain: 12.0,
+            certain_share: 0.6,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::normal_equations::{ROUNDING, Solved, System};
 use super::rules::Rules;
-use crate::diagnose::data::limits::MOST_ROUNDS;
+use crate::diagnose::data::limits::{MOST_ROUNDS, SIGNIFICANT};
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::{Form, Relation};
@@ -19,9 +19,6 @@ const MOST_CAUSES: usize = 4;
 /// Number of further causes if the model has no friction.
 /// Derived: dry and viscous friction, which the model then lacks.
 const FRICTIONS: usize = 2;
-/// t-value below which a cause must improve nearly every fold.
-/// Choice: halved or doubled, none of 73 answers changes.
-const CLEAR_T: f64 = 2.0;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 /// Choice: halved or doubled, none of 73 answers changes.
 const SPARED: f64 = 0.05;
@@ -357,7 +354,7 @@ impl Stepwise<'_> {
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {
         let Some(solved) = self.system.solve(chosen) else { return false };
-        let is_clear = |i: usize| solved.values[i].abs() > CLEAR_T * solved.std_error(i, self.system.rows);
+        let is_clear = |i: usize| solved.values[i].abs() > SIGNIFICANT * solved.std_error(i, self.system.rows);
         self.system.own(chosen, k).any(is_clear)
     }
 

@@ -69,7 +69,16 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelF
         }
     }
     leave_out_what_is_unsure(&mut made);
-    Ok(settle(made, &|made| of_coordinate::discrepancies(track, made)))
+    Ok(made)
+}
+
+/// A comparison with its causes chosen beside structured errors. A free motion has too few rows for those.
+pub fn beside_errors(track: &Track, study: ChannelFit) -> ChannelFit {
+    if track.freely.is_some() {
+        return study;
+    }
+    let errors = of_coordinate::discrepancies(track, &study);
+    settle(study, &errors, REFINEMENTS)
 }
 
 /// A comparison on a track, with what is common to all rounds.

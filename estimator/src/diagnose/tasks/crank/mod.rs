@@ -68,6 +68,7 @@ pub fn crank(
         }
     }
     options.progress.tell(0.8)?;
+    let study = one_coordinate::beside_errors(&track, study);
     // The path itself may have shown a scale of all lengths.
     let scale = scale.filter(|scale| paths.iter().all(|p| !p.study.has(&scale.id)));
     let on_bearing = bearing_n.map(|weight_n| {

@@ -141,6 +141,7 @@ impl Studied {
 
     fn answer(self, options: &Options, put_back: Option<&PutBack<'_>>) -> Findings {
         let Self { track, model, study, faults, along, is_weighed, skew_s } = self;
+        let study = one_coordinate::beside_errors(&track, study);
         let evidence = Evidence {
             causes: faults,
             remarks: (skew_s != 0.0).then(|| time_delay::apart(skew_s)).into_iter().collect(),
