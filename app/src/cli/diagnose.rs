@@ -8,8 +8,8 @@ use crate::text::diagnosis_words::{said_in_words, state_in_words};
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
-    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, Residual, RolloutOf, Validation, Verdict, diagnose,
-    extended_world, validate,
+    Baseline, Cause, CauseParameter, Diagnosis, ModelError, Options, Progress, Residual, RolloutOf, Validation,
+    Verdict, diagnose, extended_world, validate,
 };
 use estimator::words::amount;
 use haptics::world::World;
@@ -183,6 +183,9 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     for cause in &diagnosis.causes {
         let _ = writeln!(text, "  {}", cause_line(cause));
     }
+    if let Some((error, unit)) = diagnosis.model_error.as_ref().zip(diagnosis.baseline.unit.as_ref()) {
+        let _ = writeln!(text, "  {}", model_error_line(error, unit));
+    }
     for other in &diagnosis.alternatives {
         let _ = writeln!(
             text,
@@ -264,6 +267,17 @@ fn parameter(p: &CauseParameter) -> String {
     })
 }
 
+/// Structured error that no known cause describes.
+fn model_error_line(error: &ModelError, unit: &str) -> String {
+    let over: Vec<String> = error.over.iter().map(|o| format!("{} {}", o.variable, amount(o.rms_n, unit))).collect();
+    format!(
+        "model error: {} RMS, {:.0} % of the power that the model leaves above the noise; by {}",
+        amount(error.rms_n, unit),
+        100.0 * error.share,
+        over.join(", ")
+    )
+}
+
 fn cause_line(cause: &Cause) -> String {
     let parameters: Vec<String> = cause.parameters.iter().map(parameter).collect();
     let not_run = cause.gain.no_rollout.as_ref().map_or_else(String::new, |why| format!("; not run forward: {why}"));
@@ -279,5 +293,5 @@ fn cause_line(cause: &Cause) -> String {
     });
     // A gap in the clock has no parameters.
     let parameters = if parameters.is_empty() { String::new() } else { format!("{}; ", parameters.join(", ")) };
-    format!("{}: {parameters}{}{forward}", cause.id, cause.evidence)
+    format!("{} ({:.0} %): {parameters}{}{forward}", cause.id, 100.0 * cause.posterior, cause.evidence)
 }

@@ -3,6 +3,7 @@
 use crate::text::states::state_name;
 use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, Residual, Verdict};
 use estimator::segment::SystemState;
+use estimator::words::amount;
 use haptics::law;
 
 /// What a cause is called.
@@ -21,10 +22,11 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
 
 /// The answer in one line, about what was compared.
 pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
-    let names: Vec<String> = diagnosis.causes.iter().map(|c| one(&c.id)).collect();
+    let certain = diagnosis.certain();
+    let names: Vec<String> = certain.iter().map(|c| one(&c.id)).collect();
     match diagnosis.verdict {
         Verdict::None => "Nothing beyond the noise.".to_owned(),
-        Verdict::Unexplained => "Something is there that no known cause explains.".to_owned(),
+        Verdict::Unexplained => unexplained(diagnosis),
         Verdict::Causes => format!("{model} misses {}.", joined(&names)),
         Verdict::Ambiguous => {
             let either = |cause: &Cause| {
@@ -33,10 +35,29 @@ pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
                     std::iter::once(&cause.id).chain(others.map(|a| &a.id)).map(|id| one(id)).collect();
                 all.join(" or ")
             };
-            let open: Vec<String> = diagnosis.causes.iter().map(either).collect();
+            let open: Vec<String> = certain.into_iter().map(either).collect();
             format!("{model} misses {}: this recording cannot tell which.", joined(&open))
         }
     }
+}
+
+/// Size and variables of a model error, or that there is one; with the share of the strongest cause, if one is certain.
+fn unexplained(diagnosis: &Diagnosis) -> String {
+    let (Some(error), Some(unit)) = (&diagnosis.model_error, &diagnosis.baseline.unit) else {
+        return "Something is there that no known cause explains.".to_owned();
+    };
+    let found = diagnosis.certain().first().map_or_else(String::new, |cause| {
+        let share = 100.0 * cause.gain.share_of_explainable.clamp(0.0, 1.0);
+        format!("{} explains {share:.0} %; ", capital(&one(&cause.id)))
+    });
+    let variables = error.over.first().map_or("no variable", |o| o.variable.as_str());
+    format!("{found}{} RMS go with {variables} and no known cause.", amount(error.rms_n, unit))
+}
+
+/// With a capital letter in front.
+fn capital(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// `a, b and c`, with small letters.

@@ -394,7 +394,23 @@ pub struct Diagnosis {
     pub settled: Vec<Settled>,
 }
 
+/// Probability from which a cause is certain.
+/// Derived: the level of all confidence intervals.
+const CERTAIN_FROM: f64 = 0.95;
+
+/// True if a cause, or one of the alternatives to it, is certainly there.
+pub fn is_certain(cause: &Cause, alternatives: &[Alternative]) -> bool {
+    let instead = alternatives.iter().filter(|a| a.instead_of == cause.id).map(|a| a.posterior);
+    // A sum of shares may be rounded.
+    cause.posterior + instead.sum::<f64>() >= CERTAIN_FROM - 1e-9
+}
+
 impl Diagnosis {
+    /// Causes that are certain, or whose alternatives and they are together.
+    pub fn certain(&self) -> Vec<&Cause> {
+        self.causes.iter().filter(|c| is_certain(c, &self.alternatives)).collect()
+    }
+
     /// Repeats the figures of a torque in N m under the names with that unit.
     pub fn name_by_unit(&mut self) {
         if self.baseline.unit.as_deref() == Some("N m") {

@@ -11,7 +11,7 @@ pub(crate) mod extension;
 pub(crate) mod findings;
 pub(crate) mod free_run;
 pub(crate) mod hypotheses;
-pub mod model_error;
+pub(crate) mod model_error;
 pub(crate) mod options;
 pub(crate) mod progress;
 pub(crate) mod recording;
@@ -23,8 +23,8 @@ pub(crate) mod worlds;
 pub use answer::atlas;
 pub use answer::time_series::{Course, Instant};
 pub use contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
-    PassedOver, Residual, Rollout, RolloutOf, Settled, Validation, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, ModelError, NextExperiment,
+    NotExcited, OverVariable, PassedOver, Residual, Rollout, RolloutOf, Settled, Standing, Validation, Verdict,
 };
 use estimation::segment::task_of;
 pub use experiment::strokes::{Stroke, Strokes};

@@ -4,11 +4,11 @@
 
 use super::atlas::Atlas;
 use super::cause::Unnamed;
-use super::named::{Named, is_certain};
+use super::named::Named;
 use super::part::{Part, Role};
 use super::put_back::PutBack;
 use crate::diagnose::contract::{
-    Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict,
+    Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict, is_certain,
 };
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};

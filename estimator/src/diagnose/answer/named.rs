@@ -1,7 +1,6 @@
 //! Entries of an answer before its verdict.
 
-use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited, PassedOver};
-use crate::diagnose::selection::normal_equations::ROUNDING;
+use crate::diagnose::contract::{Alternative, Cause, NextExperiment, NotExcited, PassedOver, is_certain};
 
 /// Causes that the comparisons name, and the experiment that would settle the open questions. The task corrects them by
 /// its own knowledge.
@@ -12,16 +11,6 @@ pub struct Named {
     pub not_excited: Vec<NotExcited>,
     pub passed_over: Vec<PassedOver>,
     pub next: Option<NextExperiment>,
-}
-
-/// Probability from which a cause is certain.
-/// Derived: the level of all confidence intervals.
-const CERTAIN_FROM: f64 = 0.95;
-
-/// True if a cause, or one of the alternatives to it, is certainly there.
-pub fn is_certain(cause: &Cause, alternatives: &[Alternative]) -> bool {
-    let instead = alternatives.iter().filter(|a| a.instead_of == cause.id).map(|a| a.posterior);
-    cause.posterior + instead.sum::<f64>() >= CERTAIN_FROM - ROUNDING
 }
 
 impl Named {
