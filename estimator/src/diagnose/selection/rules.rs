@@ -71,13 +71,16 @@ pub struct Rules {
     pub visible: f64,
     /// Probability of an alternative above which its question is open.
     pub open: f64,
-    /// Evidence that a discrepancy must add, ln(likelihood).
+    /// Evidence that a discrepancy must add, ln(likelihood): that of 1 in 1000.
     pub discrepancy: f64,
-    /// Prior odds against a cause, ln.
+    /// Prior odds against a cause, ln: one of twenty.
     pub unlikely: f64,
-    /// ln(Bayes factor) from which a cause may be certain.
+    /// ln(Bayes factor) from which a cause may be certain. Choice, by recordings with structure and without: halved, 13
+    /// of 520 without a cause get a certain one (10), doubled, 5; of 311 causes without structure 293 are certain (264),
+    /// and 201.
     pub certain: f64,
-    /// Share of its own and the discrepancies' power from which a cause may be certain.
+    /// Share of its own and the discrepancies' power from which a cause may be certain. Choice, by the same recordings:
+    /// halved, 14 of 520; at 0.9, 99 of 260 causes beside structure are certain (230).
     pub certain_share: f64,
 }
 
