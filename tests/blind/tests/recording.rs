@@ -248,6 +248,10 @@ fn what_has_no_name_says_how_large_it_is_and_nothing_is_both_open_and_hidden() {
             assert!(cause.parameters.iter().all(|p| p.std_error > 0.0), "{:?}", cause.parameters);
             assert!(cause.gain.share_of_explainable > 0.0, "{:?}", cause.gain);
         }
+        if let Some(error) = &found.model_error {
+            flagged += usize::from(found.verdict == Verdict::Unexplained);
+            assert!(error.rms_n > 0.0 && error.over.iter().all(|o| o.rms_n > 0.0), "{error:?}");
+        }
         let open = |id: &str| found.alternatives.iter().any(|a| a.id == id);
         assert!(found.not_excited.iter().all(|n| !open(&n.id)), "{:?}", found.not_excited);
     }

@@ -155,11 +155,11 @@ impl Draft {
     /// The answer with its verdict. `put_back`: shift of the forces before the comparison.
     pub fn finish(self, put_back: Option<&PutBack<'_>>) -> Findings {
         let Self { mut named, mut findings, mut figures, terms, open, is_strange, outweighed } = self;
-        named.certain_first();
-        let is_open = named.is_open(open);
         if let Some(put_back) = put_back {
             figures = put_back.name(&mut named, &mut findings.delay, figures);
         }
+        named.certain_first();
+        let is_open = named.is_open(open);
         let Named { causes, alternatives, not_excited, passed_over, next } = named;
         let first = causes.iter().find(|c| !terms.contains(&c.id));
         let carries_less = |c: &Cause| outweighed.contains(&c.id);

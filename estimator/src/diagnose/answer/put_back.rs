@@ -2,6 +2,7 @@
 
 use super::named::Named;
 use crate::diagnose::contract::{Baseline, Cause, Gain, parameter};
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
@@ -45,6 +46,7 @@ impl PutBack<'_> {
     fn cause(&self, remaining: &DelayFindings, figures: &Figures) -> Cause {
         let late_s = self.late_s(remaining);
         let before = self.first.causes.iter().find(|c| c.id == ID);
+        let before_posterior = before.map(|c| c.posterior);
         let mut cause = before.map_or_else(|| unnamed_before(self.first, late_s), Cause::clone);
         if let Some(tau) = cause.parameters.first_mut() {
             tau.value = late_s;
@@ -59,7 +61,8 @@ impl PutBack<'_> {
         if cause.gain.rollout.is_none() {
             cause.gain.no_rollout = Some(PUT_BACK.to_owned());
         }
-        cause.posterior = 1.0;
+        // A shift that only the scan found may also be a lag: presliding, pads, or samples that were held.
+        cause.posterior = before_posterior.unwrap_or(HALF);
         cause
     }
 }

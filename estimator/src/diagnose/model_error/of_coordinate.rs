@@ -105,8 +105,6 @@ fn reading(track: &Track, predicted: &[f64]) -> Option<Discrepancy> {
         let share = |row: &Row| if track.planar { [row.along.x, row.along.y][k] } else { 1.0 };
         let force: Vec<f64> = track.rows.iter().zip(predicted).map(|(row, p)| force(track, row, *p)[k]).collect();
         let mut waves = over_range(&force, &along, 0.06, 2 * TERMS);
-        // A reading that is off by a constant while a force acts.
-        waves.push(along.iter().map(|a| f64::from(u8::from(*a))).collect());
         for wave in &mut waves {
             wave.iter_mut().zip(&track.rows).for_each(|(w, row)| *w *= share(row));
         }

@@ -75,12 +75,11 @@ pub struct Rules {
     pub discrepancy: f64,
     /// Prior odds against a cause, ln: one of twenty.
     pub unlikely: f64,
-    /// ln(Bayes factor) from which a cause may be certain. Choice, by recordings with structure and without: halved, 13
-    /// of 520 without a cause get a certain one (10), doubled, 5; of 311 causes without structure 293 are certain (264),
-    /// and 201.
+    /// ln(Bayes factor) from which a cause may be certain. Choice, by recordings with structure and without: doubled, 10
+    /// of 520 without a cause get a certain one (13), and 264 of 311 causes without structure are certain (293).
     pub certain: f64,
     /// Share of its own and the discrepancies' power from which a cause may be certain. Choice, by the same recordings:
-    /// halved, 14 of 520; at 0.9, 99 of 260 causes beside structure are certain (230).
+    /// halved, 17 of 520; at 0.9, 99 of 260 causes beside structure are certain (237).
     pub certain_share: f64,
 }
 
@@ -109,7 +108,7 @@ impl Rules {
             open: OPEN,
             discrepancy: 7.0,
             unlikely: 3.0,
-            certain: 12.0,
+            certain: 6.0,
             certain_share: 0.6,
         }
     }

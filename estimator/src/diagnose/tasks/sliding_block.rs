@@ -78,7 +78,6 @@ pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Re
     let model = model(options, weight_n.is_some())?;
     options.progress.tell(0.4)?;
     let study = one_coordinate::study(&mut track, &model, &given_by_pads())?;
-    let study = one_coordinate::beside_errors(&track, study);
     options.progress.tell(0.8)?;
     let scale = scale(&study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
     let causes = faults.iter().cloned().chain(of_samples).collect();
