@@ -242,8 +242,7 @@ fn left_over(parts: &[Part<'_>], is_nothing_named: bool) -> Left {
         let much = if may_be_much { part.much_left() } else { None };
         let error = part.structured();
         left.is_strange |= much.is_some() || unnamed.is_some() || error.is_some();
-        left.much.extend(much);
-        left.much.extend(error);
+        left.much.extend(error.or(much));
         let is_new = |u: &Unnamed| part.role == Role::Channel || left.unnamed.iter().all(|o| o.cause.id != u.cause.id);
         let unnamed = unnamed.filter(is_new);
         left.unnamed.extend(unnamed);

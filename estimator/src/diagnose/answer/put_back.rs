@@ -61,8 +61,9 @@ impl PutBack<'_> {
         if cause.gain.rollout.is_none() {
             cause.gain.no_rollout = Some(PUT_BACK.to_owned());
         }
-        // A shift that only the scan found may also be a lag: presliding, pads, or samples that were held.
-        cause.posterior = before_posterior.unwrap_or(HALF);
+        // Along a coordinate, a shift that only the scan found may also be a lag: presliding, or samples that were held.
+        let scanned = if self.first.delay.figures.is_some() { 1.0 } else { HALF };
+        cause.posterior = before_posterior.unwrap_or(scanned);
         cause
     }
 }
