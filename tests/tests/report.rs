@@ -302,7 +302,7 @@ const SAID: [(&str, &[&str]); 7] = [
     ("Real against virtual", &["fx1_N", "Left over, RMS", "%", "Noise simulated", "Nothing is simulated in the gap"]),
     (
         "What the model gets wrong",
-        &["Fault of a channel", "Saturated force channel", "probability", "data that took no part", "Noise"],
+        &["Fault of a channel", "Saturated force channel", "probability", "no known cause describes them", "Noise"],
     ),
     (
         "What could not be known",
