@@ -302,7 +302,14 @@ const SAID: [(&str, &[&str]); 7] = [
     ("Real against virtual", &["fx1_N", "Left over, RMS", "%", "Noise simulated", "Nothing is simulated in the gap"]),
     (
         "What the model gets wrong",
-        &["Fault of a channel", "Saturated force channel", "probability", "no known cause describes them", "Noise"],
+        &[
+            "Fault of a channel",
+            "Saturated force channel",
+            "probability",
+            "95 % interval",
+            "data that took no part",
+            "Noise",
+        ],
     ),
     (
         "What could not be known",

@@ -175,7 +175,7 @@ fn judged(answer: &Findings, id: &str, separates: &[String], recording: Recordin
 mod tests {
     use super::*;
     use crate::ui::headless::gallery::samples::leaking;
-    use blind::{Bench, Effect, Log, Spec};
+    use blind::{Bench, Effect, Spec};
     use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
     use haptics::recording::Channel;
     use haptics::world::MechanismPath;
@@ -226,15 +226,7 @@ mod tests {
     }
 
     fn spec(bench: Bench, rate_hz: f64) -> Spec {
-        Spec {
-            effects: vec![(Effect::Eccentric, 0)],
-            ratio: 2.0,
-            structure: None,
-            bench,
-            log: Log::Mixed,
-            rate_hz,
-            seconds: 15.0,
-        }
+        Spec { rate_hz, ..Spec::hiding(vec![(Effect::Eccentric, 0)], 2.0, bench) }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
+use crate::text::format::capitalised;
 use crate::text::states::state_name;
-use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, Residual, Verdict};
+use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, ModelError, Residual, Verdict};
 use estimator::segment::SystemState;
 use estimator::words::amount;
 use haptics::law;
@@ -41,23 +42,19 @@ pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// Size and variables of a model error, or that there is one; with the share of the strongest cause, if one is certain.
+/// Size and first variable of a model error, or that there is one; with the share of the strongest cause, if one is
+/// certain.
 fn unexplained(diagnosis: &Diagnosis) -> String {
-    let (Some(error), Some(unit)) = (&diagnosis.model_error, &diagnosis.baseline.unit) else {
+    let variable = |error: &ModelError| Some((error.rms_n, error.over.first()?.variable.clone()));
+    let error = diagnosis.model_error.as_ref().and_then(variable);
+    let Some(((rms, variable), unit)) = error.zip(diagnosis.baseline.unit.as_ref()) else {
         return "Something is there that no known cause explains.".to_owned();
     };
     let found = diagnosis.certain().first().map_or_else(String::new, |cause| {
         let share = 100.0 * cause.gain.share_of_explainable.clamp(0.0, 1.0);
-        format!("{} explains {share:.0} %; ", capital(&one(&cause.id)))
+        format!("{} explains {share:.0} %; ", capitalised(&one(&cause.id)))
     });
-    let variables = error.over.first().map_or("no variable", |o| o.variable.as_str());
-    format!("{found}{} RMS go with {variables} and no known cause.", amount(error.rms_n, unit))
-}
-
-/// With a capital letter in front.
-fn capital(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    format!("{found}{} RMS go with {variable} and no known cause.", amount(rms, unit))
 }
 
 /// `a, b and c`, with small letters.

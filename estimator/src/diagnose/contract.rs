@@ -167,8 +167,6 @@ pub struct Standing {
     pub share: f64,
     /// Evidence on rows that took no part in the choice and the fit, 2 ln(likelihood).
     pub held_out_evidence: f64,
-    /// Evidence with the effective number of rows, 2 ln(likelihood) less the penalty of the parameters.
-    pub effective_evidence: f64,
 }
 
 /// Structured force (of other channels: length, speed) that is there and that no law of the catalogue describes.

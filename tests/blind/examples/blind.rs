@@ -113,13 +113,9 @@ fn one(folder: &Path, id: &str, rest: &[&str]) {
     let number = |k: usize, default: f64| rest.get(k).and_then(|t| t.parse().ok()).unwrap_or(default);
     let bench = if effect.on_crank() { Bench::OneFinger } else { Bench::Linear };
     let spec = Spec {
-        effects: vec![(effect, number(0, 0.0) as u32)],
-        ratio: number(1, 1.0),
-        structure: None,
-        bench,
-        log: Log::Mixed,
         rate_hz: number(2, 100.0),
         seconds: 20.0,
+        ..Spec::hiding(vec![(effect, number(0, 0.0) as u32)], number(1, 1.0), bench)
     };
     let job = Job { set: Set::Single, spec, seed: number(3, 1.0) as u64 };
     let (case, truth) = job.make();
@@ -207,15 +203,7 @@ fn table(seed: u64) {
             }
             for form in effect.forms_on(bench.is_crank()) {
                 let effects = vec![(effect, form)];
-                let spec = Spec {
-                    effects,
-                    ratio: 1.0,
-                    structure: None,
-                    bench,
-                    log: Log::Mixed,
-                    rate_hz: 100.0,
-                    seconds: 20.0,
-                };
+                let spec = Spec { seconds: 20.0, ..Spec::hiding(effects, 1.0, bench) };
                 let start = Instant::now();
                 let (_, truth) = make(&spec, seed);
                 println!(

@@ -3,18 +3,13 @@
 use super::draw::{Bench, Spec};
 use super::effect::Effect;
 use super::interval::quantile;
-use super::plan::Log;
 use super::score::{Row, ask};
 use super::sets::{Job, Set};
 use estimator::diagnose::{Findings, Rollout, RolloutOf};
 
 fn job(bench: Bench, effects: Vec<(Effect, u32)>, ratio: f64, seed: u64) -> Job {
     let set = if effects.is_empty() { Set::Null } else { Set::Single };
-    Job {
-        set,
-        spec: Spec { effects, ratio, structure: None, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 20.0 },
-        seed,
-    }
+    Job { set, spec: Spec { seconds: 20.0, ..Spec::hiding(effects, ratio, bench) }, seed }
 }
 
 fn asked(job: Job) -> Row {

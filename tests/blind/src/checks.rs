@@ -14,7 +14,7 @@ use super::simulate::Setup;
 use estimator::diagnose::{Diagnosis, Findings};
 
 fn spec(bench: Bench, effects: Vec<(Effect, u32)>) -> Spec {
-    Spec { effects, ratio: 1.0, structure: None, bench, log: Log::Mixed, rate_hz: 1000.0, seconds: 10.0 }
+    Spec { rate_hz: 1000.0, seconds: 10.0, ..Spec::hiding(effects, 1.0, bench) }
 }
 
 fn setup(spec: &Spec, seed: u64) -> Setup {

@@ -73,6 +73,13 @@ pub struct Spec {
     pub seconds: f64,
 }
 
+impl Spec {
+    /// These effects alone in a quarter of a minute of mixed motion at 100 Hz.
+    pub fn hiding(effects: Vec<(Effect, u32)>, ratio: f64, bench: Bench) -> Self {
+        Self { effects, ratio, structure: None, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 }
+    }
+}
+
 /// A structured force that no law of the catalogue describes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Structure {

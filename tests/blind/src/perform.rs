@@ -154,19 +154,11 @@ mod tests {
     use super::super::case::make_with_object;
     use super::super::draw::Bench;
     use super::super::effect::Effect;
-    use super::super::plan::Log;
+
     use super::*;
 
     fn spec(bench: Bench, effect: Effect) -> Spec {
-        Spec {
-            effects: vec![(effect, 0)],
-            ratio: 1.0,
-            structure: None,
-            bench,
-            log: Log::Mixed,
-            rate_hz: 100.0,
-            seconds: 12.0,
-        }
+        Spec { seconds: 12.0, ..Spec::hiding(vec![(effect, 0)], 1.0, bench) }
     }
 
     fn asked(id: &str) -> Experiment {

@@ -371,19 +371,8 @@ mod tests {
 
     #[test]
     fn who_takes_nothing_off_gains_nothing_and_the_truth_itself_gains_all() {
-        let job = Job {
-            set: Set::Single,
-            spec: Spec {
-                effects: vec![(Effect::Eccentric, 0)],
-                ratio: 2.0,
-                structure: None,
-                bench: Bench::OneFinger,
-                log: Log::Mixed,
-                rate_hz: 100.0,
-                seconds: 15.0,
-            },
-            seed: 3,
-        };
+        let job =
+            Job { set: Set::Single, spec: Spec::hiding(vec![(Effect::Eccentric, 0)], 2.0, Bench::OneFinger), seed: 3 };
         let (case, truth) = job.make();
         let mut answer = diagnose(&case.recordings, &options(&case)).expect("it can be diagnosed");
         for instant in &mut answer.course.instants {

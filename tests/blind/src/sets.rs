@@ -157,15 +157,8 @@ fn nulls(count: usize, chance: &mut Chance) -> Vec<Job> {
             ]);
             let rate_hz = if k % 5 == 4 { 20.0 } else { chance.pick(&RATES_HZ) };
             let log = chance.pick(&[Log::Mixed, Log::Mixed, Log::Mixed, Log::OneWay, Log::PullOnly, Log::Slow]);
-            let spec = Spec {
-                effects: Vec::new(),
-                ratio: 0.0,
-                structure: None,
-                bench,
-                log,
-                rate_hz,
-                seconds: length_s(rate_hz, chance),
-            };
+            let spec =
+                Spec { log, rate_hz, seconds: length_s(rate_hz, chance), ..Spec::hiding(Vec::new(), 0.0, bench) };
             Job { set: Set::Null, spec, seed: 0 }
         })
         .collect()
@@ -203,7 +196,7 @@ fn single(effect: Effect, ratio: f64, chance: &mut Chance) -> Job {
     let form = form_for(effect, bench, chance);
     let rate_hz = chance.pick(&RATES_HZ);
     let seconds = length_s(rate_hz, chance);
-    let spec = Spec { effects: vec![(effect, form)], ratio, structure: None, bench, log: Log::Mixed, rate_hz, seconds };
+    let spec = Spec { rate_hz, seconds, ..Spec::hiding(vec![(effect, form)], ratio, bench) };
     Job { set: Set::Single, spec, seed: 0 }
 }
 
@@ -234,11 +227,7 @@ fn pair(chance: &mut Chance) -> Job {
     let effects = [a, b].map(|e| (e, form_for(e, bench, chance))).to_vec();
     let rate_hz = chance.pick(&RATES_HZ);
     let seconds = length_s(rate_hz, chance);
-    Job {
-        set: Set::Pair,
-        spec: Spec { effects, ratio: 1.0, structure: None, bench, log: Log::Mixed, rate_hz, seconds },
-        seed: 0,
-    }
+    Job { set: Set::Pair, spec: Spec { rate_hz, seconds, ..Spec::hiding(effects, 1.0, bench) }, seed: 0 }
 }
 
 /// Structures that come again with the state, however long a recording is.

@@ -3,7 +3,7 @@
 //!
 //! `TOUCHSTONE_SEED=20400 cargo test -p blind --test forward` repeats a day.
 
-use blind::{Bench, Case, Effect, Log, Spec, make, score};
+use blind::{Bench, Case, Effect, Spec, make, score};
 use estimator::diagnose::{Findings, diagnose, worlds};
 use estimator::simulate::simulate;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -57,8 +57,7 @@ fn what_was_found_gains_when_the_extended_laws_run_on_their_own() {
         let (mut asked, mut gained, mut foretold) = (0, 0, 0);
         for draw in 0..DRAWS {
             let effects = vec![(effect, effect.forms_on(bench.is_crank()).start)];
-            let spec =
-                Spec { effects, ratio: 2.0, structure: None, bench, log: Log::Mixed, rate_hz: 250.0, seconds: 25.0 };
+            let spec = Spec { rate_hz: 250.0, seconds: 25.0, ..Spec::hiding(effects, 2.0, bench) };
             let (case, _) = make(&spec, seed.wrapping_mul(DRAWS) + draw);
             let found = diagnose(&case.recordings, &score::options(&case)).expect("it can be diagnosed");
             let clear = |gain: &estimator::diagnose::Gain| gain.share_of_explainable > 0.5;

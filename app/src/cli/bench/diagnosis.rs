@@ -4,7 +4,7 @@ use super::frames::performance;
 use super::table::{Figure, Said, Wanted};
 use super::whole::{best_s, long};
 use crate::cli::{Output, progress};
-use blind::{Bench, Effect, Job, Log, Set, Spec};
+use blind::{Bench, Effect, Job, Set, Spec};
 use clap::Args;
 use estimator::diagnose::{Options, diagnose};
 use haptics::recording::Recording;
@@ -53,7 +53,7 @@ fn job((bench, effects): Case, seed: u64) -> Job {
         1 => (Set::Single, 1.0),
         _ => (Set::Pair, 1.0),
     };
-    let spec = Spec { effects, ratio, structure: None, bench, log: Log::Mixed, rate_hz: RATE_HZ, seconds: SECONDS };
+    let spec = Spec { rate_hz: RATE_HZ, seconds: SECONDS, ..Spec::hiding(effects, ratio, bench) };
     Job { set, spec, seed }
 }
 

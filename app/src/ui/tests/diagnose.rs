@@ -12,7 +12,7 @@ use crate::ui::shell::workspace::Workspace;
 use crate::ui::tests::picture;
 use crate::ui::train::trainer::live::Operator;
 use crate::ui::train::trainer::world_choice::WorldChoice;
-use blind::{Bench, Effect, Log, Spec};
+use blind::{Bench, Effect, Spec};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use estimator::diagnose::{Progress, Verdict};
@@ -27,7 +27,7 @@ fn hiding(effect: Effect, bench: Bench, seed: u64) -> Recording {
 /// The same; `ratio`: the effect over the noise.
 pub fn hiding_so_much(effect: Effect, bench: Bench, seed: u64, ratio: f64) -> Recording {
     let effects = vec![(effect, 0)];
-    let spec = Spec { effects, ratio, structure: None, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
+    let spec = Spec::hiding(effects, ratio, bench);
     blind::make(&spec, seed).0.recordings.remove(0)
 }
 

@@ -165,7 +165,7 @@ pub fn unexplained(study: &ChannelFit) -> Option<(usize, f64)> {
         let gain = gain_between(study, &picks, &[picks.as_slice(), &[term]].concat(), 0.0);
         gain.heldout_rms_after > rules.overfit * gain.heldout_rms_before
     };
-    let strongest = study.of_each_alone().unexplained(&picks);
+    let strongest = study.of_each().unexplained(&picks);
     strongest.filter(|(term, score)| *score > rules.unexplained && !is_overfit(*term))
 }
 

@@ -107,7 +107,6 @@ struct Round<'a> {
     rivals: Rivals,
     /// Columns of base model, causes, discrepancies, and the target.
     raw: Vec<&'a [f64]>,
-    gram: nalgebra::DMatrix<f64>,
     best: Fitted,
     standings: Vec<Standing>,
 }
@@ -123,9 +122,8 @@ impl<'a> Round<'a> {
         let of_errors = discrepancies.iter().flat_map(|d| d.columns.iter().map(Vec::as_slice));
         let raw: Vec<&[f64]> = of_base.chain(of_causes).chain(of_errors).chain([study.target.as_slice()]).collect();
         let columns: Vec<Vec<f64>> = raw.iter().map(|c| white.of(c)).collect();
-        let gram = gram(&columns, &picked);
         let products = Products::new(
-            &gram,
+            gram(&columns, &picked),
             study.baseline.len(),
             counted(&picked, &study.layout),
             elements(study, discrepancies, &picked),
@@ -140,13 +138,13 @@ impl<'a> Round<'a> {
         let named = (0..picks.len()).map(|k| (k, 1.0)).collect();
         let mut best = rivals.settled(rivals.products.fit(named, None)?);
         let standings = rivals.standings(&mut best)?;
-        Some(Self { rivals, raw, gram, best, standings })
+        Some(Self { rivals, raw, best, standings })
     }
 
-    /// Weighted residual of the best model.
+    /// Weighted residual of the best model, discrepancies included.
     fn residual(&self, study: &ChannelFit) -> Vec<f64> {
         let mut left = self.raw[self.raw.len() - 1].to_vec();
-        for (column, value) in self.rivals.products.values(&self.best, &self.gram, study.baseline.len()) {
+        for (column, value) in self.rivals.products.values(&self.best) {
             left.iter_mut().zip(self.raw[column]).for_each(|(l, c)| *l -= value * c);
         }
         left.iter().zip(&study.layout.weight).map(|(l, w)| l * w).collect()
@@ -156,8 +154,6 @@ impl<'a> Round<'a> {
         let Self { rivals, raw, best, mut standings, .. } = self;
         let picks = study.picks();
         for (k, standing) in standings.iter_mut().enumerate() {
-            let cost = study.candidates[picks[k]].cost;
-            standing.effective_evidence = effective_evidence(study, &study.picks_without(k), cost);
             standing.held_out_evidence = confirmed(study, k);
         }
         let rows = study.layout.rows();
@@ -218,66 +214,51 @@ fn rms(values: &[f64], weight: &[f64]) -> f64 {
     (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
 }
 
-/// Evidence of a cause by the effective number of rows, 2 ln(likelihood) less the penalty of its parameters: N/t of
-/// them, where t is the autocorrelation time of the residual in rows. It holds for a structure of any shape, unless that
-/// comes back in the course of the recording.
-fn effective_evidence(study: &ChannelFit, rest: &[usize], cost: f64) -> f64 {
-    let weigh = |picks: &[usize]| -> Vec<f64> {
-        study.residual(picks).iter().zip(&study.layout.weight).map(|(r, w)| r * w).collect()
-    };
-    let (before, after) = (weigh(rest), weigh(&study.picks()));
-    let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().max(f64::MIN_POSITIVE);
-    let mut time = 1.0;
-    for lag in 1..after.len() / 4 {
-        let pairs = (lag..after.len()).filter(|i| study.layout.segment[*i] == study.layout.segment[*i - lag]);
-        let correlation = pairs.map(|i| after[i] * after[i - lag]).sum::<f64>() / power(&after);
-        if correlation <= 0.0 {
-            break;
-        }
-        time += 2.0 * correlation;
-    }
-    let rows = (study.system.rows / time).max(1.0);
-    rows * (power(&before) / power(&after)).ln() - cost * rows.ln()
-}
-
-/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays, at
-/// most so often.
+/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays,
+/// at most so often. Values and figures stay those of the model with its causes alone, which a world can have.
 pub fn settle(mut study: ChannelFit, errors: &[Discrepancy], most: usize) -> ChannelFit {
-    study.competition = compete(&study, errors);
+    let mut found = compete(&study, errors);
+    let mut plain = None;
     for _ in 0..most {
         let before = study.picks();
-        if !choose_beside(&mut study, errors) {
-            break;
-        }
+        let Some(system) = found.as_ref().and_then(|found| beside(&study, found, errors)) else { break };
+        study.chosen = Stepwise::new(&system, &study.candidates, &study.rules).run(&before);
+        let before_this = std::mem::replace(&mut study.system, system);
+        let alone = plain.get_or_insert(before_this);
+        // The order is that in which a model with causes alone needs them.
+        let order = Stepwise::new(alone, &study.candidates, &study.rules).order(&study.picks());
+        study.chosen.sort_by_key(|c| order.iter().position(|o| *o == c.candidate));
+        study.solved = study.system.solve(&study.picks());
+        study.competition = found.take();
         leave_out_what_is_unsure(&mut study);
+        found = compete(&study, errors);
         if study.picks() == before {
             break;
         }
-        study.competition = compete(&study, errors);
     }
+    if let Some(plain) = plain {
+        study.system = plain;
+        study.solved = study.system.solve(&study.picks());
+    }
+    study.competition = found.map(|found| Competition { error: Vec::new(), ..found });
     study
 }
 
-/// Chooses the causes anew beside the discrepancies of the competition. False without any.
-fn choose_beside(study: &mut ChannelFit, discrepancies: &[Discrepancy]) -> bool {
-    let Some(found) = study.competition.as_ref().filter(|c| !c.used.is_empty()) else { return false };
+/// Normal equations whose noise includes the discrepancies of a competition. `None` without any.
+fn beside(study: &ChannelFit, found: &Competition, discrepancies: &[Discrepancy]) -> Option<System> {
     let columns = found.used.iter().flat_map(|(d, _)| &discrepancies[*d].columns);
     let precision: Vec<f64> =
         found.used.iter().flat_map(|(d, v)| vec![v.recip(); discrepancies[*d].columns.len()]).collect();
-    let ChannelFit { baseline, candidates, target, layout, .. } = &*study;
+    let ChannelFit { baseline, candidates, target, layout, .. } = study;
     let base: Vec<Vec<f64>> = baseline.iter().chain(columns).cloned().collect();
     let mut system = System::new(&base, candidates, target, layout, found.coefficients.clone());
-    if !system.marginalize(baseline.len(), &precision) {
-        return false;
+    if precision.is_empty() || !system.marginalize(baseline.len(), &precision) {
+        return None;
     }
     let error = Whitening::new(&layout.segment, &layout.weight, &found.coefficients).of(&found.error);
     let last = system.target();
     system.whitened[last].iter_mut().zip(&error).for_each(|(target, error)| *target -= error);
     system.resisting.clone_from(&study.system.resisting);
     system.pieces.clone_from(&study.system.pieces);
-    study.chosen = Stepwise::new(&system, candidates, &study.rules).run(&study.picks());
-    let plain = std::mem::replace(&mut study.system, system);
-    study.plain.get_or_insert(plain);
-    study.solved = study.system.solve(&study.picks());
-    true
+    Some(system)
 }

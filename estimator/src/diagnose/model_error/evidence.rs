@@ -28,6 +28,9 @@ pub struct Element {
 /// Gram matrix of whitened rows from which the model's regressors are projected out; the target comes last.
 pub struct Products {
     gram: DMatrix<f64>,
+    /// The same with the model's regressors, and the factor of their part.
+    whole: DMatrix<f64>,
+    factor: Cholesky<f64, Dyn>,
     /// Effective number of rows less the number of the model's regressors.
     freedom: f64,
     elements: Vec<Element>,
@@ -70,18 +73,18 @@ fn variances(power: f64) -> [f64; 2] {
 }
 
 impl Products {
-    /// `gram`: products of base columns, elements and target, in this order. `rows`: effective number of rows.
+    /// `whole`: products of base columns, elements and target, in this order. `rows`: effective number of rows.
     /// `None` if the base cannot be solved.
-    pub fn new(gram: &DMatrix<f64>, base: usize, rows: f64, elements: Vec<Element>) -> Option<Self> {
-        let size = gram.ncols();
-        let mut of_base = gram.view((0, 0), (base, base)).into_owned();
+    pub fn new(whole: DMatrix<f64>, base: usize, rows: f64, elements: Vec<Element>) -> Option<Self> {
+        let size = whole.ncols();
+        let mut of_base = whole.view((0, 0), (base, base)).into_owned();
         (0..base).for_each(|i| of_base[(i, i)] = of_base[(i, i)] * (1.0 + NUMERICAL_RIDGE) + f64::MIN_POSITIVE);
         let factor = of_base.cholesky()?;
-        let beside = gram.view((0, base), (base, size - base)).into_owned();
+        let beside = whole.view((0, base), (base, size - base)).into_owned();
         let solved = factor.l_dirty().solve_lower_triangular(&beside)?;
-        let mut left = gram.view((base, base), (size - base, size - base)).into_owned();
-        left.gemm_tr(-1.0, &solved, &solved, 1.0);
-        Some(Self { gram: left, freedom: (rows - base as f64).max(1.0), elements })
+        let mut gram = whole.view((base, base), (size - base, size - base)).into_owned();
+        gram.gemm_tr(-1.0, &solved, &solved, 1.0);
+        Some(Self { gram, whole, factor, freedom: (rows - base as f64).max(1.0), elements })
     }
 
     fn target(&self) -> usize {
@@ -225,22 +228,16 @@ impl Products {
         };
         elements.iter().map(one).collect()
     }
-}
 
-impl Products {
     /// Coefficients of all columns in use: those of the base, refitted beside the elements, and those of the elements.
-    /// Indices are those of `gram`.
-    pub fn values(&self, model: &Fitted, gram: &DMatrix<f64>, base: usize) -> Vec<(usize, f64)> {
+    /// Indices are those of the whole matrix.
+    pub fn values(&self, model: &Fitted) -> Vec<(usize, f64)> {
+        let (base, target) = (self.factor.l_dirty().nrows(), self.whole.ncols() - 1);
         let own: Vec<(usize, f64)> =
             self.columns(&model.used).into_iter().zip(&model.mean).map(|(c, m)| (base + c, *m)).collect();
-        let target = gram.ncols() - 1;
-        let right =
-            DVector::from_fn(base, |i, _| gram[(i, target)] - own.iter().map(|(c, m)| gram[(i, *c)] * m).sum::<f64>());
-        let mut of_base = gram.view((0, 0), (base, base)).into_owned();
-        (0..base).for_each(|i| of_base[(i, i)] = of_base[(i, i)] * (1.0 + NUMERICAL_RIDGE) + f64::MIN_POSITIVE);
-        let solved = of_base.cholesky().map(|f| f.solve(&right));
-        let values = solved.map_or_else(Vec::new, |v| v.iter().copied().enumerate().collect());
-        values.into_iter().chain(own).collect()
+        let taken = |i: usize| own.iter().map(|(c, m)| self.whole[(i, *c)] * m).sum::<f64>();
+        let right = DVector::from_fn(base, |i, _| self.whole[(i, target)] - taken(i));
+        self.factor.solve(&right).iter().copied().enumerate().chain(own).collect()
     }
 }
 
@@ -272,7 +269,7 @@ mod tests {
     #[test]
     fn the_evidence_is_the_density_of_the_target_under_the_covariance_of_all_parts() {
         let (columns, elements) = some(&mut StdRng::seed_from_u64(3));
-        let products = Products::new(&gram(&columns), 0, ROWS as f64, elements).expect("no base");
+        let products = Products::new(gram(&columns), 0, ROWS as f64, elements).expect("no base");
         let (noise, variances) = (0.7, [0.5, 2.0, 0.3, 0.3, 0.3]);
         let found = products.update(vec![(0, 1.0), (1, 0.3)], noise, 0).expect("regular");
         let covariance = DMatrix::from_fn(ROWS, ROWS, |i, j| {
@@ -289,7 +286,7 @@ mod tests {
     #[test]
     fn screening_states_the_evidence_that_the_whole_model_has() {
         let (columns, elements) = some(&mut StdRng::seed_from_u64(4));
-        let products = Products::new(&gram(&columns), 0, ROWS as f64, elements).expect("no base");
+        let products = Products::new(gram(&columns), 0, ROWS as f64, elements).expect("no base");
         let model = products.update(vec![(0, 1.0)], 0.9, 0).expect("regular");
         let screened = &products.screen(&model, &[1]).expect("regular")[0];
         let whole = products.update(vec![(0, 1.0), (1, screened.variance)], 0.9, 0).expect("regular");
@@ -306,7 +303,7 @@ mod tests {
         let target = (0..4000).map(|i| sum(i) + 0.5 * noise[i]).collect();
         columns.push(target);
         let elements = vec![Element { columns: 0..30, prior: Prior::Estimated }];
-        let products = Products::new(&gram(&columns), 0, 4000.0, elements).expect("no base");
+        let products = Products::new(gram(&columns), 0, 4000.0, elements).expect("no base");
         let found = products.fit(vec![(0, 1.0)], None).expect("regular");
         assert!((found.noise.sqrt() - 0.5).abs() < 0.02, "{}", found.noise);
         assert!((0.2..0.4).contains(&found.used[0].1.sqrt()), "{:?}", found.used);

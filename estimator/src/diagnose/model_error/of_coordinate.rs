@@ -31,7 +31,6 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
         let scale = usual(&values);
         values.into_iter().map(|v| v / scale).collect::<Vec<f64>>()
     };
-    let one = of(&|_| 1.0);
     let speed = unit(of(&|r| r.motion.velocity));
     let direction = of(&|r| r.motion.direction);
     let load = track.planar.then(|| unit(of(&|r| r.motion.normal_force_n)));
@@ -47,10 +46,10 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
     let slow = |hz: f64| over_time(time_s, hz, 1.0, MANY_TERMS);
     let (sensor, wear) = (slow(1.5), slow(0.4));
     let mut found = vec![
-        Discrepancy::of("position", &one, &place),
+        Discrepancy::of_force("position", &along, &place),
         Discrepancy::of("friction over the position", &friction, &place),
         Discrepancy::of("viscous friction over the position", &speed, &place),
-        Discrepancy::of("speed", &one, &over_speed),
+        Discrepancy::of_force("speed", &along, &over_speed),
         Discrepancy::of("friction over the speed", &direction, &over_speed),
         Discrepancy::of("friction over time", &friction, &wear),
         Discrepancy::of("viscous friction over time", &speed, &wear),
@@ -59,7 +58,7 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
     if let Some(load) = &load {
         let over_load = over_range(load, &along, 0.15, TERMS);
         found.push(Discrepancy::of("load and position", load, &place));
-        found.push(Discrepancy::of("load", &one, &over_load));
+        found.push(Discrepancy::of_force("load", &along, &over_load));
         found.push(Discrepancy::of("friction over the load", &direction, &over_load));
     }
     found.push(state(&angle, turns, (&speed, load.as_deref()), &along));
@@ -80,8 +79,7 @@ fn state(angle: &[f64], turns: bool, (speed, load): (&[f64], Option<&[f64]>), al
     };
     variables.push(speed.to_vec());
     variables.extend(load.map(<[f64]>::to_vec));
-    let on: Vec<f64> = along.iter().map(|a| f64::from(u8::from(*a))).collect();
-    Discrepancy::of("position, speed and load together", &on, &field(&variables, MANY_TERMS))
+    Discrepancy::of_force("position, speed and load together", along, &field(&variables, MANY_TERMS))
 }
 
 /// Slow error of the force sensor, along each of its axes.

@@ -19,6 +19,16 @@ impl Discrepancy {
         Self::new(over, basis.iter().map(product).collect())
     }
 
+    /// A force as a function of a basis in these rows. Its means are taken out: a constant force belongs to the laws.
+    pub fn of_force(over: &'static str, used: &[bool], basis: &[Vec<f64>]) -> Option<Self> {
+        let rows = used.iter().filter(|u| **u).count().max(1) as f64;
+        let varying = |column: &Vec<f64>| {
+            let mean = column.iter().zip(used).filter(|(_, u)| **u).map(|(v, _)| v).sum::<f64>() / rows;
+            column.iter().zip(used).map(|(v, u)| if *u { v - mean } else { 0.0 }).collect()
+        };
+        Self::new(over, basis.iter().map(varying).collect())
+    }
+
     /// These columns, scaled together.
     pub fn new(over: &'static str, mut columns: Vec<Vec<f64>>) -> Option<Self> {
         let rows = (0..columns.first()?.len()).filter(|i| columns.iter().any(|c| c[*i] != 0.0)).count();

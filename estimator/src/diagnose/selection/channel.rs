@@ -80,21 +80,7 @@ impl Channel {
         system.resisting = resisting;
         system.pieces = layout.pieces();
         let chosen = Stepwise::new(&system, &candidates, &rules).run(&start);
-        let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
-        let solved = system.solve(&picks);
-        Ok(ChannelFit {
-            candidates,
-            chosen,
-            system,
-            solved,
-            target: y,
-            baseline: base,
-            layout,
-            rules,
-            shares_of: [1.0, 0.0],
-            plain: None,
-            competition: None,
-        })
+        Ok(ChannelFit::of(candidates, chosen, system, (y, base, layout), rules))
     }
 }
 

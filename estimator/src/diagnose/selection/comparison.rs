@@ -59,13 +59,24 @@ pub struct ChannelFit {
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
     pub shares_of: [f64; 2],
-    /// The system without structured errors, if `system` is one beside those.
-    pub plain: Option<System>,
     /// The chosen causes beside structured errors.
     pub competition: Option<Competition>,
 }
 
 impl ChannelFit {
+    /// A comparison with this choice. `rows`: target, regressors of the model, and layout.
+    pub fn of(
+        candidates: Vec<Candidate>,
+        chosen: Vec<SelectedTerm>,
+        system: System,
+        (target, baseline, layout): (Vec<f64>, Vec<Vec<f64>>, Layout),
+        rules: Rules,
+    ) -> Self {
+        let solved = system.solve(&chosen.iter().map(|c| c.candidate).collect::<Vec<usize>>());
+        let shares_of = [1.0, 0.0];
+        Self { candidates, chosen, system, solved, target, baseline, layout, rules, shares_of, competition: None }
+    }
+
     /// Candidates that were chosen.
     pub fn picks(&self) -> Vec<usize> {
         self.chosen.iter().map(|c| c.candidate).collect()
@@ -79,11 +90,6 @@ impl ChannelFit {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.chosen.iter().any(|c| self.candidates[c.candidate].id == id)
-    }
-
-    /// Evidence of single candidates, structured errors left out.
-    pub fn of_each_alone(&self) -> Stepwise<'_> {
-        Stepwise::of_each(self.plain.as_ref().unwrap_or(&self.system), &self.candidates)
     }
 
     /// Evidence of single candidates.
@@ -105,26 +111,13 @@ impl ChannelFit {
     pub fn beside(&self, terms: Vec<Candidate>) -> Self {
         let found = self.chosen.iter().map(|c| self.candidates[c.candidate].clone());
         let candidates: Vec<Candidate> = found.chain(terms).collect();
-        let Self { target: y, baseline: base, layout, rules, .. } = self;
+        let Self { target: y, baseline: base, layout, .. } = self;
         let system = System::new(base, &candidates, y, layout, self.system.coefficients.clone());
         let as_before =
             |(candidate, c): (usize, &SelectedTerm)| SelectedTerm { candidate, rivals: Vec::new(), ..c.clone() };
         let chosen: Vec<SelectedTerm> = self.chosen.iter().enumerate().map(as_before).collect();
-        let solved = system.solve(&(0..chosen.len()).collect::<Vec<usize>>());
-        let (y, base, layout, shares_of) = (y.clone(), base.clone(), layout.clone(), self.shares_of);
-        Self {
-            candidates,
-            chosen,
-            system,
-            solved,
-            target: y,
-            baseline: base,
-            layout,
-            rules: *rules,
-            shares_of,
-            plain: None,
-            competition: None,
-        }
+        let rows = (self.target.clone(), self.baseline.clone(), self.layout.clone());
+        Self { shares_of: self.shares_of, ..Self::of(candidates, chosen, system, rows, self.rules) }
     }
 
     /// Each of these candidates with its coefficients. `values`: of the model's regressors, then of the candidates' ones.

@@ -380,7 +380,7 @@ impl Stepwise<'_> {
     }
 
     /// The chosen causes in the order of forward selection: the strongest alone first.
-    fn order(&self, chosen: &[usize]) -> Vec<usize> {
+    pub fn order(&self, chosen: &[usize]) -> Vec<usize> {
         let mut left = chosen.to_vec();
         let mut order: Vec<usize> = Vec::new();
         while !left.is_empty() {

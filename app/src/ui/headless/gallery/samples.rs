@@ -138,7 +138,7 @@ pub fn leaking() -> anyhow::Result<Recording> {
 pub fn hinge() -> (Recording, blind::case::Object) {
     let effects = vec![(blind::Effect::Eccentric, 0)];
     let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
-    let spec = blind::Spec { effects, ratio: 2.0, structure: None, bench, log, rate_hz: 250.0, seconds: 15.0 };
+    let spec = blind::Spec { log, rate_hz: 250.0, ..blind::Spec::hiding(effects, 2.0, bench) };
     let (mut case, _, object) = blind::case::make_with_object(&spec, &[], 4);
     let mut recording = case.recordings.pop().unwrap_or_default();
     "hinge".clone_into(&mut recording.name);

@@ -14,7 +14,7 @@ use crate::ui::shell::message_list::Tone;
 use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::trainer::live::Clock;
 use anyhow::{Context as _, anyhow, bail};
-use blind::{Bench, Effect, Log, Spec};
+use blind::{Bench, Effect, Spec};
 use egui::{Event, Key, Modifiers, Pos2, Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -82,15 +82,7 @@ pub fn walk(
 /// A turned crank with an unmodelled ripple, as another program writes it.
 pub(super) fn foreign_crank(folder: &Path) -> anyhow::Result<PathBuf> {
     let effects = vec![(Effect::Ripple, 0)];
-    let spec = Spec {
-        effects,
-        ratio: 2.0,
-        structure: None,
-        bench: Bench::OneFinger,
-        log: Log::Mixed,
-        rate_hz: 100.0,
-        seconds: 15.0,
-    };
+    let spec = Spec::hiding(effects, 2.0, Bench::OneFinger);
     let made: Recording = blind::make(&spec, SEED).0.recordings.remove(0);
     let tip = estimator::signal::task::tip_series(&made, "").map_err(|error| anyhow!(error.to_string()))?;
     let (time, force) = (made.time_s.as_ref().context("there is no clock")?, tip.force.context("there is no force")?);
