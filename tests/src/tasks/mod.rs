@@ -9,6 +9,7 @@ pub mod needle;
 pub mod perform;
 pub mod score;
 pub mod sensor;
+pub mod sheet;
 pub mod slide;
 pub mod switch;
 pub mod throw;
