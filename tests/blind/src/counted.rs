@@ -42,6 +42,10 @@ pub trait Counted {
     fn right_ids(&self) -> Vec<&str>;
     /// Ids that describe the structure itself.
     fn tolerated_ids(&self) -> &[&str];
+    /// Ids of what is there in any case, and no question: their names do not count.
+    fn ids_besides(&self) -> &[&str] {
+        &[]
+    }
     /// Noise of a reading, N.
     fn noise_n(&self) -> f64;
     /// Stated noise floor over the noise where the structure is left out; not a number beside an effect.
@@ -52,7 +56,8 @@ pub trait Counted {
         let (Ok(answer), right, tolerated) = (self.answer(), self.right_ids(), self.tolerated_ids()) else {
             return Vec::new();
         };
-        let named = answer.causes.iter().filter(|c| !c.id.starts_with("other:"));
+        let counts = |id: &str| !id.starts_with("other:") && !self.ids_besides().contains(&id);
+        let named = answer.causes.iter().filter(|c| counts(&c.id));
         named
             .map(|c| Name {
                 id: &c.id,

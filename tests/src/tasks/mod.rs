@@ -11,6 +11,7 @@ pub mod score;
 pub mod sensor;
 pub mod sheet;
 pub mod slide;
+pub mod structured;
 pub mod switch;
 pub mod throw;
 
