@@ -44,6 +44,9 @@ fn report(seeds: &[&str]) {
         println!("\n{}\n\n{}", group.name(), certain::report(&own));
         let clean = own.iter().filter(|row| row.hidden.is_none());
         println!("named without the structure: {}", Share::count(clean, |row| !row.clean_names.is_empty()));
+        let beside = own.iter().filter(|row| row.hidden.is_some() && !row.is_missed);
+        let is_first = |row: &Row| row.clean_names.first().map(String::as_str) == row.hidden;
+        println!("the effect is named first without the structure: {}", Share::count(beside, is_first));
         let mean_s = |k: usize| own.iter().map(|row| row.took_s[k]).sum::<f64>() / own.len().max(1) as f64;
         println!("{:.2} s to make a case, {:.2} s to answer it", mean_s(0), mean_s(1));
     }

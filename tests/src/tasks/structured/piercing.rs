@@ -81,7 +81,7 @@ fn with_sizes(hidden: &Hidden, sizes: &[f64]) -> Hidden {
     hidden
 }
 
-/// Half of the sheets that slide freely off the shaft are known to the last bit. Friction, where a structure multiplies it, is not known.
+/// Half of the sheets are known to the last bit where no effect and no friction is in them: what a known hole lacks is another law.
 fn drawn(job: &Job) -> Object {
     let mut chance = Chance::new(job.seed, 61);
     let mut sheet = Sheet::plain(&mut chance);
@@ -90,7 +90,8 @@ fn drawn(job: &Job) -> Object {
     if job.family.needs_friction() {
         sheet.dry_n = [dry; 2];
     }
-    let world = (is_known && !job.family.needs_friction()).then(|| known(&sheet));
+    let is_plain = job.family.needs_friction() || job.needle_effect.is_some();
+    let world = (is_known && !is_plain).then(|| known(&sheet));
     let plan = plan(&sheet, &mut chance);
     Object { sheet, plan, options: Options { world, ..Options::default() }, seed: job.seed }
 }

@@ -31,9 +31,9 @@ pub struct Row {
     pub is_missed: bool,
     /// Noise of a reading, N.
     pub noise_n: f64,
-    /// Stated noise floor over the noise where the structure is left out; not a number beside an effect.
+    /// Stated noise floor over the noise where the structure is left out.
     pub clean_floor: f64,
-    /// Ids of causes that were named where the structure is left out; nothing beside an effect.
+    /// Ids of causes that were named where the structure is left out, strongest first.
     pub clean_names: Vec<String>,
     /// The answer, or the sentence of the error.
     pub answer: Result<Findings, String>,
@@ -62,7 +62,7 @@ fn row(job: &Job, engine: &Engine<'_>) -> Row {
     let start = Instant::now();
     let answer = asked(&made.case);
     let answered_s = start.elapsed().as_secs_f64();
-    let clean = if job.set() == Set::Structured { asked(&made.clean).ok() } else { None };
+    let clean = asked(&made.clean).ok();
     let named = |id: &String| !besides(job.family).contains(&id.as_str());
     let names = |found: &Findings| found.causes.iter().map(|cause| cause.id.clone()).filter(named).collect();
     let times = made.case.recordings[0].time_s.as_deref().unwrap_or_default();
