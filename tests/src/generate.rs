@@ -120,8 +120,23 @@ impl Act {
     }
 }
 
+/// Interferes before each fine step: with the state, and with the tips that the world feels. Its last argument is the step, s.
+pub type Meddle<'a> = dyn FnMut(&World, &mut State, &mut Input, f64) + 'a;
+
 /// Performs the task of `world`; every `every`-th fine step is kept.
 pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: usize) -> Act {
+    act_with(world, seed, skill, errors, every, &mut |_, _, _, _| {})
+}
+
+/// The same while something interferes that no world has. The kept tips are the operator's own.
+pub fn act_with(
+    world: &World,
+    seed: u64,
+    skill: Skill,
+    errors: &Errors<'_>,
+    every: usize,
+    meddle: &mut Meddle<'_>,
+) -> Act {
     let mut state = State::resting(world);
     let mut operator = ScriptedOperator::with_mistakes(world, &state, skill, errors.mistakes, seed);
     let mut hand = (!errors.fumbles.is_empty()).then(|| Clumsy::new(errors.fumbles.clone()));
@@ -143,7 +158,9 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
             if errors.looks {
                 operator.see(world, &state);
             }
-            step(world, &mut state, &input, part_s);
+            let mut felt = input;
+            meddle(world, &mut state, &mut felt, part_s);
+            step(world, &mut state, &felt, part_s);
         }
         if let Some(handle) = state.handle_in_world(world)
             && state.crank.rate_rad_s.abs() > 0.5
@@ -152,12 +169,7 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
                 offsets.push(contact.point_m.y - handle.y - contact.shear_m * contact.tangent().y);
             }
         }
-        if let Some(body) = state.bodies.first()
-            && state.tip_force_n[0].x.min(-state.tip_force_n[1].x) > FIRM_N
-        {
-            let place = |f: usize| input.tip_in_world[f].y - state.tip_force_n[f].y / world.pad.shear_stiffness_n_m;
-            above.push(0.5 * (place(0) + place(1)) - body.center_m.y);
-        }
+        above.extend(held_above_m(world, &state, &input));
         if count.is_multiple_of(every) {
             ticks.push(TickRecord {
                 time_s: state.time_s,
@@ -174,8 +186,16 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
     Act { ticks, held, end: state, offsets, held_above_m, bias_n }
 }
 
+/// How far above its middle the first body is held, m; nothing while it is not held firmly.
+fn held_above_m(world: &World, state: &State, input: &Input) -> Option<f64> {
+    let body = state.bodies.first()?;
+    let place = |f: usize| input.tip_in_world[f].y - state.tip_force_n[f].y / world.pad.shear_stiffness_n_m;
+    let is_firm = state.tip_force_n[0].x.min(-state.tip_force_n[1].x) > FIRM_N;
+    is_firm.then(|| 0.5 * (place(0) + place(1)) - body.center_m.y)
+}
+
 /// The block that both fingers press.
-fn held_block(world: &World, state: &State) -> Option<usize> {
+pub(crate) fn held_block(world: &World, state: &State) -> Option<usize> {
     let pressed = |finger: u8, block: usize| {
         state
             .contacts

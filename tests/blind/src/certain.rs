@@ -1,93 +1,14 @@
 //! Certain names in the presence of structured model error: how many there are, and how many are wrong.
 
-use super::effect::Effect;
+use super::counted::{Counted, Name};
 use super::interval::{Share, quantile};
 use super::score::Row;
 use super::sets::Set;
-use super::tolerated::tolerated;
 use estimator::diagnose::Verdict;
 use std::fmt::Write as _;
 
-/// A cause is certain above this posterior.
-///
-/// Choice: the odds at which a reader stops to look further.
-pub const CERTAIN: f64 = 0.95;
 /// Edges of the bins of stated posteriors.
 const BINS: [f64; 6] = [0.0, 0.2, 0.5, 0.8, 0.95, 1.0 + 1e-9];
-
-/// A named cause beside the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Name<'a> {
-    /// Its id.
-    pub id: &'a str,
-    /// Its posterior.
-    pub posterior: f64,
-    /// The verdict is `causes` and the posterior is above [`CERTAIN`].
-    pub is_certain: bool,
-    /// Hidden, or exactly equal to what is.
-    pub is_right: bool,
-    /// It describes the structure itself.
-    pub is_tolerated: bool,
-}
-
-impl Row {
-    /// The family of structured model error in this case.
-    pub fn family(&self) -> Option<Effect> {
-        self.hidden.iter().map(|(effect, _)| *effect).find(|effect| effect.is_structure())
-    }
-
-    /// All named causes, strongest first (terms without a name are none).
-    pub fn names(&self) -> Vec<Name<'_>> {
-        let (Ok(answer), ids) = (&self.answer, self.ids()) else { return Vec::new() };
-        let tolerated = self.family().map_or(&[][..], tolerated);
-        let named = answer.causes.iter().filter(|c| !c.id.starts_with("other:"));
-        named
-            .map(|c| Name {
-                id: &c.id,
-                posterior: c.posterior,
-                is_certain: answer.verdict == Verdict::Causes && c.posterior > CERTAIN,
-                is_right: ids.contains(&c.id.as_str()) || self.equals.contains(&c.id.as_str()),
-                is_tolerated: tolerated.contains(&c.id.as_str()),
-            })
-            .collect()
-    }
-
-    /// Number of certain names that are wrong, and without those that describe the structure.
-    pub fn false_certain(&self) -> [usize; 2] {
-        let names = self.names();
-        let wrong = || names.iter().filter(|n| n.is_certain && !n.is_right);
-        [wrong().count(), wrong().filter(|n| !n.is_tolerated).count()]
-    }
-
-    /// The first name is right and certain.
-    pub fn right_for_certain(&self) -> bool {
-        self.names().first().is_some_and(|n| n.is_certain && n.is_right)
-    }
-
-    /// The same, or the hidden cause is among what the answer says it could be.
-    pub fn right_or_in_set(&self) -> bool {
-        let set = self.ambiguity_set();
-        self.right_for_certain() || self.ids().iter().chain(&self.equals).any(|id| set.contains(id))
-    }
-
-    fn has_verdict(&self, verdict: Verdict) -> bool {
-        self.answer.as_ref().is_ok_and(|a| a.verdict == verdict)
-    }
-
-    /// Stated noise floor over the noise that there is.
-    pub fn floor_over_noise(&self) -> f64 {
-        self.answer.as_ref().map_or(f64::NAN, |a| a.noise_floor_n / self.noise_n)
-    }
-
-    /// Object and length in words.
-    fn task_group(&self) -> &'static str {
-        match (self.bench.is_crank(), self.seconds > 40.0) {
-            (true, false) => "cranks, 20 s",
-            (true, true) => "cranks, 60 s",
-            (false, _) => "mechanisms",
-        }
-    }
-}
 
 /// Counts of cases with structured model error and nothing else.
 #[derive(Clone, Debug)]
@@ -108,16 +29,16 @@ pub struct Alone {
 
 impl Alone {
     /// Counts.
-    pub fn of(rows: &[&Row]) -> Self {
-        let rows = || rows.iter().filter(|r| r.set == Set::Structured && !r.missed);
-        let median = |of: &dyn Fn(&Row) -> f64| quantile(&rows().map(|r| of(r)).collect::<Vec<f64>>(), 0.5);
+    pub fn of<R: Counted>(rows: &[&R]) -> Self {
+        let rows = || rows.iter().filter(|r| r.set() == Set::Structured && !r.is_missed());
+        let median = |of: &dyn Fn(&R) -> f64| quantile(&rows().map(|r| of(r)).collect::<Vec<f64>>(), 0.5);
         Self {
             false_certain: Share::count(rows(), |r| r.false_certain()[0] > 0),
             fair: Share::count(rows(), |r| r.false_certain()[1] > 0),
             ambiguous: Share::count(rows(), |r| r.has_verdict(Verdict::Ambiguous)),
             unexplained: Share::count(rows(), |r| r.has_verdict(Verdict::Unexplained)),
-            floor: median(&|r| r.floor_over_noise() / r.clean_floor),
-            floor_over_noise: [median(&|r| r.floor_over_noise()), median(&|r| r.clean_floor)],
+            floor: median(&|r| r.floor_over_noise() / r.clean_floor()),
+            floor_over_noise: [median(&|r| r.floor_over_noise()), median(&|r| r.clean_floor())],
         }
     }
 }
@@ -135,8 +56,8 @@ pub struct Beside {
 
 impl Beside {
     /// Counts.
-    pub fn of(rows: &[&Row]) -> Self {
-        let rows = || rows.iter().filter(|r| r.set == Set::Beside && !r.missed);
+    pub fn of<R: Counted>(rows: &[&R]) -> Self {
+        let rows = || rows.iter().filter(|r| r.set() == Set::Beside && !r.is_missed());
         let mean = |k: usize| rows().map(|r| r.false_certain()[k] as f64).sum::<f64>() / rows().count() as f64;
         Self {
             right: Share::count(rows(), |r| r.right_for_certain()),
@@ -147,11 +68,11 @@ impl Beside {
 }
 
 /// Tables for a person to read.
-pub fn report(rows: &[Row]) -> String {
-    let family = |r: &Row| r.family().map_or("", Effect::id).trim_start_matches("structure:").to_owned();
-    let group = |r: &Row| r.task_group().to_owned();
-    let missed = Share::count(rows, |r| r.missed);
-    let errors = Share::count(rows, |r| r.answer.is_err());
+pub fn report<R: Counted>(rows: &[R]) -> String {
+    let family = |r: &R| r.family().to_owned();
+    let group = |r: &R| r.group().to_owned();
+    let missed = Share::count(rows, R::is_missed);
+    let errors = Share::count(rows, |r| r.answer().is_err());
     let parts = [
         alone(&grouped(rows, &group)),
         alone(&grouped(rows, &family)),
@@ -165,8 +86,8 @@ pub fn report(rows: &[Row]) -> String {
 }
 
 /// Rows by a name, in the order in which the names come first; all of them at the end.
-fn grouped<'a>(rows: &'a [Row], name: &dyn Fn(&Row) -> String) -> Vec<(String, Vec<&'a Row>)> {
-    let mut groups: Vec<(String, Vec<&Row>)> = Vec::new();
+fn grouped<'a, R>(rows: &'a [R], name: &dyn Fn(&R) -> String) -> Vec<(String, Vec<&'a R>)> {
+    let mut groups: Vec<(String, Vec<&R>)> = Vec::new();
     for row in rows {
         let name = name(row);
         match groups.iter_mut().find(|(group, _)| *group == name) {
@@ -178,7 +99,7 @@ fn grouped<'a>(rows: &'a [Row], name: &dyn Fn(&Row) -> String) -> Vec<(String, V
     groups
 }
 
-fn alone(groups: &[(String, Vec<&Row>)]) -> String {
+fn alone<R: Counted>(groups: &[(String, Vec<&R>)]) -> String {
     let mut text = format!(
         "structure alone: {:<4} {:<30} {:<30} {:<30} {:<30} noise floor over clean (over noise, clean)\n",
         "", "false certain", "fair", "ambiguous", "unexplained"
@@ -193,7 +114,7 @@ fn alone(groups: &[(String, Vec<&Row>)]) -> String {
     text
 }
 
-fn beside(groups: &[(String, Vec<&Row>)]) -> String {
+fn beside<R: Counted>(groups: &[(String, Vec<&R>)]) -> String {
     let mut text = format!(
         "beside an effect:{:<4} {:<30} {:<30} false certain a case, fair\n",
         "", "right by one certain name", "or in the stated set"
@@ -208,9 +129,9 @@ fn beside(groups: &[(String, Vec<&Row>)]) -> String {
 }
 
 /// Wrong certain names, most frequent first.
-fn frequent(rows: &[Row]) -> String {
+fn frequent<R: Counted>(rows: &[R]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
-    for name in rows.iter().flat_map(Row::names).filter(|n| n.is_certain && !n.is_right && !n.is_tolerated) {
+    for name in rows.iter().flat_map(R::names).filter(|n| n.is_certain && !n.is_right && !n.is_tolerated) {
         match counts.iter_mut().find(|(id, _)| *id == name.id) {
             Some((_, count)) => *count += 1,
             None => counts.push((name.id, 1)),
@@ -222,9 +143,9 @@ fn frequent(rows: &[Row]) -> String {
 }
 
 /// Stated posteriors of names in bins: how many are right, and of those that do not describe the structure.
-pub fn bins(rows: &[Row]) -> Vec<[Share; 2]> {
-    let counted = rows.iter().filter(|r| matches!(r.set, Set::Structured | Set::Beside) && !r.missed);
-    let names: Vec<Name<'_>> = counted.flat_map(Row::names).collect();
+pub fn bins<R: Counted>(rows: &[R]) -> Vec<[Share; 2]> {
+    let counted = rows.iter().filter(|r| matches!(r.set(), Set::Structured | Set::Beside) && !r.is_missed());
+    let names: Vec<Name<'_>> = counted.flat_map(R::names).collect();
     let bin = |edge: &[f64]| {
         let there = || names.iter().filter(|n| n.posterior >= edge[0] && n.posterior < edge[1]);
         [Share::count(there(), |n| n.is_right), Share::count(there().filter(|n| !n.is_tolerated), |n| n.is_right)]
@@ -232,7 +153,7 @@ pub fn bins(rows: &[Row]) -> Vec<[Share; 2]> {
     BINS.windows(2).map(bin).collect()
 }
 
-fn calibration(rows: &[Row]) -> String {
+fn calibration<R: Counted>(rows: &[R]) -> String {
     let mut text = String::from("posterior of a name → how often it is right, fair\n");
     for (edge, [all, fair]) in BINS.windows(2).zip(bins(rows)) {
         let _ = writeln!(text, "  {:.2}–{:.2}  {:<30} {fair}", edge[0], edge[1], all.to_string());
@@ -242,33 +163,17 @@ fn calibration(rows: &[Row]) -> String {
 
 /// A case in one line: family, bench, log, rate, seconds, seed, sizes over the noise, hidden, verdict, names with posterior.
 pub fn line(r: &Row) -> String {
-    let verdict =
-        r.answer.as_ref().map_or_else(|e| format!("error: {e}"), |a| format!("{:?}", a.verdict).to_lowercase());
-    let names: Vec<String> = r
-        .names()
-        .iter()
-        .map(|n| format!("{}{} {:.3}", n.id, if n.is_right { " (right)" } else { "" }, n.posterior))
-        .collect();
     let hidden: Vec<String> = r.hidden.iter().map(|(e, form)| format!("{} ({})", e.id(), e.form(*form))).collect();
     let ratios: Vec<String> = r.ratios.iter().map(|x| format!("{x:.2}")).collect();
-    format!(
-        "{}|{}|{}|{} Hz|{:.0} s|{}|{}|{}|{verdict}|{}{}",
-        r.family().map_or("", Effect::id),
-        r.bench.name(),
-        r.log.name(),
-        r.rate_hz,
-        r.seconds,
-        r.seed,
-        ratios.join(","),
-        hidden.join(" + "),
-        names.join(", "),
-        if r.missed { "|missed" } else { "" }
-    )
+    let family = r.structure().map_or("", super::effect::Effect::id);
+    let object = format!("{}|{}|{} Hz|{:.0} s", r.bench.name(), r.log.name(), r.rate_hz, r.seconds);
+    format!("{family}|{object}|{}|{}|{}|{}", r.seed, ratios.join(","), hidden.join(" + "), r.told())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::draw::{Bench, Spec, Structure};
+    use super::super::effect::Effect;
     use super::super::plan::Log;
     use super::super::sets::Job;
     use super::*;

@@ -1,5 +1,7 @@
 //! Random functions that a seed repeats and that nobody stores: every place draws its own numbers when it is asked for.
 
+use std::f64::consts::TAU;
+
 /// Knots stand this far from their regular place at most, in knots.
 ///
 /// Choice: gaps are unequal and stay above half a knot.
@@ -43,6 +45,11 @@ pub fn noise(seed: u64, x: f64, around: Option<u32>) -> f64 {
     a + (b - a) * smooth
 }
 
+/// Value noise that begins at 0, for odd functions without a jump.
+pub fn from_rest(seed: u64, x: f64) -> f64 {
+    noise(seed, x, None) - noise(seed, 0.0, None) * (-x * x).exp()
+}
+
 /// Value noise on three scales, the finer the weaker.
 pub fn octaves(seed: u64, x: f64) -> f64 {
     (noise(seed, x, None) + 0.5 * noise(seed ^ 1, 2.3 * x, None) + 0.25 * noise(seed ^ 2, 5.1 * x, None)) / 1.15
@@ -69,6 +76,12 @@ pub fn network(seed: u64, inputs: [f64; 4]) -> f64 {
         weight(5) * sum.tanh()
     });
     units.sum::<f64>() / (UNITS as f64).sqrt()
+}
+
+/// A tone of about `hz` whose amplitude and phase wander within `period_s`.
+pub fn tone(seed: u64, hz: f64, period_s: f64, time_s: f64) -> f64 {
+    let wander = |key: u64| noise(seed + 2 * key, time_s / period_s, None);
+    (1.0 + 0.6 * wander(1)) * (TAU * hz * time_s + 1.5 * wander(2)).sin()
 }
 
 /// A staircase of uneven steps about `step` wide: the middle of the step on which `value` stands.

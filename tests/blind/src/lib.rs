@@ -8,7 +8,7 @@
 //! and load ([`plant`]) together; [`measure`] says how large the effect is beside the noise after the known model took what it could;
 //! [`case`] rescales and runs again until that is what was asked for; [`record`] and [`sensor`] make a table of it. [`sets`] draws
 //! whole batteries, [`score`] opens truth and answer, [`tables`] prints. [`structure`] has the forces that no law describes, made of the random functions
-//! in [`curve`]; [`certain`] says which names are given in their presence. A new effect needs an entry in [`effect`], a law in [`plant`]
+//! in [`curve`] and [`lag`]; [`certain`] says which names are given in their presence, for any case that is [`counted`]. A new effect needs an entry in [`effect`], a law in [`plant`]
 //! (or a fault in [`sensor`]) and a first size in [`draw`].
 //!
 //! The known part of a null case is known to the last bit: weight, load friction and viscous friction of a crank whose inertia nobody
@@ -19,6 +19,7 @@ pub mod case;
 pub mod certain;
 pub mod chance;
 pub mod clock;
+pub mod counted;
 pub mod curve;
 pub mod draw;
 pub mod dump;
@@ -27,6 +28,7 @@ pub mod follow;
 pub mod hand;
 pub mod interval;
 pub mod json;
+pub mod lag;
 pub mod measure;
 pub mod perform;
 pub mod plan;
@@ -42,6 +44,7 @@ pub mod tolerated;
 
 pub use case::{Case, Truth, make, make_followed};
 pub use chance::Chance;
+pub use counted::Counted;
 pub use draw::{Bench, Spec, Structure};
 pub use effect::Effect;
 pub use follow::Experiments;

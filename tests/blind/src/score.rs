@@ -159,16 +159,7 @@ impl Row {
 
     /// What the answer says the first cause could be: itself and what could stand in its place.
     pub fn ambiguity_set(&self) -> Vec<&str> {
-        let Ok(answer) = &self.answer else { return Vec::new() };
-        let first = self.named().first().copied();
-        let mut set: Vec<&str> = first.into_iter().collect();
-        for other in &answer.alternatives {
-            let stands_there = other.instead_of.is_empty() || Some(other.instead_of.as_str()) == first;
-            if stands_there && !set.contains(&other.id.as_str()) {
-                set.push(&other.id);
-            }
-        }
-        set
+        self.answer.as_ref().map_or_else(|_| Vec::new(), stated_set)
     }
 
     /// The hidden cause is among what the answer says it could be.
@@ -247,6 +238,19 @@ impl Row {
             Ok(_) => "none".to_owned(),
         }
     }
+}
+
+/// What an answer says its first cause could be: itself and what could stand in its place.
+pub fn stated_set(answer: &Findings) -> Vec<&str> {
+    let first = answer.causes.iter().map(|c| c.id.as_str()).find(|id| !id.starts_with("other:"));
+    let mut set: Vec<&str> = first.into_iter().collect();
+    for other in &answer.alternatives {
+        let stands_there = other.instead_of.is_empty() || Some(other.instead_of.as_str()) == first;
+        if stands_there && !set.contains(&other.id.as_str()) {
+            set.push(&other.id);
+        }
+    }
+    set
 }
 
 /// Rows that the answer itself trusts less than this are left out: there the sign of friction is a guess for everybody.

@@ -7,6 +7,7 @@ use super::chance::Chance;
 use super::curve;
 use super::draw::{Bench, Spec, Structure};
 use super::effect::Effect;
+use super::lag::{Creep, Resonance};
 use super::plan::Log;
 use super::plant::{Hidden, Instant, Loads, Plant};
 use super::sensor::Sensor;
@@ -53,10 +54,8 @@ impl Hidden {
         match self.effect {
             Effect::AngleField => smooth(self.size * self.over_place(plant, now)),
             Effect::SpeedField => {
-                // Odd, and without a jump: the knot at rest holds 0.
                 let x = now.speed.abs() / self.shape[1];
-                let rest = curve::noise(self.seed(), 0.0, None);
-                let force = curve::noise(self.seed(), x, None) - rest * (-x * x).exp();
+                let force = curve::from_rest(self.seed(), x);
                 smooth(self.size * now.speed.signum() * force)
             }
             Effect::LoadField => {
@@ -93,8 +92,7 @@ impl Hidden {
     /// A tone whose amplitude and phase wander.
     fn hum(&self, axis: u64, time_s: f64) -> f64 {
         let [_, hz, period_s] = self.shape;
-        let wander = |key: u64| curve::noise(self.seed() + 2 * key + axis, time_s / period_s, None);
-        (1.0 + 0.6 * wander(1)) * (TAU * hz * time_s + 1.5 * wander(2)).sin()
+        curve::tone(self.seed() + axis, hz, period_s, time_s)
     }
 
     /// Way from the handle to where the grasp has wandered, m: by itself, or as the pad gives way to the force in time.
@@ -111,10 +109,10 @@ impl Hidden {
 /// Traces of the past in a sensor or a pad.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wake {
-    /// The force through a slow and a slower low-pass, N.
-    slow_n: [[f64; 2]; 2],
-    /// A resonance: its two states.
-    ring: [f64; 2],
+    /// The force of the past, N.
+    creep: Creep,
+    /// A resonance.
+    ring: Resonance,
     /// Direction of the motion, and for how long it has lasted, s.
     way: (f64, f64),
     /// Number of reversals.
@@ -138,10 +136,13 @@ impl Wake {
     pub fn follow(&mut self, hidden: &Hidden, push: &Push) -> [f64; 2] {
         match hidden.effect {
             Effect::SensorCreep => {
-                let slow = self.creep(hidden.shape[0], push);
-                if hidden.form == 0 { slow[0] } else { [0, 1].map(|k: usize| 0.5 * (slow[0][k] + slow[1][k])) }
+                self.creep.follow(push.force_n, hidden.shape[0], push.step_s);
+                self.creep.past(hidden.form)
             }
-            Effect::GraspCreep => self.creep(hidden.shape[2], push)[0],
+            Effect::GraspCreep => {
+                self.creep.follow(push.force_n, hidden.shape[2], push.step_s);
+                self.creep.past(0)
+            }
             Effect::Ringing => {
                 let now = self.resonate(hidden, push);
                 push.along.map(|d| d * now)
@@ -150,32 +151,20 @@ impl Wake {
         }
     }
 
-    fn creep(&mut self, memory_s: f64, push: &Push) -> [[f64; 2]; 2] {
-        for (slow, longer) in self.slow_n.iter_mut().zip([1.0, 5.0]) {
-            for (slow, now) in slow.iter_mut().zip(push.force_n) {
-                *slow += push.step_s / (longer * memory_s) * (now - *slow);
-            }
-        }
-        self.slow_n
-    }
-
     /// Each reversal strikes the resonance: by chance, or the harder the longer the motion had gone the other way.
     fn resonate(&mut self, hidden: &Hidden, push: &Push) -> f64 {
         let [seed, hz, decay_s] = hidden.shape;
-        let (sin, cos) = (TAU * hz * push.step_s).sin_cos();
-        let keep = 1.0 - push.step_s / decay_s;
-        let [x, y] = self.ring;
-        self.ring = [keep * (cos * x - sin * y), keep * (sin * x + cos * y)];
+        self.ring.swing(hz, decay_s, push.step_s);
         self.way.1 += push.step_s;
         let way = push.speed.signum();
         if push.speed.abs() > TURNED && way * self.way.0 <= 0.0 {
             let hard =
                 if hidden.form == 0 { 1.0 + 0.4 * curve::unit(seed as u64, self.turns) } else { self.way.1.min(1.5) };
-            self.ring[0] += way * hard;
+            self.ring.strike(way * hard);
             self.way = (way, 0.0);
             self.turns += 1;
         }
-        self.ring[1]
+        self.ring.value()
     }
 }
 

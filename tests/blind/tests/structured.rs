@@ -2,7 +2,7 @@
 
 use blind::certain::{Alone, Beside};
 use blind::sets::{StructureCounts, structured};
-use blind::{Row, Share, ask};
+use blind::{Counted, Row, Share, ask};
 use estimator::diagnose::{Verdict, diagnose};
 
 /// A seed on which nothing was chosen.

@@ -77,9 +77,9 @@ impl Kind {
 }
 
 /// Fine steps between two ticks that are kept.
-const KEPT: usize = 5;
+pub(super) const KEPT: usize = 5;
 
-fn skill(chance: &mut Chance, kind: Kind) -> Skill {
+pub(super) fn skill(chance: &mut Chance, kind: Kind) -> Skill {
     let pace = if kind == Kind::Fast { chance.between(0.6, 0.85) } else { chance.between(0.8, 1.3) };
     Skill {
         pace,
@@ -136,7 +136,7 @@ pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
 }
 
 /// Friction at which nothing slips.
-const FIRM: f64 = 1.5;
+pub(super) const FIRM: f64 = 1.5;
 
 /// The blocks of a case, and who holds them.
 struct Object {
@@ -208,7 +208,7 @@ fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) 
 }
 
 /// The world as another recording without anything hidden shows it.
-fn calibrated(world: &World, seed: u64, chance: &mut Chance) -> World {
+pub(super) fn calibrated(world: &World, seed: u64, chance: &mut Chance) -> World {
     let done = perform(world, Skill { wander: 2.0, ..Skill::default() }, seed ^ 0xca11);
     let recording = look(world, &done.ticks, 1, &Instruments::default(), Task::BlockStack, chance);
     pipeline::analyse(&[recording], &pipeline::Options::default()).expect("blocks were carried").world

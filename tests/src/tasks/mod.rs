@@ -9,7 +9,9 @@ pub mod needle;
 pub mod perform;
 pub mod score;
 pub mod sensor;
+pub mod sheet;
 pub mod slide;
+pub mod structured;
 pub mod switch;
 pub mod throw;
 

@@ -2,6 +2,7 @@
 //! world's.
 
 use super::sensor::{Instruments, look};
+use super::sheet::{Plan, Sheet, perform};
 use super::{Case, Truth};
 use crate::generate::{Errors, act};
 use blind::Chance;
@@ -9,7 +10,7 @@ use estimator::diagnose::{Experiment, Options};
 use estimator::pipeline;
 use haptics::Vec2;
 use haptics::device::Skill;
-use haptics::recording::{Channel, Meta, Recording, Task};
+use haptics::recording::{Recording, Task};
 use haptics::world::{World, presets};
 
 /// What is hidden.
@@ -97,52 +98,10 @@ pub fn as_asked(kind: Kind, seed: u64, asked: &Experiment, by: u64) -> Option<Re
     Some(perform(&sheet, drift_n_s, &wanted, &mut chance))
 }
 
-/// What the tool meets.
-struct Sheet {
-    stiffness_n_m: f64,
-    cubic_n_m3: f64,
-    dent: f64,
-    puncture_n: [f64; 2],
-    dry_n: [f64; 2],
-    drag_n_s_m: f64,
-    /// Dry friction by length in the hole.
-    dry_n_m: f64,
-    /// More of it: where, within how far, and how much at most.
-    catch: (f64, f64, f64),
-    /// By how much the force comes late, s.
-    late_s: f64,
-}
-
-impl Sheet {
-    fn elastic_n(&self, x: f64) -> f64 {
-        self.stiffness_n_m * x + self.cubic_n_m3 * x.powi(3)
-    }
-}
-
-/// A way through turning points (time, place): smooth, or at an even speed between them.
-fn way(t: f64, turns: &[(f64, f64)], is_even: bool) -> f64 {
-    let k = turns.partition_point(|(at, _)| *at <= t);
-    let (Some(&(t0, from)), Some(&(t1, to))) = (k.checked_sub(1).and_then(|k| turns.get(k)), turns.get(k)) else {
-        return if k == 0 { turns[0].1 } else { turns[turns.len() - 1].1 };
-    };
-    let s = (t - t0) / (t1 - t0);
-    from + (to - from) * if is_even { s } else { s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s) }
-}
-
 /// With the sheet and the drift.
 fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
     let mut truth = Truth::default();
-    let mut sheet = Sheet {
-        stiffness_n_m: chance.between(120.0, 500.0),
-        cubic_n_m3: 0.0,
-        dent: 0.0,
-        puncture_n: [chance.between(0.9, 2.0); 2],
-        dry_n: [0.0; 2],
-        drag_n_s_m: 0.0,
-        dry_n_m: 0.0,
-        catch: (0.0, 1.0, 0.0),
-        late_s: 0.0,
-    };
+    let mut sheet = Sheet::plain(chance);
     let mut drift_n_s = 0.0;
     match kind {
         Kind::Hardening => {
@@ -206,16 +165,8 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
     (Case { recordings, options: Options::default() }, truth, (sheet, drift_n_s))
 }
 
-/// Where the tool is wanted: along its way in, and across.
-struct Plan {
-    turns: Vec<(f64, f64)>,
-    cross: Vec<(f64, f64)>,
-    /// A stand does it: at an even speed, without a tremor.
-    is_even: bool,
-}
-
 /// In a little, back, through, to and fro in the hole at two speeds, out; the same at another place.
-fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
+pub fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
     let through = |force: f64| {
         let mut x = 0.0;
         while sheet.elastic_n(x) < force {
@@ -250,24 +201,6 @@ fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
         turns.push((at + 1.0, outside));
     }
     Plan { turns, cross, is_even: false }
-}
-
-impl Sheet {
-    /// Dry friction of a hole at a depth, N.
-    fn dry_at_n(&self, place: usize, x: f64) -> f64 {
-        let (at, within, most_n) = self.catch;
-        let aside = ((x - at) / within).abs().min(1.0);
-        self.dry_n[place] + self.dry_n_m * x + most_n * (1.0 - aside * aside).powi(2)
-    }
-
-    /// How deep it is pushed in when it gives way the first time, m.
-    fn deep_m(&self) -> f64 {
-        let mut x = 0.0;
-        while self.elastic_n(x) < self.puncture_n[0] {
-            x += 1e-6;
-        }
-        x
-    }
 }
 
 /// Through once, and to and fro in the hole, all at one speed.
@@ -308,70 +241,6 @@ fn follow(asked: &Experiment, chance: &mut Chance) -> Option<Plan> {
         turns.push((at + 1.0, -4e-3));
     }
     (turns.len() > 2).then_some(Plan { turns, cross, is_even: false })
-}
-
-/// The sheet under the tool, and what its instruments read.
-fn perform(sheet: &Sheet, drift_n_s: f64, plan: &Plan, chance: &mut Chance) -> Recording {
-    const FINE_S: f64 = 5e-5;
-    let rate_hz = chance.pick(&[250.0, 500.0, 1000.0]);
-    let every = (1.0 / (rate_hz * FINE_S)).round() as usize;
-    let Plan { turns, cross, is_even } = plan;
-    let tremor_m = if *is_even { 0.0 } else { 4e-5 };
-    let end_s = turns[turns.len() - 1].0 + 0.5;
-    let surface_m = chance.between(-0.02, 0.02);
-    let bias = 0.03 * chance.normal();
-    let phase = chance.between(0.0, 6.0);
-    let (mut deepest, mut pierced, mut site, mut place) = (0.0_f64, false, 0_usize, 0_usize);
-    let (mut time, mut depth, mut side) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut felt, mut force): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut before = turns[0].1;
-    for fine in 0..(end_s / FINE_S) as usize {
-        let t = fine as f64 * FINE_S;
-        let across = way(t, cross, false);
-        let here = (across / 8e-3).round() as usize;
-        if here != site {
-            (site, place, deepest, pierced) = (here, here.min(1), 0.0, false);
-        }
-        let x = way(t, turns, *is_even) + tremor_m * (50.0 * t + phase).sin();
-        let speed = (x - before) / FINE_S;
-        before = x;
-        let mut f = 0.0;
-        if pierced && x > 0.0 {
-            // Rational in the speed: no kink at rest.
-            f = sheet.dry_at_n(place, x) * speed / (speed * speed + 1e-8).sqrt() + sheet.drag_n_s_m * speed;
-        } else if x > 0.0 {
-            let left = sheet.dent * deepest;
-            f = if x >= deepest {
-                sheet.elastic_n(x)
-            } else {
-                sheet.elastic_n(deepest) * ((x - left) / (deepest - left)).max(0.0)
-            };
-            deepest = deepest.max(x);
-            pierced = f >= sheet.puncture_n[place];
-        }
-        if fine % every == 0 {
-            time.push(t);
-            depth.push(((surface_m + x + 1e-5 * chance.normal()) / 5e-6).round() * 5e-6);
-            side.push(across + 1e-5 * chance.normal());
-            felt.push(f);
-            force.push(bias + drift_n_s * t + 0.01 * chance.normal());
-        }
-    }
-    let late = (sheet.late_s * rate_hz).round() as usize;
-    for (i, read) in force.iter_mut().enumerate() {
-        *read = ((*read + felt[i.saturating_sub(late)]) / 1e-3).round() * 1e-3;
-    }
-    let still: Vec<f64> = force.iter().map(|_| 0.01 * chance.normal()).collect();
-    let down = |values: Vec<f64>| values.into_iter().map(|v| -v).collect::<Vec<f64>>();
-    let channels = [("x_m", side), ("y_m", down(depth)), ("fx_N", still), ("fy_N", down(force))];
-    let unit = |name: &str| if name.starts_with('f') { "N" } else { "m" }.to_owned();
-    Recording {
-        name: "case".to_owned(),
-        time_s: Some(time),
-        channels: channels.map(|(name, values)| Channel { name: name.to_owned(), unit: unit(name), values }).to_vec(),
-        meta: Meta { task: Some(Task::Needle), ..Meta::default() },
-        ..Recording::default()
-    }
 }
 
 fn hand(kind: Kind, seed: u64, chance: &mut Chance) -> (Case, Truth) {
