@@ -80,6 +80,8 @@ pub(crate) struct DelayFindings {
     pub guess_s: Option<f64>,
     /// Figures of the channel that shows the delay, if the published ones may be of another channel.
     pub figures: Option<Figures>,
+    /// Evidence of the model of its channel beside structured errors, and number of rows.
+    pub whole: Option<[f64; 2]>,
 }
 
 impl DelayFindings {
@@ -90,6 +92,7 @@ impl DelayFindings {
             rest_s: Some([late.tau_s, late.error_s]),
             guess_s: late.is_seen.then_some(late.tau_s),
             figures: Some(figures),
+            whole: None,
         }
     }
 }

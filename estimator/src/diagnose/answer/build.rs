@@ -141,7 +141,7 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let findings = Findings {
         diagnosis: Diagnosis { residuals, model_error, warnings, ..Diagnosis::default() },
         kept: parts.iter().filter(|p| p.role != Role::Path).flat_map(|p| of_study(p.channel, p.study)).collect(),
-        delay: evidence.delay,
+        delay: DelayFindings { whole: parts.first().and_then(Part::evidence), ..evidence.delay },
         skew_s: evidence.skew_s,
         hypotheses: of_channels(&simulated),
         atlas: Atlas { channels: atlas, ..Atlas::default() },

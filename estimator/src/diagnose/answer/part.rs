@@ -2,7 +2,7 @@
 
 use super::atlas::{Against, Channel, strongest};
 use crate::diagnose::contract::{Baseline, CauseParameter, Final, ModelError, NotExcited, OverVariable, Residual};
-use crate::diagnose::data::limits::{HALF, SURE};
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::extension::hypothetical_worlds::Simulated;
 use crate::diagnose::findings::Figures;
 use crate::diagnose::free_run::FreeRun;
@@ -208,6 +208,11 @@ impl<'a> Part<'a> {
         Some(ModelError { rms_n: competition.rms, rms_nm: None, evidence: competition.evidence, share, over })
     }
 
+    /// Evidence of the whole model beside structured errors, and number of its rows.
+    pub fn evidence(&self) -> Option<[f64; 2]> {
+        self.study.competition.as_ref().map(|c| c.whole)
+    }
+
     /// Ids of the causes if structured errors have more power than all of them.
     pub fn outweighed(&self) -> Vec<String> {
         let outweighs = self.study.competition.as_ref().is_some_and(|c| c.share > HALF);
@@ -218,8 +223,7 @@ impl<'a> Part<'a> {
     /// Sentence on a structured error beyond doubt.
     pub fn structured(&self) -> Option<String> {
         let competition = self.study.competition.as_ref()?;
-        let is_large = competition.rms > HALF * self.floor && 2.0 * competition.evidence > SURE;
-        let is_told = self.role != Role::Path && is_large;
+        let is_told = self.role != Role::Path && competition.matters(self.floor);
         is_told.then(|| {
             let mut over: Vec<&str> = Vec::new();
             for (variable, _) in &competition.over {

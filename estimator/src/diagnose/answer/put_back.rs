@@ -1,11 +1,12 @@
 //! Delay of the forces that was corrected before a comparison, as evidence for its answer.
 
 use super::named::Named;
-use crate::diagnose::contract::{Baseline, Cause, Gain, parameter};
+use crate::diagnose::contract::{Baseline, Cause, Gain, Standing, parameter};
 use crate::diagnose::data::limits::HALF;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::free_run::windows::PUT_BACK;
 use crate::diagnose::hypotheses::time_delay::ID;
+use crate::diagnose::selection::rules::Rules;
 use haptics::law::Kind;
 
 /// Shift of the forces before a comparison, and the answer without it.
@@ -61,10 +62,20 @@ impl PutBack<'_> {
         if cause.gain.rollout.is_none() {
             cause.gain.no_rollout = Some(PUT_BACK.to_owned());
         }
-        // Along a coordinate, a shift that only the scan found may also be a lag: presliding, or samples that were held.
-        let scanned = if self.first.delay.figures.is_some() { 1.0 } else { HALF };
-        cause.posterior = before_posterior.unwrap_or(scanned);
+        cause.posterior = before_posterior.unwrap_or_else(|| self.probability(remaining));
         cause
+    }
+
+    /// Probability of a shift that only the scan found: by the evidence of the model after it against that of the model
+    /// before it, in which structured errors can take its place. Along a coordinate it may also be a lag: presliding, or
+    /// samples that were held.
+    fn probability(&self, after: &DelayFindings) -> f64 {
+        let most = if self.first.delay.figures.is_some() { 1.0 } else { HALF };
+        let Some(([before, rows_before], [after, rows])) = self.first.delay.whole.zip(after.whole) else { return most };
+        let rules = Rules::of_channel(self.period_s);
+        let ln_bayes_factor = rows.min(rows_before) * (after / rows - before / rows_before) - rules.unlikely;
+        let standing = Standing { ln_bayes_factor, share: f64::INFINITY, held_out_evidence: f64::INFINITY };
+        most.min(standing.probability(&Gain { no_share: Some(String::new()), ..Gain::default() }, &rules))
     }
 }
 

@@ -28,3 +28,23 @@ pub enum Variable {
     /// Load at the output of a transmission.
     Load,
 }
+
+impl Variable {
+    /// Its name in a sentence.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Place => "position",
+            Self::Velocity => "speed",
+            Self::Acceleration => "acceleration",
+            Self::Across => "force across the motion",
+            Self::Force => "force",
+            Self::ForceRate => "rate of the force",
+            Self::Time => "time",
+            Self::Grip => "grip force",
+            Self::Lift => "lift force",
+            Self::Width => "width of the grip",
+            Self::Depth => "depth",
+            Self::Load => "load",
+        }
+    }
+}

@@ -161,8 +161,10 @@ impl<'a> Round<'a> {
         let mut over: Vec<(&'static str, f64)> = Vec::new();
         for e in rivals.discrepancies.iter().filter(|e| best.used.iter().any(|(u, _)| u == *e)) {
             let mut own = vec![0.0; rows];
-            for (column, value) in rivals.products.values_of(&best, *e) {
-                own.iter_mut().zip(raw[study.baseline.len() + column]).for_each(|(o, c)| *o += value * c);
+            let values = rivals.products.values_of(&best, *e);
+            let values = values.into_iter().map(|(column, value)| (study.baseline.len() + column, value)).collect();
+            for (column, value) in rivals.products.beside_base(values) {
+                own.iter_mut().zip(raw[column]).for_each(|(o, c)| *o += value * c);
             }
             over.push((discrepancies[e - picks.len()].over, rms(&own, &study.layout.weight)));
             sum.iter_mut().zip(&own).for_each(|(s, o)| *s += o);
@@ -180,6 +182,7 @@ impl<'a> Round<'a> {
             error: sum,
             over,
             evidence,
+            whole: [rivals.score(&best), rivals.products.freedom()],
             share,
             used: used.collect(),
             coefficients: Vec::new(),
@@ -214,12 +217,12 @@ fn rms(values: &[f64], weight: &[f64]) -> f64 {
     (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
 }
 
-/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays,
-/// at most so often. Values and figures stay those of the model with its causes alone, which a world can have.
-pub fn settle(mut study: ChannelFit, errors: &[Discrepancy], most: usize) -> ChannelFit {
+/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays.
+/// Values and figures stay those of the model with its causes alone, which a world can have.
+pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
     let mut found = compete(&study, errors);
     let mut plain = None;
-    for _ in 0..most {
+    for _ in 0..MOST_ROUNDS {
         let before = study.picks();
         let Some(system) = found.as_ref().and_then(|found| beside(&study, found, errors)) else { break };
         study.chosen = Stepwise::new(&system, &study.candidates, &study.rules).run(&before);

@@ -87,6 +87,11 @@ impl Products {
         Some(Self { gram, whole, factor, freedom: (rows - base as f64).max(1.0), elements })
     }
 
+    /// Effective number of rows less the number of the model's regressors.
+    pub fn freedom(&self) -> f64 {
+        self.freedom
+    }
+
     fn target(&self) -> usize {
         self.gram.ncols() - 1
     }
@@ -232,12 +237,27 @@ impl Products {
     /// Coefficients of all columns in use: those of the base, refitted beside the elements, and those of the elements.
     /// Indices are those of the whole matrix.
     pub fn values(&self, model: &Fitted) -> Vec<(usize, f64)> {
-        let (base, target) = (self.factor.l_dirty().nrows(), self.whole.ncols() - 1);
-        let own: Vec<(usize, f64)> =
-            self.columns(&model.used).into_iter().zip(&model.mean).map(|(c, m)| (base + c, *m)).collect();
-        let taken = |i: usize| own.iter().map(|(c, m)| self.whole[(i, *c)] * m).sum::<f64>();
-        let right = DVector::from_fn(base, |i, _| self.whole[(i, target)] - taken(i));
-        self.factor.solve(&right).iter().copied().enumerate().chain(own).collect()
+        let of_elements = self.columns(&model.used).into_iter().zip(model.mean.iter().copied());
+        let own: Vec<(usize, f64)> = of_elements.map(|(c, m)| (self.base() + c, m)).collect();
+        let without: Vec<(usize, f64)> =
+            own.iter().map(|(c, m)| (*c, -m)).chain([(self.base() + self.target(), 1.0)]).collect();
+        self.along_base(&without).into_iter().enumerate().chain(own).collect()
+    }
+
+    /// A sum of columns less its part along the model's regressors. Indices are those of the whole matrix.
+    pub fn beside_base(&self, sum: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
+        let along = self.along_base(&sum);
+        along.into_iter().map(|v| -v).enumerate().chain(sum).collect()
+    }
+
+    fn base(&self) -> usize {
+        self.factor.l_dirty().nrows()
+    }
+
+    /// Coefficients of the model's regressors that fit a sum of columns best.
+    fn along_base(&self, sum: &[(usize, f64)]) -> Vec<f64> {
+        let right = DVector::from_fn(self.base(), |i, _| sum.iter().map(|(c, v)| self.whole[(i, *c)] * v).sum::<f64>());
+        self.factor.solve(&right).iter().copied().collect()
     }
 }
 

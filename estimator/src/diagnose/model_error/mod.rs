@@ -2,6 +2,7 @@
 
 pub(crate) mod competition;
 pub(crate) mod evidence;
+pub(crate) mod of_channel;
 pub(crate) mod of_coordinate;
 pub(crate) mod of_path;
 pub(crate) mod smooth;

@@ -7,13 +7,13 @@ use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Terms of a function of one variable.
 /// Choice: halved, 117 of 244 answers change (1 to right); doubled, 173 of 374 answers change (1 to wrong).
-const TERMS: usize = 12;
+pub(super) const TERMS: usize = 12;
 /// Terms of a function of time or of several variables.
 /// Choice: halved, 81 of 374 answers change (1 to right); doubled, 49 of 374 answers change.
-const MANY_TERMS: usize = 64;
+pub(super) const MANY_TERMS: usize = 64;
 /// Lags of creep and relaxation, s: from the filter of a sensor to the rest between two motions.
 /// Choice: halved, 44 of 374 answers change (1 to right); doubled, 42 of 374 answers change.
-const CREEP_LAGS_S: Axis = Axis::geometric(0.1, 8.0, 5);
+pub(super) const CREEP_LAGS_S: Axis = Axis::geometric(0.1, 8.0, 5);
 
 /// All discrepancies of the rows of a comparison.
 pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {

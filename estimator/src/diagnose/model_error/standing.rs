@@ -1,7 +1,7 @@
 //! Standing of the causes of a channel beside structured errors.
 
 use crate::diagnose::contract::{Gain, Standing};
-use crate::diagnose::data::limits::HALF;
+use crate::diagnose::data::limits::{HALF, SURE};
 use crate::diagnose::selection::rules::Rules;
 
 impl Standing {
@@ -30,10 +30,19 @@ pub struct Competition {
     pub over: Vec<(&'static str, f64)>,
     /// Evidence of all discrepancies together beside the causes, ln(likelihood) less their penalties.
     pub evidence: f64,
+    /// Evidence of the whole model, ln(likelihood) less its penalties, and the effective number of its rows.
+    pub whole: [f64; 2],
     /// Power of the discrepancies as a share of theirs and that of the causes.
     pub share: f64,
     /// Discrepancies of the best model with the variances of their coefficients beside that of the noise.
     pub used: Vec<(usize, f64)>,
     /// Autoregression of the noise that the best model leaves.
     pub coefficients: Vec<f64>,
+}
+
+impl Competition {
+    /// True if the discrepancies are of a size that matters beside this noise, beyond doubt.
+    pub fn matters(&self, floor: f64) -> bool {
+        self.rms > HALF * floor && 2.0 * self.evidence > SURE
+    }
 }

@@ -21,6 +21,13 @@ pub struct Compared {
     pub view: View,
 }
 
+impl Compared {
+    /// Structured errors of a size that matters, beyond doubt.
+    pub fn structured(&self) -> Option<&Competition> {
+        self.study.competition.as_ref().filter(|c| c.matters(self.floor))
+    }
+}
+
 /// Rows of a channel, with the variables of their plots.
 pub struct View {
     /// Recording of each row. Empty if all are shown together.
@@ -90,6 +97,13 @@ impl ChannelFit {
     /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.chosen.iter().any(|c| self.candidates[c.candidate].id == id)
+    }
+
+    /// Reduces the share of a cause that rests on another channel by the share of that channel's structured errors.
+    pub fn discount(&mut self, id: &str, other: &Competition) {
+        let own = self.chosen.iter().map(|c| self.candidates[c.candidate].id == id);
+        let standings = self.competition.iter_mut().flat_map(|c| &mut c.causes);
+        standings.zip(own).filter(|(_, is)| *is).for_each(|(standing, _)| standing.share *= 1.0 - other.share);
     }
 
     /// Evidence of single candidates.

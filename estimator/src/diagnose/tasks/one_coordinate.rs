@@ -78,7 +78,7 @@ pub fn beside_errors(track: &Track, study: ChannelFit) -> ChannelFit {
         return study;
     }
     let errors = of_coordinate::discrepancies(track, &study);
-    settle(study, &errors, REFINEMENTS)
+    settle(study, &errors)
 }
 
 /// A comparison on a track, with what is common to all rounds.

@@ -10,6 +10,7 @@ use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -118,11 +119,16 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let floor_m = white_noise(&y);
     let along = vec![true; n];
     let layout = Layout::of(rows.stretch.clone(), &along, period_s);
-    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
-    let pads = Pads { time_s: rows.time_s, stretch: rows.stretch, period_s, rate };
     let (channel, state) = ("distance of the tips", rows.state);
-    let over = vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
+    let time = (Variable::Time, rows.time_s.clone());
+    let over = vec![time, (Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
     let view = View::of(rows.recording, over, best_seen);
+    let study = beside_errors(
+        &view,
+        &[Variable::Grip, Variable::Width],
+        Channel::new(y, base, candidates, layout, rules).fit()?,
+    );
+    let pads = Pads { time_s: rows.time_s, stretch: rows.stretch, period_s, rate };
     let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
     Ok(Some(Grasp { compared, means, modelled, pads }))
 }

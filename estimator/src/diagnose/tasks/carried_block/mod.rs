@@ -63,7 +63,8 @@ pub fn blocks(
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
         let scaled = grasp.as_ref().is_some_and(|g| g.has(length_scale::ID));
-        regrasped(ground, &seen, world, scaled || carry.has(force_cross_axis::ID), &mut beside);
+        let faulty = scaled || carry.has(force_cross_axis::ID) || carry.compared.structured().is_some();
+        regrasped(ground, &seen, world, faulty, &mut beside);
     }
     unseen(&seen, &mut beside.not_excited);
     let mut parts = vec![Part::of(&carry.compared, &carry).running(FreeRun::Channel(&carry.airborne)).in_world(&carry)];
@@ -107,11 +108,15 @@ fn look<'a>(
     let carry = net_force::carry(seen, world, rules)?;
     let grasp = grip_width::grasp(seen, world, rules)?;
     // A block with a taut cable is supported by more than the ground.
-    let ground = if carry.has(added_constraint::ID) {
+    let mut ground = if carry.has(added_constraint::ID) {
         None
     } else {
         standing_height::ground(seen, world, carry.cross(), rules)?
     };
+    if let Some((ground, errors)) = ground.as_mut().zip(carry.compared.structured()) {
+        // The net force dates the rests. Its structured errors displace contacts, which looks like a slip.
+        ground.compared.study.discount(fingertip_slip::ID, errors);
+    }
     Ok((carry, grasp, ground))
 }
 

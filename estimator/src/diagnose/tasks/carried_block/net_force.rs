@@ -19,6 +19,7 @@ use crate::diagnose::hypotheses::{
     added_constraint, force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change,
     viscous_friction,
 };
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
@@ -77,7 +78,12 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     candidates.extend(cables);
     candidates.extend(generic(&rows));
     let layout = Layout::of(rows.stretch.clone(), &testable, rows.period_s()).weighted(weight);
-    let study = beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?;
+    let view = view(&rows);
+    let study = beside_errors(
+        &view,
+        &[Variable::Lift],
+        beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?,
+    );
     let floor = floor(&rows, &study);
     let cable_errors = errors(&rows, &study);
     let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
@@ -86,7 +92,7 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
     let late = late(&rows, &known);
-    let compared = Compared { study, channel, unit: "N", floor, along, state, view: view(&rows) };
+    let compared = Compared { study, channel, unit: "N", floor, along, state, view };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     let airborne = Airborne::of(rows, world, known);
     Ok(Carry { late, compared, longest_s, cable_errors, weighed, airborne })

@@ -11,6 +11,7 @@ use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -85,13 +86,13 @@ pub fn ground(
     let along: Vec<bool> = (0..n).map(|i| since(i) >= RESTS_NEVER_HELD_OUT && since(i) % HELD_OUT_RESTS == 0).collect();
     let layout = Layout { time_s: spread(&along), ..Layout::of(stretch, &along, period_s) };
     let floor_m = white_noise(&rows.height_m);
-    let study = Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?;
-    let ways = ways(&rows, &stands, &model, &study);
-    let channel = "height of the grip over the ground";
     let over = vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())];
     let recording = rows.stand.iter().map(|s| stands[*s].recording).collect();
     // Each rest has a height of its own.
     let view = View { sensor: rows.stand.clone(), ..View::of(recording, over, best_seen) };
+    let study = beside_errors(&view, &[], Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?);
+    let ways = ways(&rows, &stands, &model, &study);
+    let channel = "height of the grip over the ground";
     let state = vec![SystemState::HoldOnGround; n];
     let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
     Ok(Some(Ground { compared, stands, rows, ways }))
@@ -183,7 +184,9 @@ impl Ground {
             give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
         }
         let own = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]);
-        mean_and_error(&own.collect::<Vec<f64>>())
+        let (mean, error) = mean_and_error(&own.collect::<Vec<f64>>());
+        let structured = self.compared.study.competition.as_ref().map_or(0.0, |c| c.rms);
+        (mean, error.hypot(structured))
     }
 }
 

@@ -19,6 +19,7 @@ use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
     viscous_friction,
 };
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Layout;
@@ -222,11 +223,11 @@ pub fn shaft<'a>(
     let channel = Channel::new(y, base, Vec::new(), layout, rules);
     let grid = Grid::coarse(&track);
     let mut closer = Closer { channel, track: &track, asked: &asked, grid, first_n: dry_n, dry_n };
-    let study = refined(&mut closer, HOLE_REFINEMENT.values().count())?;
+    let view = super::sheet::view(&rows);
+    let study = beside_errors(&view, &[], refined(&mut closer, HOLE_REFINEMENT.values().count())?);
     let beside_n = closer.dry_n;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    let view = super::sheet::view(&rows);
     let sliding = Sliding { needle, law, rows, track, dry_n: beside_n };
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, state, view };
     Ok(Some(Shaft { compared, model, dry_n, sliding }))

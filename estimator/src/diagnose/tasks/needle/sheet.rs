@@ -13,6 +13,7 @@ use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
 };
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
@@ -191,13 +192,13 @@ pub fn sheet<'a>(needle: &'a Needle, law: Option<&'a MembraneLaw>, rules: Rules)
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let weight = vec![said_by_a_row(needle, &rows, &base, &candidates)?; y.len()];
     let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
-    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
     let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
     let view = View {
         // Rows on the sheet are apart from those of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
+    let study = beside_errors(&view, &[Variable::Depth], Channel::new(y, base, candidates, layout, rules).fit()?);
     let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state, view };
     Ok(Sheet { compared, pressed: Pressed { needle, law, rows } })
 }
