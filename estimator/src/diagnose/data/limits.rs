@@ -28,6 +28,9 @@ pub(crate) const FEWEST: usize = 3;
 /// Time step, in row periods, from which rows are missing.
 /// Choice: halved, 13 of 36 answers change; doubled, 1 of 36 answers change (1 to right).
 pub(crate) const GAP_IN_PERIODS: f64 = 1.6;
+/// Most rounds of refinement of searched values, of the sensor's faults, and of a choice beside structured errors.
+/// Choice: halved, 2 of 48 answers change (1 to right); doubled, 0 of 48 answers change.
+pub(crate) const REFINEMENTS: usize = 2;
 /// Most rounds of a loop that ends by itself when nothing changes.
 /// Choice: halved, 4 of 90 answers change; doubled, 3 of 90 answers change.
 pub(crate) const MOST_ROUNDS: usize = 8;

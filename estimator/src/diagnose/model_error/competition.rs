@@ -7,7 +7,7 @@ use super::evidence::{Element, Fitted, Prior, Products};
 use super::smooth::Discrepancy;
 use super::standing::Competition;
 use crate::diagnose::contract::Standing;
-use crate::diagnose::data::limits::{HALF, MOST_ROUNDS};
+use crate::diagnose::data::limits::{HALF, MOST_ROUNDS, REFINEMENTS};
 use crate::diagnose::selection::channel::leave_out_what_is_unsure;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::gram::gram;
@@ -157,17 +157,22 @@ impl<'a> Round<'a> {
             standing.held_out_evidence = confirmed(study, k);
         }
         let rows = study.layout.rows();
-        let mut sum = vec![0.0; rows];
+        // The sum of the discrepancies, and its part that the model's regressors cannot fit.
+        let (mut sum, mut beside) = (vec![0.0; rows], vec![0.0; rows]);
+        let added = |to: &mut [f64], values: &[(usize, f64)]| {
+            for (column, v) in values {
+                to.iter_mut().zip(raw[*column]).for_each(|(t, c)| *t += v * c);
+            }
+        };
         let mut over: Vec<(&'static str, f64)> = Vec::new();
         for e in rivals.discrepancies.iter().filter(|e| best.used.iter().any(|(u, _)| u == *e)) {
-            let mut own = vec![0.0; rows];
             let values = rivals.products.values_of(&best, *e);
-            let values = values.into_iter().map(|(column, value)| (study.baseline.len() + column, value)).collect();
-            for (column, value) in rivals.products.beside_base(values) {
-                own.iter_mut().zip(raw[column]).for_each(|(o, c)| *o += value * c);
-            }
+            let values: Vec<_> = values.into_iter().map(|(column, v)| (study.baseline.len() + column, v)).collect();
+            added(&mut sum, &values);
+            let mut own = vec![0.0; rows];
+            added(&mut own, &rivals.products.beside_base(values));
             over.push((discrepancies[e - picks.len()].over, rms(&own, &study.layout.weight)));
-            sum.iter_mut().zip(&own).for_each(|(s, o)| *s += o);
+            beside.iter_mut().zip(&own).for_each(|(b, o)| *b += o);
         }
         over.sort_by(|a, b| b.1.total_cmp(&a.1));
         let causes: Vec<usize> = (0..picks.len()).collect();
@@ -178,7 +183,7 @@ impl<'a> Round<'a> {
         let used = best.used.iter().filter(|(e, _)| *e >= picks.len()).map(|(e, v)| (e - picks.len(), v / best.noise));
         Some(Competition {
             causes: standings,
-            rms: rms(&sum, &study.layout.weight),
+            rms: rms(&beside, &study.layout.weight),
             error: sum,
             over,
             evidence,
@@ -217,12 +222,12 @@ fn rms(values: &[f64], weight: &[f64]) -> f64 {
     (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
 }
 
-/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays.
-/// Values and figures stay those of the model with its causes alone, which a world can have.
+/// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays,
+/// for a few rounds. Values and figures stay those of the model with its causes alone, which a world can have.
 pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
     let mut found = compete(&study, errors);
     let mut plain = None;
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..REFINEMENTS {
         let before = study.picks();
         let Some(system) = found.as_ref().and_then(|found| beside(&study, found, errors)) else { break };
         study.chosen = Stepwise::new(&system, &study.candidates, &study.rules).run(&before);

@@ -7,10 +7,12 @@ use crate::diagnose::selection::rules::Rules;
 impl Standing {
     /// Calibrated probability that the cause, or one that could stand in its place, is there: its weakest test decides.
     pub(crate) fn probability(self, gain: &Gain, rules: &Rules) -> f64 {
+        // Of few rows, few are held out.
+        let needed = if rules.is_sparse { HALF * rules.threshold } else { rules.threshold };
         let held_out = match &gain.no_share {
             Some(_) => f64::INFINITY,
             None if gain.heldout_rms_after > gain.heldout_rms_before => HALF,
-            None => self.held_out_evidence / rules.threshold,
+            None => self.held_out_evidence / needed,
         };
         let weakest = (self.ln_bayes_factor / rules.certain).min(self.share / rules.certain_share).min(held_out);
         let log_odds = 3.0 + 6.0 * (weakest.clamp(0.0, 1.2) - 1.0);
@@ -23,7 +25,7 @@ impl Standing {
 pub struct Competition {
     /// Standing of every chosen cause, in the order of the choice.
     pub causes: Vec<Standing>,
-    /// Sum of all discrepancies of the best model, row by row, and its RMS.
+    /// Sum of all discrepancies of the best model, row by row, and the RMS of its part beside the model.
     pub error: Vec<f64>,
     pub rms: f64,
     /// Variables of these discrepancies, with the RMS of each.

@@ -1,7 +1,7 @@
 //! Force along one coordinate: its residual, and the causes that explain it.
 
 use crate::diagnose::data::direction::{STICKING_ROWS_TOGETHER, blur, blurred};
-use crate::diagnose::data::limits::CERTAIN;
+use crate::diagnose::data::limits::{CERTAIN, REFINEMENTS};
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
@@ -31,9 +31,6 @@ use foundation::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
 
-/// Most rounds of refinement of searched values and of the sensor's faults.
-/// Choice: halved, 2 of 48 answers change (1 to right); doubled, 0 of 48 answers change.
-const REFINEMENTS: usize = 2;
 /// The same for a free motion, whose noise becomes smaller if it swings.
 /// Choice: no case of the ablation reads it.
 const REFINEMENTS_OF_FREE: usize = 5;
