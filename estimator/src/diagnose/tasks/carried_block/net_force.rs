@@ -81,7 +81,7 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     let view = view(&rows);
     let study = beside_errors(
         &view,
-        &[Variable::Lift],
+        &[Variable::Lift, Variable::Acceleration],
         beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?,
     );
     let floor = floor(&rows, &study);
