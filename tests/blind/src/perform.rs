@@ -154,7 +154,6 @@ mod tests {
     use super::super::case::make_with_object;
     use super::super::draw::Bench;
     use super::super::effect::Effect;
-
     use super::*;
 
     fn spec(bench: Bench, effect: Effect) -> Spec {

@@ -254,13 +254,16 @@ pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
 
 /// Normal equations whose noise includes the discrepancies of a competition. `None` without any.
 fn beside(study: &ChannelFit, found: &Competition, discrepancies: &[Discrepancy]) -> Option<System> {
+    if found.used.is_empty() {
+        return None;
+    }
     let columns = found.used.iter().flat_map(|(d, _)| &discrepancies[*d].columns);
     let precision: Vec<f64> =
         found.used.iter().flat_map(|(d, v)| vec![v.recip(); discrepancies[*d].columns.len()]).collect();
     let ChannelFit { baseline, candidates, target, layout, .. } = study;
     let base: Vec<Vec<f64>> = baseline.iter().chain(columns).cloned().collect();
     let mut system = System::new(&base, candidates, target, layout, found.coefficients.clone());
-    if precision.is_empty() || !system.marginalize(baseline.len(), &precision) {
+    if !system.marginalize(baseline.len(), &precision) {
         return None;
     }
     let error = Whitening::new(&layout.segment, &layout.weight, &found.coefficients).of(&found.error);

@@ -137,8 +137,7 @@ pub fn leaking() -> anyhow::Result<Recording> {
 /// Recording of a directly driven hinge, and the object for another motion of it.
 pub fn hinge() -> (Recording, blind::case::Object) {
     let effects = vec![(blind::Effect::Eccentric, 0)];
-    let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
-    let spec = blind::Spec { log, rate_hz: 250.0, ..blind::Spec::hiding(effects, 2.0, bench) };
+    let spec = blind::Spec { rate_hz: 250.0, ..blind::Spec::hiding(effects, 2.0, blind::Bench::Angular) };
     let (mut case, _, object) = blind::case::make_with_object(&spec, &[], 4);
     let mut recording = case.recordings.pop().unwrap_or_default();
     "hinge".clone_into(&mut recording.name);

@@ -15,6 +15,7 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
     viscous_friction,
@@ -224,7 +225,7 @@ pub fn shaft<'a>(
     let grid = Grid::coarse(&track);
     let mut closer = Closer { channel, track: &track, asked: &asked, grid, first_n: dry_n, dry_n };
     let view = super::sheet::view(&rows);
-    let study = beside_errors(&view, &[], refined(&mut closer, HOLE_REFINEMENT.values().count())?);
+    let study = beside_errors(&view, &[Variable::Velocity], refined(&mut closer, HOLE_REFINEMENT.values().count())?);
     let beside_n = closer.dry_n;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
