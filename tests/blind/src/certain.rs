@@ -167,7 +167,8 @@ pub fn line(r: &Row) -> String {
     let ratios: Vec<String> = r.ratios.iter().map(|x| format!("{x:.2}")).collect();
     let family = r.structure().map_or("", super::effect::Effect::id);
     let object = format!("{}|{}|{} Hz|{:.0} s", r.bench.name(), r.log.name(), r.rate_hz, r.seconds);
-    format!("{family}|{object}|{}|{}|{}|{}", r.seed, ratios.join(","), hidden.join(" + "), r.told())
+    let floor = format!("floor {:.2} of {:.2}", r.floor_over_noise(), r.clean_floor());
+    format!("{family}|{object}|{}|{}|{}|{floor}|{}", r.seed, ratios.join(","), hidden.join(" + "), r.told())
 }
 
 #[cfg(test)]

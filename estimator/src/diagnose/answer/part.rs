@@ -189,7 +189,7 @@ impl<'a> Part<'a> {
             },
             end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
             // The final residual contains the noise, so the noise floor is no larger.
-            noise_floor: if is_one_of_several && end > 0.0 { self.floor.min(end) } else { self.floor },
+            noise_floor: if end > 0.0 { self.floor.min(end) } else { self.floor },
         }
     }
 

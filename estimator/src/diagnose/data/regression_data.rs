@@ -188,6 +188,8 @@ pub struct Track {
     pub position_noise: f64,
     /// Noise of one force row, N or N m.
     pub force_noise: f64,
+    /// Noise of one row's force of inertia, N or N m, from the noise of the motion.
+    pub inertial_noise: f64,
     /// True if that noise was measured without touch.
     pub noise_is_measured: bool,
     /// Longest recording, s.
@@ -236,6 +238,7 @@ impl Track {
             velocity_noise: 0.0,
             position_noise: 0.0,
             force_noise: 0.0,
+            inertial_noise: 0.0,
             noise_is_measured: false,
             span_s: 0.0,
             hung: Vec::new(),
@@ -338,6 +341,7 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
         joined.velocity_noise = mean(joined.velocity_noise, track.velocity_noise);
         joined.position_noise = mean(joined.position_noise, track.position_noise);
         joined.force_noise = mean(joined.force_noise, track.force_noise);
+        joined.inertial_noise = mean(joined.inertial_noise, track.inertial_noise);
         joined.noise_is_measured &= track.noise_is_measured;
         joined.planar &= track.planar;
         joined.span_s = joined.span_s.max(track.span_s);

@@ -40,7 +40,7 @@ pub fn explain(
         terms: Some(study),
         channel: if track.freely.is_some() { "motion" } else { "force" },
         unit: track.force_unit(),
-        floor: if track.noise_is_measured { track.force_noise } else { end_train.min(end) },
+        floor: if track.freely.is_some() { end_train.min(end) } else { track.force_noise.hypot(track.inertial_noise) },
         noise: track.force_noise,
         along: &along,
         state: track.rows.iter().map(|row| state(track, row)).collect(),

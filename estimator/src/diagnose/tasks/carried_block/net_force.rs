@@ -28,6 +28,7 @@ use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::selection::stepwise::SelectedTerm;
 use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
+use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
 use haptics::world::{Cable, World};
 use std::collections::BTreeSet;
@@ -84,9 +85,10 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
         &[Variable::Lift, Variable::Acceleration],
         beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?,
     );
-    let floor = floor(&rows, &study);
     let cable_errors = errors(&rows, &study);
     let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
+    let carried: Vec<f64> = study.target.iter().zip(&along).filter(|(_, is)| **is).map(|(y, _)| *y).collect();
+    let floor = white_noise(&carried);
     let of_carried = |c: &bool| if *c { SystemState::HoldAboveGround } else { SystemState::FreeMotion };
     let state = along.iter().map(of_carried).collect();
     let longest_s = longest_s(&rows);
@@ -184,18 +186,6 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
     let carries = rows.seen.iter().flat_map(|one| (1..=one.count).map(move |number| (one, one.carried(number))));
     let lengths = carries.filter_map(|(one, rows)| Some(one.time_s(*rows.last()?) - one.time_s(*rows.first()?)));
     lengths.fold(0.0, f64::max)
-}
-
-/// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
-fn floor(rows: &Rows<'_>, study: &ChannelFit) -> f64 {
-    let Some(solved) = &study.solved else { return 0.0 };
-    let residual = study.residual_of(&study.picks(), solved);
-    let mean = |free: bool| {
-        let of = (0..residual.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
-        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + residual[i] * residual[i], n + 1));
-        (n > 0).then(|| (sum / f64::from(n)).sqrt())
-    };
-    mean(true).map_or_else(|| mean(false).unwrap_or(0.0), |one| std::f64::consts::SQRT_2 * one)
 }
 
 impl Carry<'_> {

@@ -44,9 +44,9 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     let shortest = whole(SHORTEST_S / period_s);
     let longest = whole((LONGEST_BLOCK_S / period_s).floor()).max(shortest);
     let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
-    // Noise of a rate, or of a position if no rate was recorded, and of the force.
-    let noise = [white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force)];
-    let quiet = |block: &usize| quiet(noise, raw.rate.is_some(), period_s, *block, mass);
+    let (of_motion, of_force) = (white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force));
+    let inertial = |block: usize| mass.abs() * acceleration_noise(of_motion, raw.rate.is_some(), period_s, block);
+    let quiet = |block: &usize| inertial(*block) < of_force * averaged(*block);
     let block = (shortest..=longest).step_by(skip).find(quiet).unwrap_or(longest);
     let made = in_blocks(block);
     if made.rows.is_empty() {
@@ -57,17 +57,15 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
             needed: LEAST_PIECES * block,
         });
     }
-    Ok(made.track(&raw))
+    Ok(made.track(&raw, inertial(block)))
 }
 
-/// True if the acceleration's noise, as a force, is below the force's own noise for blocks of this many samples.
-/// `motion`: noise of the rates, or of the positions if no rates were recorded (`is_rate`).
-fn quiet([motion, force]: [f64; 2], is_rate: bool, period_s: f64, block: usize, mass: f64) -> bool {
+/// Noise of a row's acceleration. `noise`: of a rate, or of a position if no rate was recorded (`is_rate`).
+fn acceleration_noise(noise: f64, is_rate: bool, period_s: f64, block: usize) -> f64 {
     let (samples, length_s) = (block as f64, block as f64 * period_s);
     // Noise of a block's mean velocity: from its rates, or from the two positions at its ends.
-    let velocity = if is_rate { motion / samples.sqrt() } else { std::f64::consts::SQRT_2 * motion / length_s };
-    let of_mass = mass.abs() * std::f64::consts::SQRT_2 * velocity / length_s;
-    of_mass < force * averaged(block)
+    let velocity = if is_rate { noise / samples.sqrt() } else { std::f64::consts::SQRT_2 * noise / length_s };
+    std::f64::consts::SQRT_2 * velocity / length_s
 }
 
 /// Factor by which a triangular mean over two blocks reduces white noise.
@@ -175,7 +173,8 @@ impl Made {
         least_squares(&columns, &y, None).map_or(0.0, |fit| fit.values[0])
     }
 
-    fn track(self, raw: &Raw) -> Track {
+    /// `inertial_noise`: of the force of the inertia in a row.
+    fn track(self, raw: &Raw, inertial_noise: f64) -> Track {
         let mut rows = self.rows;
         let start_s = raw.time_s[0];
         for row in &mut rows {
@@ -192,6 +191,7 @@ impl Made {
             velocity_noise: worst(0),
             position_noise: (averaged(self.block) * worst(2)).hypot(worst(3)),
             force_noise: (averaged(self.block) * worst(1)).max(1e-12),
+            inertial_noise,
             span_s,
             ..Track::of(raw.coordinate)
         }
