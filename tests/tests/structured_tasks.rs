@@ -22,6 +22,10 @@ fn structure_gives_blocks_and_needles_few_certain_names() {
         let name = group.name();
         assert!(alone.fair.of > 0 && alone.fair.at_least(LUCK) <= most, "{name}: false certain names {}", alone.fair);
         assert!(beside.right.of > 0 && beside.right.at_most(LUCK) >= least, "{name}: right {}", beside.right);
+        // Hum is fast, and belongs to the noise. A sensor that wanders slowly does not.
+        let of_sensor: Vec<&Row> = own.iter().copied().filter(|r| r.family.name().starts_with("sensor-")).collect();
+        let floors = [alone.floor, Alone::of(&of_sensor).floor];
+        assert!(floors[0] <= 1.3 && floors[1] <= 1.5, "{name}: structure raises the noise floor {floors:.2?} times");
         let names = own.iter().flat_map(|r| r.names()).filter(|n| n.posterior >= 0.95 && !n.is_tolerated);
         let right = Share::count(names, |n| n.is_right);
         assert!(right.of > 0 && right.at_most(LUCK) >= 0.85, "{name}: right of what is said with 95 % {right}");

@@ -37,6 +37,7 @@ fn structure_gives_no_certain_name_and_hides_none() {
         let alone = Alone::of(&own);
         at_most(&format!("{name}: false certain names"), alone.fair, demanded);
         at_most(&format!("{name}: ambiguous"), alone.ambiguous, 0.1);
+        assert!(alone.floor <= 1.3, "{name}: the structure raises the noise floor {:.2} times", alone.floor);
         let beside = Beside::of(&own);
         at_least(&format!("{name}: right, or in the stated set"), beside.in_set, 0.9);
         assert!(beside.false_certain[1] <= 0.2, "{name}: {} false certain names a case", beside.false_certain[1]);
