@@ -38,7 +38,8 @@ pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
     let read = |time_s: f64| {
         let drifted_for_s = drifted_for(time_s - begun_s, fault.settles_s);
         let force = at(&times, &felt, time_s - fault.delay_s).x;
-        (1.0 + fault.gain_error) * force + fault.offset_along + drifted_for_s * fault.drift_along_per_s
+        let stepped: f64 = fault.steps_until(time_s - begun_s).map(|step| step.along).sum();
+        (1.0 + fault.gain_error) * force + fault.offset_along + drifted_for_s * fault.drift_along_per_s + stepped
     };
     channel.values = times.iter().map(|time_s| read(*time_s)).collect();
 }
@@ -46,13 +47,18 @@ pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
 /// Reading of a finger's sensor at each time, N.
 fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), drifts_from_s: f64) -> Vec<Vec2> {
     let cross = fault.cross[finger];
+    let begun_s = times.first().copied().unwrap_or_default();
     times
         .iter()
         .map(|time_s| {
             let force = at(times, felt, time_s - fault.delay_s);
             let crossed = Vec2::new(force.x + cross.x * force.y, force.y + cross.y * force.x);
             let drifted_for_s = drifted_for((time_s - drifts_from_s).max(0.0), fault.settles_s);
-            (1.0 + fault.gain_error) * crossed + fault.offset_n[finger] + drifted_for_s * fault.drift_n_s[finger]
+            let stepped: Vec2 = fault.steps_until(time_s - begun_s).map(|step| step.force_n[finger]).sum();
+            (1.0 + fault.gain_error) * crossed
+                + fault.offset_n[finger]
+                + drifted_for_s * fault.drift_n_s[finger]
+                + stepped
         })
         .collect()
 }

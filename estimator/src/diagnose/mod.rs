@@ -32,7 +32,7 @@ pub use experiment::waypoints::{Insertions, Throw, Throws};
 pub use findings::Findings;
 use foundation::estimate::EstimateError;
 use haptics::recording::{Recording, Task};
-pub use hypotheses::sensor_fault::SensorFault;
+pub use hypotheses::sensor_fault::{SensorFault, Step};
 pub use hypotheses::variable::Variable;
 use logs::NO_CLOCK;
 pub use options::Options;

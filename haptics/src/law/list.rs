@@ -29,6 +29,7 @@ macro_rules! laws {
                 added_constraint: AddedConstraint,
                 force_bias: ForceBias,
                 force_drift: ForceDrift,
+                force_step: ForceStep,
             }
             // Parts of models: the weight, the push under the name of `local-resistance`, the cable under that of
             // `added-constraint`, and the variants under load.

@@ -81,8 +81,8 @@ pub(crate) trait Simulated {
         false
     }
     /// The fault in the axes of the sensors.
-    fn fault(&self, fault: SensorFault) -> SensorFault {
-        fault
+    fn fault(&self, fault: &SensorFault) -> SensorFault {
+        *fault
     }
 }
 
@@ -132,7 +132,7 @@ fn of_picks(
             sum.drifts_once_held |= picks.iter().any(|p| channel.is_late(&study.candidates[*p]));
         }
     }
-    let as_sensed = |sum| channels.first().map_or(sum, |(_, channel)| channel.fault(sum));
+    let as_sensed = |sum| channels.first().map_or(sum, |(_, channel)| channel.fault(&sum));
     Some((acts, sum.map(as_sensed)))
 }
 

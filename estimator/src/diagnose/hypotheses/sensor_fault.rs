@@ -19,6 +19,8 @@ pub struct SensorFault {
     pub offset_along: f64,
     /// Drift along the coordinate: initial rate, N/s or N m/s.
     pub drift_along_per_s: f64,
+    /// Jumps of the zero.
+    pub steps: [Step; 3],
     /// Cross-talk: share of the finger's y force that is read in x, and of its x force that is read in y, one per
     /// finger.
     pub cross: [Vec2; 2],
@@ -26,6 +28,24 @@ pub struct SensorFault {
     pub gain_error: f64,
     /// Delay of the force after the motion, s.
     pub delay_s: f64,
+}
+
+/// A jump of the zero of a force sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Step {
+    /// Its time, s since the start.
+    pub at_s: f64,
+    /// Its size, one per finger, N.
+    pub force_n: [Vec2; 2],
+    /// Its size along the coordinate of a mechanism, N or N m.
+    pub along: f64,
+}
+
+impl SensorFault {
+    /// Jumps that have happened at a time, s since the start.
+    pub fn steps_until(&self, time_s: f64) -> impl Iterator<Item = &Step> {
+        self.steps.iter().filter(move |step| step.at_s <= time_s)
+    }
 }
 
 /// Names and units of a bias and of a drift of each finger along each axis.

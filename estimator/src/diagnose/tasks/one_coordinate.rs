@@ -13,7 +13,7 @@ use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
-    backlash, force_bias, force_cross_axis, force_drift, force_gain, hysteresis, time_delay,
+    backlash, force_bias, force_cross_axis, force_drift, force_gain, force_step, hysteresis, time_delay,
 };
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_coordinate;
@@ -139,6 +139,7 @@ fn correct_load(track: &mut Track, study: &ChannelFit) -> bool {
             force -= match (candidate.id, candidate.linear[0].0) {
                 (force_bias::ID, _) => Vec2::new(values[0], values[1]),
                 (force_drift::ID, _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
+                (force_step::ID, _) => force_step::vector_at(candidate, values, row.motion.time_s),
                 (force_cross_axis::ID, "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
                 (force_cross_axis::ID, "kappa_turned") => Vec2::new(-row.force.y, row.force.x) * values[0],
                 (force_cross_axis::ID, _) => Vec2::new(0.0, values[0] * row.force.x),

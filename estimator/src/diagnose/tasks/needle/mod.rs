@@ -215,7 +215,7 @@ impl Simulated for InWorld {
     }
 
     /// Forces along the needle are downward pushes, of both fingers together.
-    fn fault(&self, fault: SensorFault) -> SensorFault {
+    fn fault(&self, fault: &SensorFault) -> SensorFault {
         let share = if self.two_fingered { 0.5 } else { 1.0 };
         let down = |along: f64| {
             [Vec2::new(0.0, -share * along), Vec2::new(0.0, if self.two_fingered { -share * along } else { 0.0 })]
@@ -225,7 +225,7 @@ impl Simulated for InWorld {
             drift_n_s: down(fault.drift_along_per_s),
             offset_along: 0.0,
             drift_along_per_s: 0.0,
-            ..fault
+            ..*fault
         }
     }
 }

@@ -1,0 +1,72 @@
+//! The zero of a force sensor jumps in the middle of a recording: its time and its size are named, and nothing instead of it.
+
+use blind::{Bench, Chance, Counts, Job, Set, battery};
+use estimator::diagnose::{Diagnosis, Options, diagnose};
+use haptics::recording::Recording;
+
+/// Seeds on which nothing was chosen: for recordings with a step, and for those that stay as they are.
+const SEEDS: [u64; 2] = [7_320_001, 7_320_002];
+/// Sizes of a step over the noise of the force.
+const SIZES: [f64; 3] = [4.0, 10.0, 40.0];
+
+/// Adds a step to the channels of the force from a time on.
+fn step(recording: &mut Recording, at_s: f64, size: [f64; 2]) {
+    let times = recording.time_s.clone().expect("a clock");
+    let start_s = times[0];
+    for (names, size) in [(["fx_N", "fx1_N", "f_N", "tau_Nm"].as_slice(), size[0]), (&["fy_N", "fy1_N"], size[1])] {
+        for channel in recording.channels.iter_mut().filter(|c| names.contains(&c.name.as_str())) {
+            let later = channel.values.iter_mut().zip(&times).filter(|(_, t)| **t - start_s >= at_s);
+            later.for_each(|(value, _)| *value += size);
+        }
+    }
+}
+
+fn asked(recordings: &[Recording], baseline: Option<&str>) -> Diagnosis {
+    let options = Options { baseline: baseline.map(str::to_owned), ..Options::default() };
+    diagnose(recordings, &options).expect("an answer").diagnosis
+}
+
+fn nulls(seed: u64) -> Vec<Job> {
+    let jobs = battery(Counts::FAST, seed);
+    jobs.into_iter().filter(|job| job.set == Set::Null).collect()
+}
+
+#[test]
+fn a_step_of_the_sensor_is_named_with_its_time_and_size() {
+    let (mut found, mut all, mut report) = ([0; SIZES.len()], [0; SIZES.len()], Vec::new());
+    for (k, job) in nulls(SEEDS[0]).iter().enumerate() {
+        let (mut case, truth) = job.make();
+        let mut chance = Chance::new(job.seed, 17);
+        let which = k % SIZES.len();
+        let last_s = case.recordings[0].time_s.as_ref().map_or(0.0, |t| t[t.len() - 1] - t[0]);
+        let at_s = chance.between(0.25, 0.75) * last_s;
+        let (size, angle) = (SIZES[which] * truth.noise_n, chance.between(0.0, std::f64::consts::TAU));
+        let is_planar = matches!(case.bench, Bench::OneFinger | Bench::TwoFingers);
+        let sizes = if is_planar { [size * angle.cos(), size * angle.sin()] } else { [size, 0.0] };
+        step(&mut case.recordings[0], at_s, sizes);
+        let answer = asked(&case.recordings, case.baseline);
+        let named: Vec<&str> = answer.causes.iter().filter(|c| c.posterior >= 0.95).map(|c| c.id.as_str()).collect();
+        report.push(format!("{} {:?} {} {at_s:.3} {sizes:.3?} {:?} {named:?}", job.seed, case.bench, SIZES[which], answer.verdict));
+        all[which] += 1;
+        if named == ["force-step"] {
+            let cause = &answer.causes[0];
+            let value = |name: &str| cause.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+            let told = if is_planar { [value("bx"), value("by")] } else { [value("step"), 0.0] };
+            let miss = (told[0] - sizes[0]).hypot(told[1] - sizes[1]);
+            assert!((value("t0") - at_s).abs() < 0.5 && miss < 0.25 * size, "{} {told:?} {}", report[k], value("t0"));
+            found[which] += 1;
+        }
+    }
+    println!("{}\n{found:?} of {all:?}", report.join("\n"));
+    // Between reversals and stick phases, a small step is not sharp.
+    assert!(2 * found[0] > all[0] && 3 * found[1] > 2 * all[1] && 3 * found[2] > 2 * all[2], "{found:?} of {all:?}");
+}
+
+#[test]
+fn nothing_steps_where_no_zero_jumped() {
+    for job in nulls(SEEDS[1]) {
+        let (case, _) = job.make();
+        let answer = asked(&case.recordings, case.baseline);
+        assert!(answer.causes.iter().all(|c| c.id != "force-step"), "{}: {:?}", job.seed, answer.causes);
+    }
+}
