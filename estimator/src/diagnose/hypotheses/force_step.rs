@@ -7,9 +7,10 @@ use super::hypothesis::{About, Hypothesis};
 use super::relations::{Form, Over, Relation};
 use super::sensor_fault::{SensorFault, add_each, add_halved};
 use super::variable::Variable;
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::direction::STANDS;
-use crate::diagnose::data::limits::{CERTAIN, HALF, LEAST_PIECES};
-use crate::diagnose::data::regression_data::{Place, Row};
+use crate::diagnose::data::limits::{HALF, LEAST_PIECES, SIGNIFICANT};
+use crate::diagnose::data::regression_data::{Place, Row, Track};
 use foundation::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::{ForceStep, Kind};
@@ -47,6 +48,20 @@ impl Hypothesis for ForceStep {
         let near = data.points(ID, TIMES).map(|[time_s, part, ..]| step(data, &[(part as usize, time_s)]));
         let jumps = if data.points(ID, SCAN).next().is_some() { jumps(data) } else { Vec::new() };
         near.chain((1..=jumps.len()).map(|n| step(data, &jumps[..n]))).collect()
+    }
+
+    /// A step while the object stands may be anywhere between the moving rows before and after.
+    fn widen(&self, parameters: &mut [CauseParameter], track: &Track) {
+        let moves = |row: &&Row| !matches!(row.place, Place::Stuck { .. }) && row.open <= STANDS;
+        let times = || track.rows.iter().filter(moves).map(|row| row.motion.time_s);
+        for parameter in parameters.iter_mut().filter(|p| SYMBOLS.iter().any(|symbols| symbols.time == p.name)) {
+            let before_s = times().filter(|t| *t <= parameter.value).fold(f64::NEG_INFINITY, f64::max);
+            let after_s = times().filter(|t| *t > parameter.value).fold(f64::INFINITY, f64::min);
+            if (after_s - before_s).is_finite() {
+                // Standard deviation of a uniform distribution.
+                parameter.std_error = parameter.std_error.hypot((after_s - before_s) / 12.0_f64.sqrt());
+            }
+        }
     }
 
     fn add_to_fault(&self, fault: &mut SensorFault, candidate: &Candidate, values: &[f64]) -> bool {
@@ -226,7 +241,7 @@ impl Scan {
         };
         let (before, after) = (share(at - LEAST_PIECES..at), share(at..at + LEAST_PIECES));
         let error = white_noise(&self.residual) * (before.1 + after.1).sqrt();
-        after.0 - before.0 > HALF.max(CERTAIN * error)
+        after.0 - before.0 > HALF.max(SIGNIFICANT * error)
     }
 }
 
