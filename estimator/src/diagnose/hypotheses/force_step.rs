@@ -80,9 +80,9 @@ impl Hypothesis for ForceStep {
     }
 }
 
-/// Least gain of a further step, over that of the first.
-/// Derived: between 0.15, the gain of a second step for a straight slope, and 0.33, that for a staircase of two equal
-/// steps (piecewise constant least squares).
+/// Least gain of the first step over the power of the residual, and of a further step over that of the first.
+/// Derived: a step of 1.2 times the noise for half of the recording takes this share. A second step takes 0.15 of the
+/// first for a straight slope, and 0.33 for a staircase of two equal steps (piecewise constant least squares).
 const LEAST_GAIN: f64 = 0.25;
 
 /// Names of the parameters of one step.
@@ -138,10 +138,12 @@ fn jumps(data: &Dictionary<'_>) -> Vec<(usize, f64)> {
     let recordings = data.track.rows.iter().map(|row| row.recording).max().map_or(0, |last| last + 1);
     let scans = (0..recordings).map(|recording| (recording, Scan::of(data, recording)));
     let steps = |(recording, mut scan): (usize, Scan)| -> (f64, Vec<(usize, f64)>) {
+        let power = dot(&scan.residual, &scan.residual);
         let mut found: Vec<(f64, f64)> = SYMBOLS.iter().map_while(|_| scan.next_step()).collect();
         let first = found.first().map_or(0.0, |(gain, _)| *gain);
-        let more = found.iter().skip(1).take_while(|(gain, _)| *gain > LEAST_GAIN * first).count();
-        found.truncate(1 + more);
+        let enough = |(k, (gain, _)): &(usize, &(f64, f64))| *gain > LEAST_GAIN * if *k == 0 { power } else { first };
+        let steps = found.iter().enumerate().take_while(enough).count();
+        found.truncate(steps);
         (first, found.iter().map(|(_, time_s)| (recording, *time_s)).collect())
     };
     // A step has a recording of its own.
