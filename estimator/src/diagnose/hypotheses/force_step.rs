@@ -235,13 +235,21 @@ impl Scan {
     }
 
     /// True if the residual jumps by most of this step between the rows before and after: a slow change does not.
+    /// Rows that the step hardly moves count less: each side has the power of a few mean rows.
     fn is_sharp(&self, at: usize, size: [f64; 2]) -> bool {
         let step = |i: usize| self.axes.iter().zip(size).map(|(axis, b)| axis[i] * b).sum::<f64>();
-        let share = |rows: std::ops::Range<usize>| {
-            let power = rows.clone().map(|i| step(i).powi(2)).sum::<f64>().max(f64::MIN_POSITIVE);
-            (rows.map(|i| step(i) * self.residual[i]).sum::<f64>() / power, power.recip())
+        let rows = self.time_s.len();
+        let enough = LEAST_PIECES as f64 * (0..rows).map(|i| step(i).powi(2)).sum::<f64>() / rows as f64;
+        let share = |side: &mut dyn Iterator<Item = usize>| {
+            let (mut power, mut product) = (f64::MIN_POSITIVE, 0.0);
+            while power < enough {
+                let Some(i) = side.next() else { break };
+                power += step(i).powi(2);
+                product += step(i) * self.residual[i];
+            }
+            (product / power, power.recip())
         };
-        let (before, after) = (share(at - LEAST_PIECES..at), share(at..at + LEAST_PIECES));
+        let (before, after) = (share(&mut (0..at).rev()), share(&mut (at..rows)));
         let error = white_noise(&self.residual) * (before.1 + after.1).sqrt();
         after.0 - before.0 > HALF.max(SIGNIFICANT * error)
     }
