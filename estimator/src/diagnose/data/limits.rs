@@ -59,12 +59,10 @@ pub(crate) const SLOW_ROW_S: f64 = 0.015;
 /// Reach of the filter of the derived velocities beside an event, s.
 /// Derived: half of its window (0.015 s) with a fifth of it as margin.
 pub(crate) const FILTER_REACH_S: f64 = 0.018;
-/// Time beside a change of contact that belongs to neither side, s.
-/// Choice: halved, 2 of 36 answers change; doubled, 4 of 36 answers change.
-pub(crate) const CONTACT_MARGIN_S: f64 = 0.1;
-/// Window in which a rest is followed, s.
-/// Choice: halved or doubled, none of 43 answers changes.
-pub(crate) const REST_WINDOW_S: f64 = 0.1;
+/// Time in which a contact or a rest settles, s: beside a change of contact it belongs to neither side, and a rest is
+/// followed in windows of it.
+/// Choice: halved, 2 of 36 answers change; doubled, 4 of 36 answers change (as a window of rests: none of 43).
+pub(crate) const SETTLING_S: f64 = 0.1;
 /// Pause, s: between joined recordings, over a change of place, and least duration of empty fingers.
 /// Choice: halved or doubled, none of 15 answers changes.
 pub(crate) const PAUSE_S: f64 = 1.0;

@@ -1,7 +1,7 @@
 //! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{FEWEST, LEAST_PHASE_SAMPLES, REST_WINDOW_S};
+use crate::diagnose::data::limits::{FEWEST, LEAST_PHASE_SAMPLES, SETTLING_S};
 use estimation::identify::limits::LEAST_FREE_S;
 use estimation::segment::segment;
 use foundation::estimate::EstimateError;
@@ -52,7 +52,7 @@ pub fn held_and_free(
     }
     let period_s = mean_step_s(time_s);
     let samples = |s: f64| (s / period_s).ceil() as usize;
-    let (margin, piece) = (samples(MARGIN_S), samples(REST_WINDOW_S).max(FEWEST));
+    let (margin, piece) = (samples(MARGIN_S), samples(SETTLING_S).max(FEWEST));
     let mut near = vec![false; n];
     let mut surely_free = free.clone();
     for interval in rests.iter().filter(|i| free[i.start]) {

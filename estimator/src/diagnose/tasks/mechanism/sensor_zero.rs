@@ -6,7 +6,7 @@
 
 use crate::diagnose::answer::named::Named;
 use crate::diagnose::contract::{Alternative, Cause, NextExperiment};
-use crate::diagnose::data::limits::{FEWEST, REST_WINDOW_S, SIGNIFICANT};
+use crate::diagnose::data::limits::{FEWEST, SETTLING_S, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Track, Zero};
 use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::experiment::proposal::{SURE_HUNG, power};
@@ -83,7 +83,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let (place, force, time) = (place?, force?, recording.time_s.as_ref()?);
     let n = time.len().min(force.len()).min(place.len());
     let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
-    let length = ((REST_WINDOW_S / period_s).round() as usize).max(FEWEST);
+    let length = ((SETTLING_S / period_s).round() as usize).max(FEWEST);
     // The noise is autocorrelated, so means of windows stay within the noise of a single sample.
     let noise = |values: &[f64]| white_noise(values).max(quantum(values));
     let (still, quiet) = (noise(place), noise(force));

@@ -5,7 +5,7 @@
 
 use super::interpolation::Between;
 use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
-use crate::diagnose::data::limits::{CONTACT_MARGIN_S, FILTER_REACH_S, PAUSE_S, SURE};
+use crate::diagnose::data::limits::{FILTER_REACH_S, PAUSE_S, SETTLING_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
@@ -280,7 +280,7 @@ fn phases(
             let deepest = depth_m[push.samples.start..=i].iter().copied().fold(f64::MIN, f64::max);
             let phase = match push.puncture {
                 Some(at) if i > at => {
-                    let settled = time[i] - time[at] > CONTACT_MARGIN_S;
+                    let settled = time[i] - time[at] > SETTLING_S;
                     (settled && depth_m[i] > surface_m + AT_SURFACE_M).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
@@ -322,8 +322,8 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
 /// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
 /// shaft at a reversal is not known well enough.
 fn is_compared(needle: &Needle, row: &Row) -> bool {
-    let at_surface = row.depth_m.abs() < CONTACT_MARGIN_S * row.rate_m_s.abs();
-    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * CONTACT_MARGIN_S);
+    let at_surface = row.depth_m.abs() < SETTLING_S * row.rate_m_s.abs();
+    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * SETTLING_S);
     !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
 }
 

@@ -2,7 +2,7 @@
 //! that touch nothing.
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{CERTAIN, CONTACT_MARGIN_S, FAST_ROW_S, GAP_IN_PERIODS, PARTS};
+use crate::diagnose::data::limits::{CERTAIN, FAST_ROW_S, GAP_IN_PERIODS, PARTS, SETTLING_S};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
 use estimation::identify::limits::{SETTLED_M, TOUCH_SHARE};
@@ -189,7 +189,7 @@ fn one(recording: &Recording, number: usize, bad: &[bool], all: &mut Seen) -> Re
     }
     found.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     for (number, finger) in fingers.iter().enumerate() {
-        let margin = (CONTACT_MARGIN_S / all.period_s).ceil() as usize;
+        let margin = (SETTLING_S / all.period_s).ceil() as usize;
         let away = |k: usize| {
             let near = k.saturating_sub(margin)..(k + margin + 1).min(blocks);
             !near.clone().any(|i| finger.touches[i]) && near.len() == 2 * margin + 1
