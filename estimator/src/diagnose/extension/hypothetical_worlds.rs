@@ -158,6 +158,7 @@ fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::hypotheses::sensor_fault::Step;
     use haptics::Vec2;
     use haptics::law::Motion;
     use haptics::law::ViscousFriction;
@@ -208,6 +209,7 @@ mod tests {
             ("time-delay", "tau", 0.01),
             ("force-bias", "b", 0.7),
             ("force-drift", "rate", 0.03),
+            ("force-step", "by", 0.4),
         ] {
             assert!(add_to_fault(&mut fault, &one(id, name), &[value]), "{id} {name}");
         }
@@ -218,6 +220,11 @@ mod tests {
             drifts_once_held: false,
             offset_along: 0.7,
             drift_along_per_s: 0.03,
+            steps: [
+                Step { at_s: 5.0, force_n: [Vec2::new(0.0, 0.2); 2], along: 0.0 },
+                Step::default(),
+                Step::default(),
+            ],
             cross: [Vec2::new(-0.3, 0.1), Vec2::new(-0.3, 0.0)],
             gain_error: 0.05,
             delay_s: 0.01,
