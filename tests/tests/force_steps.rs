@@ -5,7 +5,7 @@ use estimator::diagnose::{Diagnosis, Options, diagnose};
 use haptics::recording::Recording;
 
 /// Seeds on which nothing was chosen: for recordings with a step, and for those that stay as they are.
-const SEEDS: [u64; 2] = [7_340_001, 7_340_002];
+const SEEDS: [u64; 2] = [7_370_001, 7_370_002];
 /// Sizes of a step over the noise of the force.
 const SIZES: [f64; 3] = [4.0, 10.0, 40.0];
 
@@ -60,16 +60,17 @@ fn a_step_of_the_sensor_is_named_with_its_time_and_size() {
             let miss = (told[0] - sizes[0]).hypot(told[1] - sizes[1]);
             let late_s = value("t0") - at_s;
             assert!(miss < 0.25 * size, "{} {sizes:?} {told:?}", job.seed);
-            in_time += usize::from(late_s.abs() < 0.1);
+            let error_s = cause.parameters.iter().find(|p| p.name == "t0").map_or(0.0, |p| p.std_error);
+            in_time += usize::from(late_s.abs() < f64::max(0.1, 3.0 * error_s));
             named_right += 1;
             found[which] += 1;
         }
     }
     println!("{}\n{found:?} of {all:?}", report.join("\n"));
-    // Between two moves the time is free.
+    // While the hand stands, the time is as uncertain as stated.
     assert!(10 * in_time >= 9 * named_right, "{in_time} of {named_right}");
-    // Between reversals and stick phases, a small step is not sharp.
-    assert!(2 * found[0] > all[0] && 3 * found[1] > 2 * all[1] && 3 * found[2] > 2 * all[2], "{found:?} of {all:?}");
+    let enough = found.iter().zip(&all).all(|(found, all)| 4 * found >= 3 * all);
+    assert!(enough, "{found:?} of {all:?}");
 }
 
 #[test]

@@ -80,9 +80,9 @@ impl Hypothesis for ForceStep {
     }
 }
 
-/// Least gain of the first step over the power of the residual, and of a further step over that of the first.
-/// Derived: a step of 1.2 times the noise for half of the recording takes this share. A second step takes 0.15 of the
-/// first for a straight slope, and 0.33 for a staircase of two equal steps (piecewise constant least squares).
+/// Least gain of a further step, over that of the first.
+/// Derived: between 0.15, the gain of a second step for a straight slope, and 0.33, that for a staircase of two equal
+/// steps (piecewise constant least squares).
 const LEAST_GAIN: f64 = 0.25;
 
 /// Names of the parameters of one step.
@@ -133,7 +133,8 @@ fn step(data: &Dictionary<'_>, jumps: &[(usize, f64)]) -> Candidate {
     jumps.iter().zip(&SYMBOLS).fold(candidate, |made, ((_, time_s), symbols)| made.at(symbols.time, *time_s, "s"))
 }
 
-/// Recordings and times of up to three steps, each the best one beside those before it.
+/// Recordings and times of up to three steps, each the best one beside those before it. The first takes half of the
+/// power of the residual.
 fn jumps(data: &Dictionary<'_>) -> Vec<(usize, f64)> {
     let recordings = data.track.rows.iter().map(|row| row.recording).max().map_or(0, |last| last + 1);
     let scans = (0..recordings).map(|recording| (recording, Scan::of(data, recording)));
@@ -141,7 +142,8 @@ fn jumps(data: &Dictionary<'_>) -> Vec<(usize, f64)> {
         let power = dot(&scan.residual, &scan.residual);
         let mut found: Vec<(f64, f64)> = SYMBOLS.iter().map_while(|_| scan.next_step()).collect();
         let first = found.first().map_or(0.0, |(gain, _)| *gain);
-        let enough = |(k, (gain, _)): &(usize, &(f64, f64))| *gain > LEAST_GAIN * if *k == 0 { power } else { first };
+        let enough =
+            |(k, (gain, _)): &(usize, &(f64, f64))| *gain > if *k == 0 { HALF * power } else { LEAST_GAIN * first };
         let steps = found.iter().enumerate().take_while(enough).count();
         found.truncate(steps);
         (first, found.iter().map(|(_, time_s)| (recording, *time_s)).collect())
@@ -181,8 +183,13 @@ impl Scan {
             basis: Vec::new(),
             residual: column(&|i| rows[i].target),
         };
+        let whole = dot(&scan.residual, &scan.residual);
         for column in model {
             scan.fit(column);
+        }
+        // Rounding errors have no step.
+        if dot(&scan.residual, &scan.residual) <= 1e-9 * whole {
+            scan.time_s.clear();
         }
         scan
     }
@@ -227,14 +234,17 @@ impl Scan {
                 best = Some((gain, i, size));
             }
         }
-        let (gain, at, _) = best.filter(|(_, at, size)| self.is_sharp(*at, *size))?;
+        // The best step takes at most 8/9 of the power of a slope from zero.
+        let slow = dot(&self.residual, &self.residual) * 8.0 / 9.0;
+        let (gain, at, _) = best.filter(|(gain, at, size)| *gain > slow || self.is_sharp(*at, *size))?;
         for axis in self.axes.clone() {
             self.fit(axis.iter().enumerate().map(|(i, a)| if i >= at { *a } else { 0.0 }).collect());
         }
         Some((gain, HALF * (self.time_s[at - 1] + self.time_s[at])))
     }
 
-    /// True if the residual jumps by most of this step between the rows before and after: a slow change does not.
+    /// True if the residual jumps by this step between the rows before and after, within half of it: a slow change does
+    /// not.
     /// Rows that the step hardly moves count less: each side has the power of a few mean rows.
     fn is_sharp(&self, at: usize, size: [f64; 2]) -> bool {
         let step = |i: usize| self.axes.iter().zip(size).map(|(axis, b)| axis[i] * b).sum::<f64>();
@@ -251,7 +261,8 @@ impl Scan {
         };
         let (before, after) = (share(&mut (0..at).rev()), share(&mut (at..rows)));
         let error = white_noise(&self.residual) * (before.1 + after.1).sqrt();
-        after.0 - before.0 > HALF.max(SIGNIFICANT * error)
+        let (jump, error) = (after.0 - before.0, SIGNIFICANT * error);
+        jump > error && (jump - 1.0).abs() < HALF.max(error)
     }
 }
 
