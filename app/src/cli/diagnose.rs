@@ -8,8 +8,8 @@ use crate::text::diagnosis_words::{said_in_words, state_in_words};
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
-    Baseline, Cause, CauseParameter, Diagnosis, ModelError, Options, Progress, Residual, RolloutOf, Validation,
-    Verdict, diagnose, extended_world, validate,
+    Baseline, Cause, CauseParameter, Diagnosis, ModelError, Options, Progress, Residual, RolloutOf, Twins, Validation,
+    Verdict, diagnose, extended_world, twins, validate,
 };
 use estimator::words::amount;
 use haptics::world::World;
@@ -34,11 +34,14 @@ pub struct Diagnose {
     /// Measure the gain on these logs of the same object, too; nothing is fitted to them
     #[arg(long, num_args = 1..)]
     validate: Vec<PathBuf>,
+    /// Replay the logs without any cause so many times and count how often a diagnosis names one all the same
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    twin: Option<u32>,
     /// Write the world with what was found in it here
     #[arg(long)]
     out: Option<PathBuf>,
     /// Diagnose every log by itself and print a line of JSON for each as soon as it is done, also for those that fail
-    #[arg(long, conflicts_with_all = ["out", "validate"])]
+    #[arg(long, conflicts_with_all = ["out", "validate", "twin"])]
     json_lines: bool,
     /// How many logs at the same time [default: one for each processor]
     #[arg(long, requires = "json_lines", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -66,6 +69,16 @@ impl Diagnose {
         for log in &self.validate {
             let more = validate(&self.source.load(log)?, &options, &diagnosis)?;
             diagnosis.validation.extend(more);
+        }
+        if let Some(runs) = self.twin {
+            super::progress::during(&format!("diagnosing {runs} replays"), |share| {
+                let share = share.clone();
+                let progress = Progress::new(move |done| {
+                    share.tell(done);
+                    true
+                });
+                twins(&recordings, &Options { progress, ..options.clone() }, &mut diagnosis, runs)
+            })?;
         }
         let mut text = describe(&diagnosis);
         if let Some(path) = &self.out {
@@ -95,7 +108,7 @@ impl Diagnose {
         if let Some(name) = &baseline {
             estimator::diagnose::named(name)?;
         }
-        Ok(Options { baseline, world, ..Options::default() })
+        Ok(Options { baseline, world, twins: self.twin.is_some(), ..Options::default() })
     }
 
     /// True if every log has a line of its own.
@@ -218,10 +231,28 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
         let unit = other.unit.as_deref().or(diagnosis.baseline.unit.as_deref());
         let _ = writeln!(text, "  validation {}{}", k + 1, validation_line(other, unit));
     }
+    if let Some(twins) = &diagnosis.twins {
+        let _ = writeln!(text, "  {}", twins_line(twins, &diagnosis.baseline));
+    }
     for warning in &diagnosis.warnings {
         let _ = writeln!(text, "  ! {warning}");
     }
     text
+}
+
+/// False alarms in replays without any cause.
+fn twins_line(twins: &Twins, baseline: &Baseline) -> String {
+    let [low, high] = twins.interval.map(|share| 100.0 * share);
+    let which: Vec<String> = twins.by_cause.iter().map(|named| format!("{} {}", named.id, named.runs)).collect();
+    let which = if which.is_empty() { String::new() } else { format!(" ({})", which.join(", ")) };
+    let residual = baseline.unit.as_ref().map_or_else(String::new, |unit| {
+        let [replays, measured] = [twins.heldout_rms_n, baseline.heldout_rms_n].map(|rms| amount(rms, unit));
+        format!("; the model's residual is {replays} in them, {measured} as measured")
+    });
+    format!(
+        "twins: {} of {} replays without any cause name one{which}, 95 % interval {low:.0} to {high:.0} %{residual}",
+        twins.named, twins.runs
+    )
 }
 
 /// Gain on another recording, after its number.

@@ -390,6 +390,39 @@ pub struct Diagnosis {
     /// Questions of earlier recordings that later ones answered.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settled: Vec<Settled>,
+    /// Replays without any cause, if `--twin` asks for them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub twins: Option<Box<Twins>>,
+}
+
+/// Replays of the recordings without any cause: their own motion, with structured errors and noise as large as these
+/// recordings show.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Twins {
+    /// Number of replays.
+    pub runs: usize,
+    /// Number of replays in which a cause is certain, which is then false.
+    pub named: usize,
+    /// 95 % interval of their share (Clopper & Pearson 1934).
+    pub interval: [f64; 2],
+    /// The false causes, the most frequent first.
+    pub by_cause: Vec<NamedInTwins>,
+    /// Median of the base model's held-out residual in the replays: comparable with that of the recordings if they have
+    /// as much structure and noise.
+    #[serde(rename = "heldout_rms_N")]
+    pub heldout_rms_n: f64,
+    /// The same by its unit's name, if that is a torque.
+    #[serde(rename = "heldout_rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub heldout_rms_nm: Option<f64>,
+}
+
+/// A false cause in replays.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct NamedInTwins {
+    /// Its name in `docs/causes/README.md`.
+    pub id: String,
+    /// Number of replays in which it is certain.
+    pub runs: usize,
 }
 
 /// Probability from which a cause is certain.
@@ -419,6 +452,9 @@ impl Diagnosis {
             if let Some(error) = &mut self.model_error {
                 error.rms_nm = Some(error.rms_n);
                 error.over.iter_mut().for_each(|o| o.rms_nm = Some(o.rms_n));
+            }
+            if let Some(twins) = &mut self.twins {
+                twins.heldout_rms_nm = Some(twins.heldout_rms_n);
             }
         }
     }

@@ -5,6 +5,7 @@ use crate::diagnose::answer::atlas::Atlas;
 use crate::diagnose::answer::time_series::Course;
 use crate::diagnose::data::coordinate::Along;
 use crate::diagnose::extension::hypothetical_worlds::Hypothesis;
+use crate::diagnose::model_error::twin::Twin;
 use crate::diagnose::recording::delay_scan::Late;
 use crate::diagnose::validation::on_other_recordings::Kept;
 use haptics::law::Effect;
@@ -27,6 +28,8 @@ pub struct Findings {
     pub skew_s: f64,
     /// Estimated terms, for other recordings.
     pub(crate) kept: Vec<Kept>,
+    /// Replays without any cause; `None` unless [`super::options::Options::twins`] asks for them.
+    pub(crate) twin: Option<Box<Twin>>,
     /// The coordinate of a mechanism, for other recordings.
     pub(crate) along: Option<Along>,
     /// True if forces are per unit of an unknown inertia, as in a free motion.

@@ -23,8 +23,9 @@ pub(crate) mod worlds;
 pub use answer::atlas;
 pub use answer::time_series::{Course, Instant};
 pub use contract::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, ModelError, NextExperiment,
-    NotExcited, OverVariable, PassedOver, Residual, Rollout, RolloutOf, Settled, Standing, Validation, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, ModelError, NamedInTwins,
+    NextExperiment, NotExcited, OverVariable, PassedOver, Residual, Rollout, RolloutOf, Settled, Standing, Twins,
+    Validation, Verdict,
 };
 use estimation::segment::task_of;
 pub use experiment::strokes::{Stroke, Strokes};
@@ -92,6 +93,22 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Fi
         }
         _ => tasks::switch::switch(recordings, options, &faults),
     }
+}
+
+/// Replays the recordings `runs` times without any cause and counts the replays in which a cause is certain. `found`:
+/// their diagnosis, with [`Options::twins`].
+///
+/// # Errors
+/// One sentence if these recordings cannot be replayed, and that of a diagnosis that fails.
+pub fn twins(
+    recordings: &[Recording],
+    options: &Options,
+    found: &mut Findings,
+    runs: u32,
+) -> Result<(), EstimateError> {
+    found.twins = Some(Box::new(validation::twins::count(recordings, options, found, runs)?));
+    found.name_by_unit();
+    Ok(())
 }
 
 /// Validates the found causes on other recordings of the same object: none is chosen or fitted there. Sensor faults

@@ -16,6 +16,8 @@ pub struct Options {
     pub progress: Progress,
     /// True to compute [`Diagnosis::atlas`]: the part of the force's residual that every candidate alone would explain.
     pub atlas: bool,
+    /// True to keep the model without any cause, for replays ([`super::twins`]).
+    pub twins: bool,
 }
 
 pub(crate) fn nothing() -> EstimateError {

@@ -37,6 +37,8 @@ pub struct Evidence<'a> {
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
     /// True if the residual of each channel is shown beside every suspect.
     pub atlas: bool,
+    /// True if the model without any cause is kept.
+    pub twins: bool,
     pub delay: DelayFindings,
     /// Part of a sample by which motion and forces were shifted together before the comparison, s.
     pub skew_s: f64,
@@ -55,6 +57,7 @@ impl Default for Evidence<'_> {
             figures: Figures::of_nothing(),
             next: &|_| None,
             atlas: false,
+            twins: false,
             delay: DelayFindings::default(),
             skew_s: 0.0,
         }

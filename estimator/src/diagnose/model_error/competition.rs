@@ -4,6 +4,7 @@
 //! worse. The model error is a rival here, where Kennedy & O'Hagan (2001) add it to every model.
 
 use super::evidence::{Element, Fitted, Prior, Products};
+use super::null_model::{Autoregression, NullModel};
 use super::smooth::Discrepancy;
 use super::standing::Competition;
 use crate::diagnose::contract::Standing;
@@ -19,12 +20,22 @@ use crate::diagnose::selection::stepwise::Stepwise;
 
 /// Lets each chosen cause of a channel compete. `None` if the rows determine nothing.
 pub fn compete(study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<Competition> {
-    let first = Round::of(study, discrepancies, &study.system.coefficients)?;
-    // The autoregression of the first round took part of the slow structure for noise.
-    let used = vec![Use::Always; study.layout.rows()];
-    let coefficients = whitener(&first.residual(study), &study.layout, &used);
-    let found = Round::of(study, discrepancies, &coefficients)?.competition(study, discrepancies)?;
+    let (round, coefficients) = Round::last(study, study.picks(), discrepancies)?;
+    let found = round.competition(study, discrepancies)?;
     Some(Competition { coefficients, ..found })
+}
+
+/// The best model of a channel that has no cause. `None` if the rows determine nothing.
+pub fn without_causes(study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<NullModel> {
+    let (Round { rivals, raw, best, .. }, coefficients) = Round::last(study, Vec::new(), discrepancies)?;
+    let base = study.baseline.len();
+    let mut predicted = vec![0.0; study.layout.rows()];
+    for (column, value) in rivals.products.values(&best).into_iter().filter(|(column, _)| *column < base) {
+        predicted.iter_mut().zip(raw[column]).for_each(|(p, c)| *p += value * c);
+    }
+    let errors = best.used.iter().map(|(d, variance)| (discrepancies[*d].clone(), variance.sqrt())).collect();
+    let noise = Autoregression { coefficients, innovation: best.noise.sqrt() };
+    Some(NullModel { predicted, errors, noise, weight: study.layout.weight.clone(), target: study.target.clone() })
 }
 
 /// Rivals in a model: elements of causes come first, then those of discrepancies.
@@ -104,6 +115,8 @@ impl Rivals {
 
 /// One competition with one whitening.
 struct Round<'a> {
+    /// Causes that take part.
+    picks: Vec<usize>,
     rivals: Rivals,
     /// Columns of base model, causes, discrepancies, and the target.
     raw: Vec<&'a [f64]>,
@@ -112,8 +125,21 @@ struct Round<'a> {
 }
 
 impl<'a> Round<'a> {
-    fn of(study: &'a ChannelFit, discrepancies: &'a [Discrepancy], coefficients: &[f64]) -> Option<Self> {
-        let picks = study.picks();
+    /// The second of two rounds, with its whitening: the autoregression of the first took part of the slow structure for
+    /// noise.
+    fn last(study: &'a ChannelFit, picks: Vec<usize>, discrepancies: &'a [Discrepancy]) -> Option<(Self, Vec<f64>)> {
+        let first = Self::of(study, picks, discrepancies, &study.system.coefficients)?;
+        let used = vec![Use::Always; study.layout.rows()];
+        let coefficients = whitener(&first.residual(study), &study.layout, &used);
+        Some((Self::of(study, first.picks, discrepancies, &coefficients)?, coefficients))
+    }
+
+    fn of(
+        study: &'a ChannelFit,
+        picks: Vec<usize>,
+        discrepancies: &'a [Discrepancy],
+        coefficients: &[f64],
+    ) -> Option<Self> {
         let white = Whitening::new(&study.layout.segment, &study.layout.weight, coefficients);
         let whole = white.leaves();
         let picked: Vec<usize> = (0..study.layout.rows()).filter(|i| whole[*i]).collect();
@@ -126,7 +152,7 @@ impl<'a> Round<'a> {
             gram(&columns, &picked),
             study.baseline.len(),
             counted(&picked, &study.layout),
-            elements(study, discrepancies, &picked),
+            elements(study, &picks, discrepancies, &picked),
         )?;
         let tried = |p: usize| study.candidates.iter().filter(|c| c.id == study.candidates[p].id).count() as f64;
         let rivals = Rivals {
@@ -138,7 +164,7 @@ impl<'a> Round<'a> {
         let named = (0..picks.len()).map(|k| (k, 1.0)).collect();
         let mut best = rivals.settled(rivals.products.fit(named, None)?);
         let standings = rivals.standings(&mut best)?;
-        Some(Self { rivals, raw, best, standings })
+        Some(Self { picks, rivals, raw, best, standings })
     }
 
     /// Weighted residual of the best model, discrepancies included.
@@ -151,8 +177,7 @@ impl<'a> Round<'a> {
     }
 
     fn competition(self, study: &ChannelFit, discrepancies: &[Discrepancy]) -> Option<Competition> {
-        let Self { rivals, raw, best, mut standings, .. } = self;
-        let picks = study.picks();
+        let Self { picks, rivals, raw, best, mut standings } = self;
         for (k, standing) in standings.iter_mut().enumerate() {
             standing.held_out_evidence = confirmed(study, k);
         }
@@ -196,7 +221,7 @@ impl<'a> Round<'a> {
 }
 
 /// Causes and discrepancies with their priors. A cause may explain all that the base model leaves.
-fn elements(study: &ChannelFit, discrepancies: &[Discrepancy], picked: &[usize]) -> Vec<Element> {
+fn elements(study: &ChannelFit, picks: &[usize], discrepancies: &[Discrepancy], picked: &[usize]) -> Vec<Element> {
     let plain = study.residual(&[]);
     let mean_square = |of: &[f64]| picked.iter().map(|i| (study.layout.weight[*i] * of[*i]).powi(2)).sum::<f64>();
     let left = mean_square(&plain);
@@ -210,7 +235,6 @@ fn elements(study: &ChannelFit, discrepancies: &[Discrepancy], picked: &[usize])
         let variance = |c: &[f64]| left / (own.len() as f64 * mean_square(c)).max(f64::MIN_POSITIVE);
         (own.len(), Prior::Fixed(own.iter().map(|c| variance(c)).collect()))
     };
-    let picks = study.picks();
     let causes = picks.iter().map(of_cause);
     let errors = discrepancies.iter().map(|d| (d.columns.len(), Prior::Estimated));
     causes.chain(errors).map(|(columns, prior)| Element { columns: place(columns), prior }).collect()

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// A structured error of a channel: an unknown smooth function of some variables.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Discrepancy {
     /// Variables of which it is a function.
     pub over: &'static str,

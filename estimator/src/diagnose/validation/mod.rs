@@ -1,1 +1,2 @@
 pub(crate) mod on_other_recordings;
+pub(crate) mod twins;

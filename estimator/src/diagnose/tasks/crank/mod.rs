@@ -80,6 +80,7 @@ pub fn crank(
         remarks: on_bearing.into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
         atlas: options.atlas,
+        twins: options.twins,
         delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
         ..Evidence::default()
     };

@@ -147,6 +147,7 @@ impl Studied {
             remarks: (skew_s != 0.0).then(|| time_delay::apart(skew_s)).into_iter().collect(),
             without_known: without_known(is_weighed, true),
             atlas: options.atlas,
+            twins: options.twins,
             delay: DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() },
             skew_s,
             ..Evidence::default()

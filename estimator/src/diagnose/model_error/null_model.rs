@@ -1,0 +1,117 @@
+//! A channel as it would be if no cause acted: base model, structured errors and noise.
+
+use super::smooth::Discrepancy;
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Rows that pass before the first row of a segment, so that its noise is stationary.
+/// Derived: many times the longest memory of the autoregression.
+const BURN_IN: usize = 200;
+
+/// Noise of weighted rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Autoregression {
+    /// Coefficients of the lags from 1 on.
+    pub coefficients: Vec<f64>,
+    /// Standard deviation of what each row adds.
+    pub innovation: f64,
+}
+
+impl Autoregression {
+    /// Noise of consecutive rows.
+    fn draw(&self, rows: usize, rng: &mut impl Rng) -> Vec<f64> {
+        let mut noise: Vec<f64> = Vec::with_capacity(BURN_IN + rows);
+        for _ in 0..BURN_IN + rows {
+            let past: f64 = self.coefficients.iter().zip(noise.iter().rev()).map(|(a, e)| a * e).sum();
+            noise.push(past + self.innovation * normal(rng));
+        }
+        noise.split_off(BURN_IN)
+    }
+}
+
+/// The best model of a channel without any cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NullModel {
+    /// Prediction of the base model, row by row, N or N m.
+    pub predicted: Vec<f64>,
+    /// Structured errors, with the standard deviation of their coefficients.
+    pub errors: Vec<(Discrepancy, f64)>,
+    /// Noise of the weighted rows.
+    pub noise: Autoregression,
+    /// Factor by which the noise of each row is reduced.
+    pub weight: Vec<f64>,
+    /// The measured value of each row.
+    pub target: Vec<f64>,
+}
+
+impl NullModel {
+    /// A replay less the measurement, row by row: other structured errors of the same size and other noise of the same
+    /// spectrum. `segment`: of each row.
+    pub fn change(&self, segment: &[usize], rng: &mut impl Rng) -> Vec<f64> {
+        let mut drawn = self.predicted.clone();
+        for (error, deviation) in &self.errors {
+            for column in &error.columns {
+                let value = deviation * normal(rng);
+                drawn.iter_mut().zip(column).for_each(|(d, c)| *d += value * c);
+            }
+        }
+        let noise: Vec<f64> =
+            segment.chunk_by(|a, b| a == b).flat_map(|rows| self.noise.draw(rows.len(), rng)).collect();
+        let of_row = |((d, e), (w, y)): ((f64, f64), (&f64, &f64))| {
+            // A row of no weight has no known noise.
+            d + if *w > 0.0 { e / w } else { 0.0 } - y
+        };
+        drawn.into_iter().zip(noise).zip(self.weight.iter().zip(&self.target)).map(of_row).collect()
+    }
+}
+
+fn normal(rng: &mut impl Rng) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    const ROWS: usize = 20_000;
+
+    fn power(values: &[f64]) -> f64 {
+        values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64
+    }
+
+    #[test]
+    fn noise_has_the_variance_of_its_autoregression_from_its_first_row_on() {
+        let noise = Autoregression { coefficients: vec![0.8], innovation: 0.3 };
+        let mut rng = StdRng::seed_from_u64(1);
+        let wanted = 0.09 / (1.0 - 0.64);
+        assert!((power(&noise.draw(ROWS, &mut rng)) / wanted - 1.0).abs() < 0.1);
+        let first: Vec<f64> = (0..2000).map(|_| noise.draw(1, &mut rng)[0]).collect();
+        assert!((power(&first) / wanted - 1.0).abs() < 0.15);
+    }
+
+    #[test]
+    fn a_replay_has_the_prediction_its_structured_error_and_noise_by_weight() {
+        let wave: Vec<f64> = (0..ROWS).map(|i| (0.01 * i as f64).sin()).collect();
+        let error = Discrepancy::new("time", vec![wave]).expect("a column");
+        let null = NullModel {
+            predicted: vec![3.0; ROWS],
+            errors: vec![(error.clone(), 2.0)],
+            noise: Autoregression { coefficients: Vec::new(), innovation: 0.1 },
+            weight: (0..ROWS).map(|i| if i < ROWS / 2 { 1.0 } else { 0.5 }).collect(),
+            target: vec![1.0; ROWS],
+        };
+        let segment = vec![0; ROWS];
+        let change = null.change(&segment, &mut StdRng::seed_from_u64(2));
+        let other = null.change(&segment, &mut StdRng::seed_from_u64(3));
+        let along = |values: &[f64]| {
+            let product: f64 = values.iter().zip(&error.columns[0]).map(|(v, c)| (v - 2.0) * c).sum();
+            product / ROWS as f64
+        };
+        assert!((along(&change) - along(&other)).abs() > 0.1, "each replay draws its own error");
+        let noise: Vec<f64> = change.iter().zip(&error.columns[0]).map(|(v, c)| v - 2.0 - along(&change) * c).collect();
+        assert!((power(&noise[..ROWS / 2]) - 0.01).abs() < 1e-3);
+        assert!((power(&noise[ROWS / 2..]) - 0.04).abs() < 4e-3);
+    }
+}
