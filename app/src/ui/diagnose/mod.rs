@@ -8,5 +8,6 @@ pub mod experiment_state;
 pub mod guidance;
 pub mod guided_experiment;
 pub mod panels;
+pub mod replays;
 pub mod state;
 pub mod validation;

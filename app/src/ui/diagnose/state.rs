@@ -11,7 +11,7 @@ use crate::ui::document::file_kind::LOAD;
 use crate::ui::document::fit_choice::FitChoice;
 use crate::ui::document::prepared::Prepared;
 use crate::ui::plots::residuals::Residuals;
-use estimator::diagnose::{self, Findings, Options, Progress, Worlds};
+use estimator::diagnose::{self, Findings, Options, Progress, Twins, Worlds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::Arc;
@@ -86,6 +86,8 @@ pub struct Diagnosing {
     pub rehearsal: Option<Arc<Rehearsal>>,
     /// Checks of the answer on other recordings.
     pub checked: Vec<Checked>,
+    /// False alarms in replays without any cause, or why there are none, in one sentence.
+    pub twins: Option<Result<Twins, String>>,
     /// The path field of a recording to check on.
     pub check_field: String,
     /// Why it could not be rehearsed, in one sentence.

@@ -3,6 +3,7 @@
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
 use super::{count_near, harness, keep, no_driver, until_done};
 use crate::ui::diagnose::checked::{Checked, Holds, On, holds};
+use crate::ui::diagnose::replays::REPLAY;
 use crate::ui::diagnose::validation::{CHECK, check_now};
 use crate::ui::document::prepared::Prepared;
 use crate::ui::headless::screenshot;
@@ -67,6 +68,19 @@ fn what_was_found_is_checked_on_files_with_an_interval_and_a_verdict() {
     let [low, high] = expected[0].interval;
     assert!(low < expected[0].share && expected[0].share < high && low > 0.3, "{expected:?}");
     assert_eq!(other_found.found.as_ref().map(holds), Ok(Holds::No));
+}
+
+#[test]
+fn false_alarms_are_counted_in_replays_and_the_card_says_how_many() {
+    let mut harness = window(diagnosed(RIPPLED.clone()));
+    harness.get_by_role_and_label(Role::Button, "Diagnose 20 replays").click();
+    harness.run_steps(2);
+    until_done(&mut harness, REPLAY);
+    let twins = harness.state().session.diagnosing.twins.clone().expect("an answer").expect("replays of a crank");
+    assert_eq!(twins.runs, 20);
+    assert!(twins.named <= 3 && twins.interval[1] < 0.4, "{twins:?}");
+    assert!(harness.query_by_label_contains("of 20 replays").is_some());
+    assert!(harness.query_by_role_and_label(Role::Button, "Diagnose 20 replays").is_none());
 }
 
 #[test]

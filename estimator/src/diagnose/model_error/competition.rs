@@ -4,7 +4,7 @@
 //! worse. The model error is a rival here, where Kennedy & O'Hagan (2001) add it to every model.
 
 use super::evidence::{Element, Fitted, Prior, Products};
-use super::null_model::{Autoregression, NullModel};
+use super::null_model::{Autoregression, NullModel, StructuredError};
 use super::smooth::Discrepancy;
 use super::standing::Competition;
 use crate::diagnose::contract::Standing;
@@ -33,7 +33,20 @@ pub fn without_causes(study: &ChannelFit, discrepancies: &[Discrepancy]) -> Opti
     for (column, value) in rivals.products.values(&best).into_iter().filter(|(column, _)| *column < base) {
         predicted.iter_mut().zip(raw[column]).for_each(|(p, c)| *p += value * c);
     }
-    let errors = best.used.iter().map(|(d, variance)| (discrepancies[*d].clone(), variance.sqrt())).collect();
+    let beside_base = |values: Vec<(usize, f64)>| {
+        let mut sum = vec![0.0; study.layout.rows()];
+        for (column, value) in rivals.products.beside_base(values) {
+            sum.iter_mut().zip(raw[column]).for_each(|(s, c)| *s += value * c);
+        }
+        sum
+    };
+    let error = |(d, _): &(usize, f64)| {
+        let values: Vec<_> =
+            rivals.products.values_of(&best, *d).into_iter().map(|(c, value)| (base + c, value)).collect();
+        let waves = values.iter().map(|(column, _)| beside_base(vec![(*column, 1.0)])).collect();
+        StructuredError { waves, rms: rms(&beside_base(values), &study.layout.weight) }
+    };
+    let errors = best.used.iter().map(error).collect();
     let noise = Autoregression { coefficients, innovation: best.noise.sqrt() };
     Some(NullModel { predicted, errors, noise, weight: study.layout.weight.clone(), target: study.target.clone() })
 }
@@ -240,7 +253,8 @@ fn elements(study: &ChannelFit, picks: &[usize], discrepancies: &[Discrepancy], 
     causes.chain(errors).map(|(columns, prior)| Element { columns: place(columns), prior }).collect()
 }
 
-fn rms(values: &[f64], weight: &[f64]) -> f64 {
+/// Root mean square over the rows on which a force acts, each by its weight.
+pub(super) fn rms(values: &[f64], weight: &[f64]) -> f64 {
     let acting = || values.iter().zip(weight).filter(|(v, _)| **v != 0.0);
     let rows: f64 = acting().map(|(_, w)| w * w).sum();
     (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()

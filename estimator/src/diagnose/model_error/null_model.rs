@@ -1,6 +1,6 @@
 //! A channel as it would be if no cause acted: base model, structured errors and noise.
 
-use super::smooth::Discrepancy;
+use super::competition::rms;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -29,16 +29,37 @@ impl Autoregression {
     }
 }
 
+/// A random function of some variables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructuredError {
+    /// Columns of random coefficients, without their part along the model's regressors.
+    pub waves: Vec<Vec<f64>>,
+    /// Root mean square of their sum, N or N m.
+    pub rms: f64,
+}
+
+impl StructuredError {
+    /// Another function of the same size.
+    fn draw(&self, weight: &[f64], rng: &mut impl Rng) -> Vec<f64> {
+        let mut drawn = vec![0.0; weight.len()];
+        for wave in &self.waves {
+            let value = normal(rng);
+            drawn.iter_mut().zip(wave).for_each(|(d, w)| *d += value * w);
+        }
+        let scale = self.rms / rms(&drawn, weight).max(f64::MIN_POSITIVE);
+        drawn.into_iter().map(|d| scale * d).collect()
+    }
+}
+
 /// The best model of a channel without any cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NullModel {
     /// Prediction of the base model, row by row, N or N m.
     pub predicted: Vec<f64>,
-    /// Structured errors, with the standard deviation of their coefficients.
-    pub errors: Vec<(Discrepancy, f64)>,
+    pub errors: Vec<StructuredError>,
     /// Noise of the weighted rows.
     pub noise: Autoregression,
-    /// Factor by which the noise of each row is reduced.
+    /// Weight of each row's error.
     pub weight: Vec<f64>,
     /// The measured value of each row.
     pub target: Vec<f64>,
@@ -49,19 +70,13 @@ impl NullModel {
     /// spectrum. `segment`: of each row.
     pub fn change(&self, segment: &[usize], rng: &mut impl Rng) -> Vec<f64> {
         let mut drawn = self.predicted.clone();
-        for (error, deviation) in &self.errors {
-            for column in &error.columns {
-                let value = deviation * normal(rng);
-                drawn.iter_mut().zip(column).for_each(|(d, c)| *d += value * c);
-            }
+        for error in &self.errors {
+            let error = error.draw(&self.weight, rng);
+            drawn.iter_mut().zip(error).for_each(|(d, e)| *d += e);
         }
         let noise: Vec<f64> =
             segment.chunk_by(|a, b| a == b).flat_map(|rows| self.noise.draw(rows.len(), rng)).collect();
-        let of_row = |((d, e), (w, y)): ((f64, f64), (&f64, &f64))| {
-            // A row of no weight has no known noise.
-            d + if *w > 0.0 { e / w } else { 0.0 } - y
-        };
-        drawn.into_iter().zip(noise).zip(self.weight.iter().zip(&self.target)).map(of_row).collect()
+        drawn.into_iter().zip(noise).zip(&self.target).map(|((d, e), y)| d + e - y).collect()
     }
 }
 
@@ -92,26 +107,25 @@ mod tests {
     }
 
     #[test]
-    fn a_replay_has_the_prediction_its_structured_error_and_noise_by_weight() {
+    fn a_replay_has_the_prediction_a_structured_error_of_its_size_and_noise() {
         let wave: Vec<f64> = (0..ROWS).map(|i| (0.01 * i as f64).sin()).collect();
-        let error = Discrepancy::new("time", vec![wave]).expect("a column");
+        let size = rms(&wave, &vec![1.0; ROWS]);
         let null = NullModel {
             predicted: vec![3.0; ROWS],
-            errors: vec![(error.clone(), 2.0)],
+            errors: vec![StructuredError { waves: vec![wave.clone()], rms: 2.0 }],
             noise: Autoregression { coefficients: Vec::new(), innovation: 0.1 },
-            weight: (0..ROWS).map(|i| if i < ROWS / 2 { 1.0 } else { 0.5 }).collect(),
+            weight: vec![1.0; ROWS],
             target: vec![1.0; ROWS],
         };
         let segment = vec![0; ROWS];
         let change = null.change(&segment, &mut StdRng::seed_from_u64(2));
         let other = null.change(&segment, &mut StdRng::seed_from_u64(3));
         let along = |values: &[f64]| {
-            let product: f64 = values.iter().zip(&error.columns[0]).map(|(v, c)| (v - 2.0) * c).sum();
+            let product: f64 = values.iter().zip(&wave).map(|(v, w)| (v - 2.0) * w / size).sum();
             product / ROWS as f64
         };
-        assert!((along(&change) - along(&other)).abs() > 0.1, "each replay draws its own error");
-        let noise: Vec<f64> = change.iter().zip(&error.columns[0]).map(|(v, c)| v - 2.0 - along(&change) * c).collect();
-        assert!((power(&noise[..ROWS / 2]) - 0.01).abs() < 1e-3);
-        assert!((power(&noise[ROWS / 2..]) - 0.04).abs() < 4e-3);
+        assert!([along(&change), along(&other)].iter().all(|size| (size.abs() - 2.0).abs() < 0.01));
+        let noise: Vec<f64> = change.iter().zip(&wave).map(|(v, w)| v - 2.0 - along(&change) * w / size).collect();
+        assert!((power(&noise) - 0.01).abs() < 1e-3);
     }
 }

@@ -20,6 +20,8 @@ pub struct Twin {
     rows: Vec<Placed>,
     /// Segment of each row.
     segment: Vec<usize>,
+    /// Causes found in these forces, which a replay lacks.
+    removed: Vec<&'static str>,
     /// True if the force was measured as a vector in the plane of the motion.
     is_planar: bool,
 }
@@ -52,7 +54,13 @@ impl Twin {
             is_force: !matches!(row.place, Place::Stuck { .. }),
         });
         let segment = track.rows.iter().map(|row| row.segment).collect();
-        Some(Self { null, rows: placed.collect(), segment, is_planar: track.planar })
+        let removed = study.picks().into_iter().map(|p| study.candidates[p].id).collect();
+        Some(Self { null, rows: placed.collect(), segment, removed, is_planar: track.planar })
+    }
+
+    /// True if a replay lacks this cause of the recording. Faults of samples and causes of the path remain.
+    pub fn lacks(&self, id: &str) -> bool {
+        self.removed.contains(&id)
     }
 
     /// The same recordings with other forces. `paths`: of each tool whose coordinate was not recorded.
@@ -96,7 +104,7 @@ impl Twin {
     /// Vector whose product with a force along the coordinate is the force on the tool, 1 or 1/m.
     fn direction(&self, row: &Placed, path: Option<&MechanismPath>) -> [f64; 3] {
         match path {
-            Some(path) => per_force(path, row.position),
+            Some(path) => path.force_n(row.position, 1.0),
             None if self.is_planar => [row.along.x, row.along.y, 0.0],
             None => [1.0, 0.0, 0.0],
         }
@@ -112,16 +120,6 @@ fn channels(recording: &Recording, is_tool: bool, is_planar: bool) -> Vec<(&'sta
         return vec![("fx1_N", 0, 0.5), ("fy1_N", 1, 0.5), ("fx2_N", 0, 0.5), ("fy2_N", 1, 0.5)];
     }
     vec![("fx_N", 0, 1.0), ("fy_N", 1, 1.0), ("fz_N", 2, 1.0)]
-}
-
-/// The least force on a tool that acts as a unit force along its path: the tangent over its square.
-fn per_force(path: &MechanismPath, position: f64) -> [f64; 3] {
-    // The path is a line or a circle: its central difference is exact to the fourth power of the step.
-    let step = 1e-3;
-    let [before, after] = [-step, step].map(|d| path.point_m(position + d));
-    let tangent: [f64; 3] = std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * step));
-    let square: f64 = tangent.iter().map(|t| t * t).sum();
-    tangent.map(|t| t / square.max(f64::MIN_POSITIVE))
 }
 
 #[cfg(test)]
@@ -150,7 +148,7 @@ mod tests {
             along,
             is_force: true,
         };
-        Twin { null, rows: (0..ROWS).map(place).collect(), segment: vec![0; ROWS], is_planar }
+        Twin { null, rows: (0..ROWS).map(place).collect(), segment: vec![0; ROWS], removed: Vec::new(), is_planar }
     }
 
     fn recording(names: &[&str]) -> Recording {

@@ -1,6 +1,6 @@
 //! False alarms of this site: how often a diagnosis names a cause in replays that have none.
 
-use crate::diagnose::contract::{Diagnosis, NamedInTwins, Twins};
+use crate::diagnose::contract::{NamedInTwins, Twins};
 use crate::diagnose::diagnose;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::axis_sign;
@@ -34,17 +34,17 @@ pub fn count(recordings: &[Recording], options: &Options, found: &Findings, runs
             options.progress.tell(share).map(|()| answer)
         })
         .collect::<Result<_, _>>()?;
-    Ok(counted(&found.diagnosis, &answers))
+    let remains: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).filter(|id| !twin.lacks(id)).collect();
+    Ok(counted(&answers, &remains))
 }
 
-fn counted(found: &Diagnosis, answers: &[Findings]) -> Twins {
-    // A fault of the samples is in the replays, too.
-    let remains = |id: &str| found.causes.iter().any(|c| c.id == id && c.standing.is_none());
+/// `remains`: causes of the recordings that are in the replays, too.
+fn counted(answers: &[Findings], remains: &[&str]) -> Twins {
     let names: Vec<Vec<&str>> = answers
         .iter()
         .map(|answer| {
             let certain = answer.certain().into_iter().map(|c| c.id.as_str());
-            certain.filter(|id| !remains(id) && !id.starts_with("other:")).collect()
+            certain.filter(|id| !remains.contains(id) && !id.starts_with("other:")).collect()
         })
         .collect();
     let mut by_cause: Vec<NamedInTwins> = Vec::new();

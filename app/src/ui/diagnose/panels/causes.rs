@@ -6,7 +6,7 @@ use crate::text::sentence::sentence;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnose::actions;
-use crate::ui::diagnose::panels::{cause_card, next_experiment, residuals, validation, why_not};
+use crate::ui::diagnose::panels::{cause_card, false_alarms, next_experiment, residuals, validation, why_not};
 use crate::ui::diagnose::state::{Answer, DIAGNOSE, Diagnosing, EXTEND};
 use crate::ui::document::files;
 use crate::ui::document::state::Document;
@@ -86,6 +86,7 @@ impl Panel for DiagnosisPanel {
                 cause_card::cause(ui, k + 1, cause, &answer.diagnosis);
             }
             by_state(ui, &answer.diagnosis);
+            false_alarms::card(ui, session, &answer.diagnosis);
             validation::card(
                 ui,
                 &session.document,

@@ -3,6 +3,7 @@
 pub mod atlas;
 pub mod cause_card;
 pub mod causes;
+pub mod false_alarms;
 pub mod motion_plan;
 pub mod next_experiment;
 pub mod residuals;
