@@ -16,6 +16,9 @@ mod words {
     pub const FALSE_ALARMS_MORE: &str = "Replays have the recorded motion and no cause. Their structured errors and their \
         noise are as large as in these recordings. A cause that is certain in a replay is a false alarm.";
     pub const COUNT: &str = "Diagnose 20 replays";
+    pub const NONE: &str = "None";
+    pub const IS_ONE: &str = "is a false alarm";
+    pub const ARE_SOME: &str = "are false alarms";
 }
 
 /// Card below the causes, if one is certain.
@@ -52,8 +55,8 @@ fn ask(ui: &mut Ui, session: &mut Session) {
 fn counted(twins: &Twins) -> String {
     let names: Vec<String> = twins.by_cause.iter().map(|named| title(&named.id)).collect();
     let which = if names.is_empty() { String::new() } else { format!(": {}", listed(&names)) };
-    let number = if twins.named == 0 { "None".to_owned() } else { twins.named.to_string() };
-    let are = if twins.named > 1 { "are false alarms" } else { "is a false alarm" };
+    let number = if twins.named == 0 { words::NONE.to_owned() } else { twins.named.to_string() };
+    let are = if twins.named > 1 { words::ARE_SOME } else { words::IS_ONE };
     format!("{number} of {} replays {are}{which}.", twins.runs)
 }
 
