@@ -4,10 +4,6 @@ use super::competition::rms;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Rows that pass before the first row of a segment, so that its noise is stationary.
-/// Derived: many times the longest memory of the autoregression.
-const BURN_IN: usize = 200;
-
 /// Noise of weighted rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Autoregression {
@@ -18,14 +14,14 @@ pub struct Autoregression {
 }
 
 impl Autoregression {
-    /// Noise of consecutive rows.
+    /// Noise of consecutive rows. As many rows pass before them, so that it is stationary.
     fn draw(&self, rows: usize, rng: &mut impl Rng) -> Vec<f64> {
-        let mut noise: Vec<f64> = Vec::with_capacity(BURN_IN + rows);
-        for _ in 0..BURN_IN + rows {
+        let mut noise: Vec<f64> = Vec::with_capacity(2 * rows);
+        for _ in 0..2 * rows {
             let past: f64 = self.coefficients.iter().zip(noise.iter().rev()).map(|(a, e)| a * e).sum();
             noise.push(past + self.innovation * normal(rng));
         }
-        noise.split_off(BURN_IN)
+        noise.split_off(rows)
     }
 }
 
@@ -67,15 +63,14 @@ pub struct NullModel {
 
 impl NullModel {
     /// A replay less the measurement, row by row: other structured errors of the same size and other noise of the same
-    /// spectrum. `segment`: of each row.
-    pub fn change(&self, segment: &[usize], rng: &mut impl Rng) -> Vec<f64> {
+    /// spectrum.
+    pub fn change(&self, rng: &mut impl Rng) -> Vec<f64> {
         let mut drawn = self.predicted.clone();
         for error in &self.errors {
             let error = error.draw(&self.weight, rng);
             drawn.iter_mut().zip(error).for_each(|(d, e)| *d += e);
         }
-        let noise: Vec<f64> =
-            segment.chunk_by(|a, b| a == b).flat_map(|rows| self.noise.draw(rows.len(), rng)).collect();
+        let noise = self.noise.draw(self.target.len(), rng);
         drawn.into_iter().zip(noise).zip(&self.target).map(|((d, e), y)| d + e - y).collect()
     }
 }
@@ -102,7 +97,7 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(1);
         let wanted = 0.09 / (1.0 - 0.64);
         assert!((power(&noise.draw(ROWS, &mut rng)) / wanted - 1.0).abs() < 0.1);
-        let first: Vec<f64> = (0..2000).map(|_| noise.draw(1, &mut rng)[0]).collect();
+        let first: Vec<f64> = (0..2000).map(|_| noise.draw(50, &mut rng)[0]).collect();
         assert!((power(&first) / wanted - 1.0).abs() < 0.15);
     }
 
@@ -117,9 +112,8 @@ mod tests {
             weight: vec![1.0; ROWS],
             target: vec![1.0; ROWS],
         };
-        let segment = vec![0; ROWS];
-        let change = null.change(&segment, &mut StdRng::seed_from_u64(2));
-        let other = null.change(&segment, &mut StdRng::seed_from_u64(3));
+        let change = null.change(&mut StdRng::seed_from_u64(2));
+        let other = null.change(&mut StdRng::seed_from_u64(3));
         let along = |values: &[f64]| {
             let product: f64 = values.iter().zip(&wave).map(|(v, w)| (v - 2.0) * w / size).sum();
             product / ROWS as f64

@@ -70,7 +70,7 @@ impl Twin {
         paths: &[Option<MechanismPath>],
         rng: &mut impl Rng,
     ) -> Vec<Recording> {
-        let change = self.null.change(&self.segment, rng);
+        let change = self.null.change(rng);
         let mut replayed = recordings.to_vec();
         let mut first = 0;
         for rows in self.segment.chunk_by(|a, b| a == b) {

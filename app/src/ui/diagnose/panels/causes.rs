@@ -86,7 +86,14 @@ impl Panel for DiagnosisPanel {
                 cause_card::cause(ui, k + 1, cause, &answer.diagnosis);
             }
             by_state(ui, &answer.diagnosis);
-            false_alarms::card(ui, session, &answer.diagnosis);
+            false_alarms::card(
+                ui,
+                &session.document,
+                &session.calibration,
+                &session.diagnosing,
+                &mut session.jobs,
+                &answer.diagnosis,
+            );
             validation::card(
                 ui,
                 &session.document,

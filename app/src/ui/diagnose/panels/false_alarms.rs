@@ -2,7 +2,11 @@
 
 use crate::text::diagnosis_words::{listed, title};
 use crate::text::format;
+use crate::ui::background::jobs::Jobs;
+use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnose::replays;
+use crate::ui::diagnose::state::Diagnosing;
+use crate::ui::document::state::Document;
 use crate::ui::kit::icons::Icon;
 use crate::ui::kit::theme;
 use crate::ui::kit::widgets::{plain_card, remark};
@@ -22,29 +26,36 @@ mod words {
 }
 
 /// Card below the causes, if one is certain.
-pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Findings) {
+pub fn card(
+    ui: &mut Ui,
+    document: &Document,
+    calibration: &Calibration,
+    diagnosing: &Diagnosing,
+    jobs: &mut Jobs<Session>,
+    diagnosis: &Findings,
+) {
     if diagnosis.certain().is_empty() {
         return;
     }
     plain_card(ui, words::FALSE_ALARMS, |ui| {
         ui.add(egui::Label::new(theme::caption(ui, words::FALSE_ALARMS_MORE)).wrap());
-        match &session.diagnosing.twins {
+        match &diagnosing.twins {
             Some(Ok(twins)) => {
                 ui.add(egui::Label::new(theme::strong(counted(twins))).wrap());
                 ui.add(egui::Label::new(theme::caption(ui, interval(twins))).wrap());
             }
             Some(Err(problem)) => drop(remark(ui, Icon::Doubt, problem)),
-            None => ask(ui, session),
+            None => ask(ui, document, calibration, diagnosing, jobs),
         }
     });
 }
 
-fn ask(ui: &mut Ui, session: &mut Session) {
-    let is_busy = session.jobs.is_running(replays::REPLAY);
+fn ask(ui: &mut Ui, document: &Document, calibration: &Calibration, diagnosing: &Diagnosing, jobs: &mut Jobs<Session>) {
+    let is_busy = jobs.is_running(replays::REPLAY);
     ui.horizontal(|ui| {
         if ui.add_enabled(!is_busy, egui::Button::new(words::COUNT)).clicked() {
             let ctx = ui.ctx().clone();
-            replays::count(&session.document, &session.calibration, &session.diagnosing, &mut session.jobs, &ctx);
+            replays::count(document, calibration, diagnosing, jobs, &ctx);
         }
         if is_busy {
             ui.add(egui::Spinner::new().size(16.0));
