@@ -35,7 +35,7 @@ use foundation::estimate::EstimateError;
 use haptics::recording::{Recording, Task};
 pub use hypotheses::sensor_fault::{SensorFault, Step};
 pub use hypotheses::variable::Variable;
-use logs::NO_CLOCK;
+use logs::{NO_CLOCK, UNIT};
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::baseline_models::named;
@@ -50,8 +50,9 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
     let task = task_of(first, options.task)?;
     let mut found = of_task(task, recordings, options)?;
     found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
-    let clockless = recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| w.kind == NO_CLOCK));
-    found.warnings.extend(clockless.map(|w| w.text.clone()));
+    let doubtful =
+        recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| [NO_CLOCK, UNIT].contains(&w.kind.as_str())));
+    found.warnings.extend(doubtful.map(|w| w.text.clone()));
     found.warnings.dedup();
     found.name_by_unit();
     Ok(found)

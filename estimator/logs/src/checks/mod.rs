@@ -14,6 +14,7 @@ mod scale;
 mod spikes;
 
 pub use repeats::copied;
+pub use scale::UNIT;
 
 use super::units;
 use haptics::recording::{Channel, Recording, Warning};

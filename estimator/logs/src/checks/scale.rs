@@ -9,6 +9,9 @@ use haptics::recording::{Channel, Recording, Span, Warning};
 const FACTORS: [(f64, &str); 3] = [(1000.0, "1000"), (100.0, "100"), (180.0 / std::f64::consts::PI, "57.3")];
 /// A measured ratio may differ from the factor by this, either way: noise on the velocity lowers it.
 const TOLERANCE: f64 = 1.2;
+/// Largest difference of a rate from that of its position, as a factor.
+/// Choice: a calibrated gyroscope or tachometer is within a few per cent.
+const AGREES: f64 = 1.1;
 /// Below this correlation over the windows, position and velocity say too little about each other.
 const CORRELATED: f64 = 0.9;
 /// Largest number of windows over which displacement and mean velocity are compared.
@@ -36,6 +39,9 @@ const FARTHEST_MECHANISM_M: f64 = 100.0;
 /// Fewer samples do not show a range.
 const FEWEST_SAMPLES: usize = 50;
 
+/// Kind of these warnings.
+pub const UNIT: &str = "unit";
+
 /// Everything whose unit is doubtful.
 pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     if recording.len() < FEWEST_SAMPLES {
@@ -48,7 +54,7 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
 
 fn doubt(recording: &Recording, column: &str, text: String) -> Warning {
     let all = Span { first: 0, end: recording.len() };
-    Warning { kind: "unit".to_owned(), column: Some(column.to_owned()), spans: vec![all], text }
+    Warning { kind: UNIT.to_owned(), column: Some(column.to_owned()), spans: vec![all], text }
 }
 
 /// Velocity channels against the changes of their positions.
@@ -57,22 +63,24 @@ fn rates(recording: &Recording) -> Vec<Warning> {
     let mut found = Vec::new();
     for velocity in &recording.channels {
         let Some(position) = position_of(recording, velocity) else { continue };
-        let Some(ratio) = ratio(time, &position.values, &velocity.values) else { continue };
-        let near = |factor: f64| ratio / factor < TOLERANCE && factor / ratio < TOLERANCE;
-        for (factor, name) in FACTORS {
-            let how = if near(factor) {
-                format!("{name} times")
-            } else if near(1.0 / factor) {
-                format!("1/{name} of")
-            } else {
-                continue;
-            };
-            let text = format!(
-                "{} changes at {how} the rate that {} states: the unit of one of the two, or of the time, is wrong by {name}; correct it in the column's name, or give \"scale\" in the sidecar",
-                position.name, velocity.name
-            );
-            found.push(doubt(recording, &velocity.name, text));
+        let Some([least, most]) = ratios(time, &position.values, &velocity.values) else { continue };
+        if least <= AGREES && most >= AGREES.recip() {
+            continue;
         }
+        let is_near = |factor: &f64| least / factor < TOLERANCE && factor / least < TOLERANCE;
+        let named = FACTORS.into_iter().flat_map(|(factor, name)| {
+            [(factor, format!("{name} times"), name), (factor.recip(), format!("1/{name} of"), name)]
+        });
+        let ratio = (least * most).sqrt();
+        let (how, wrong) = named.into_iter().find(|(factor, ..)| is_near(factor)).map_or_else(
+            || (format!("{ratio:.2} times"), format!("a factor of {:.2}", ratio.max(ratio.recip()))),
+            |(_, how, name)| (how, name.to_owned()),
+        );
+        let text = format!(
+            "{} changes at {how} the rate that {} states: the unit of one of the two, or of the time, is wrong by {wrong}; correct it in the column's name, or give \"scale\" in the sidecar",
+            position.name, velocity.name
+        );
+        found.push(doubt(recording, &velocity.name, text));
     }
     found
 }
@@ -88,9 +96,10 @@ fn position_of<'a>(recording: &'a Recording, velocity: &Channel) -> Option<&'a C
     recording.channels.iter().find(|c| units::split(&c.name).is_some_and(|(q, u)| q == stem && u.si == unit))
 }
 
-/// Ratio of the rate of the position to the stated velocity, by least squares over windows long enough that noise
-/// averages out; `None` if the two are hardly correlated.
-fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
+/// Ratios of the rate of the position to the stated velocity over windows long enough that noise averages out: least
+/// squares with all errors in the position, and with all of them in the velocity. The true ratio lies between, also if
+/// the velocity has passed a first-order low-pass. `None` if the two are hardly correlated.
+fn ratios(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<[f64; 2]> {
     let n = time.len();
     let window = (n / WINDOWS).max(WINDOW_SAMPLES);
     let (mut pp, mut pv, mut vv, mut count) = (0.0, 0.0, 0.0, 0);
@@ -104,7 +113,7 @@ fn ratio(time: &[f64], position: &[f64], velocity: &[f64]) -> Option<f64> {
         first = end;
     }
     let together = pv.abs() > CORRELATED * (pp * vv).sqrt();
-    (count >= FEWEST_WINDOWS && together && vv > 0.0).then(|| (pv / vv).abs())
+    (count >= FEWEST_WINDOWS && together && vv > 0.0).then(|| [(pv / vv).abs(), (pp / pv).abs()])
 }
 
 /// Positions, angles and forces against the abilities of a hand.

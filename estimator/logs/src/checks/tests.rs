@@ -47,6 +47,31 @@ fn gaps_dropped_samples_and_jumps_are_told_apart() {
 }
 
 #[test]
+fn a_rate_of_another_size_than_its_position_s_is_doubted_and_a_filtered_or_noisy_one_is_not() {
+    let time: Vec<f64> = (0..4000).map(|i| f64::from(i) * 5e-3).collect();
+    let place: Vec<f64> = time.iter().map(|t| (1.3 * t).sin() + 0.4 * (3.1 * t).sin()).collect();
+    let doubts = |rate: Vec<f64>| {
+        let found =
+            warnings(&recording(time.clone(), vec![channel("q_rad", place.clone()), channel("dq_rad_s", rate)]));
+        found.into_iter().filter(|w| w.kind == "unit").map(|w| w.text).collect::<Vec<_>>()
+    };
+    let rate: Vec<f64> = time.iter().map(|t| 1.3 * (1.3 * t).cos() + 1.24 * (3.1 * t).cos()).collect();
+    let noisy = |scale: f64, size: f64| -> Vec<f64> {
+        rate.iter().enumerate().map(|(i, v)| scale * v + size * (i as f64 * 17.3).sin()).collect()
+    };
+    let twice = doubts(noisy(2.0, 0.5));
+    assert!(twice.len() == 1 && twice[0].contains("0.50 times") && twice[0].contains("a factor of 2.0"), "{twice:?}");
+    assert!(doubts(noisy(1.0, 0.5)).is_empty());
+    // A first-order low-pass of 0.3 s takes a fifth of the amplitude and more.
+    let mut state = rate[0];
+    let late = rate.iter().map(|v| {
+        state += (v - state) * 5e-3 / 0.3;
+        state
+    });
+    assert!(doubts(late.collect()).is_empty());
+}
+
+#[test]
 fn stuck_channels_are_found_and_rest_is_not_one() {
     let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
     let mut force = wave(1000);

@@ -38,6 +38,10 @@ const PATH_PARTS: usize = 160;
 /// Choice: no case of the ablation reads it.
 const PATH_WIDTHS: Axis = Axis::geometric(0.08, 0.9, 6);
 
+/// Least number of those parts for a comparison.
+/// Choice: four rows for each of ten regressors.
+const LEAST_ROWS: usize = 40;
+
 /// Units of force and place.
 struct Units {
     force: &'static str,
@@ -102,6 +106,12 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     beside.causes = sample_faults::causes(recordings.get(..1).unwrap_or_default()).collect();
     let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
     let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
+    if turns + slides == 0 {
+        return Err(EstimateError::Other(format!(
+            "nothing can be compared: {}; without a clock only a line or a circle, and the force along it, can be diagnosed; record a longer path, or add the times (t_s, or rate_hz in the sidecar)",
+            beside.warnings.first().map_or("no path was recorded", String::as_str)
+        )));
+    }
     let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };
     beside.warnings.push(format!(
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
@@ -111,10 +121,12 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let timed = [inertia::ID, viscous_friction::ID, time_delay::ID];
     let why = "there is no clock; give a t_s column or rate_hz";
     beside.not_excited.extend(timed.map(|id| NotExcited::new(id, why)));
-    let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
+    let has_forces = recordings.iter().all(|r| path::forces(r).is_some());
+    let forced = has_forces && rows.len() >= LEAST_ROWS;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {
-        let why = "no force was recorded: a path alone shows its shape";
+        let few = format!("the path has {} places with a force, and {LEAST_ROWS} are needed", rows.len());
+        let why = if has_forces { few.as_str() } else { "no force was recorded: a path alone shows its shape" };
         beside.not_excited.push(NotExcited::new(coulomb_friction::ID, why));
         return Ok(answer(&[], beside));
     }

@@ -18,6 +18,7 @@ mod report;
 mod resampling;
 mod signals;
 mod surface;
+mod swing;
 mod transmission;
 mod world;
 
@@ -35,6 +36,8 @@ use parameters::{CLOCK_TOLERANCE, Known, Term};
 use regress::{Shown, System, shown};
 use report::Material;
 pub use report::{OBJECT, PHASE};
+use std::borrow::Cow;
+use swing::Swing;
 pub use world::{Prediction, measured, path_of, predict, world};
 
 pub use signals::{Piece, Raw};
@@ -198,19 +201,33 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     }
     let can_hang =
         coordinate == Coordinate::Angular && known.value(Term::GravitySine).is_none() && path::up(first).is_some();
-    let gravity = if can_hang { Some(gravity::decide(pieces, &seen.fitted, known)?) } else { None };
+    let swing = if can_hang && seen.fitted == base { Swing::of(raws, pieces, known)? } else { None };
+    let swings = swing.as_ref().map(Swing::sentence);
+    let ratio = swing.as_ref().map(|swing| swing.ratio);
+    let gravity = match &swing {
+        Some(_) => Some(Gravity::Present(vec![Term::GravitySine, Term::GravityCosine])),
+        None if can_hang => Some(gravity::decide(pieces, &seen.fitted, known)?),
+        None => None,
+    };
     if let Some(Gravity::Present(terms)) = &gravity {
         seen.fitted.extend(terms);
     }
-    let system = System::stack(pieces, &seen.fitted, known, force_of);
-    let mut solution = system.solve()?;
+    let (pieces, system, mut solution) = match swing {
+        Some(Swing { pieces, system, solution, .. }) => (Cow::Owned(pieces), system, solution),
+        None => {
+            let system = System::stack(pieces, &seen.fitted, known, force_of);
+            let solution = system.solve()?;
+            (Cow::Borrowed(pieces), system, solution)
+        }
+    };
+    let pieces = pieces.as_ref();
     if let Some(Gravity::Absent { doubt, .. }) = &gravity {
         solution.widen(doubt);
     }
     solution.widen(&clock_errors(&system.terms, &solution.values));
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
     let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
-    let weights = system.weights(&solution);
+    let weights = if swings.is_some() { None } else { system.weights(&solution) };
     let resampled = block_bootstrap(&system.columns, &system.target, weights.as_deref(), &solution);
     let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
     let material = Material {
@@ -225,9 +242,14 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
         gravity: gravity.as_ref(),
     };
     material.push(&mut result);
+    result.parameters.extend(ratio.map(|[value, error]| {
+        let how = "least squares: the part of the acceleration that follows the sine of the angle";
+        Parameter::identified(OBJECT, "gravity_moment_per_inertia_rad_s2", value, error, system.target.len(), how)
+    }));
     result.correlated = vec![material.correlated()];
     result.quality = quality(pieces, &system, solution.rms, coordinate, known);
     result.warnings = warnings(pieces, &seen, &solution);
+    result.warnings.extend(swings);
     Ok(result)
 }
 

@@ -24,7 +24,7 @@ pub(super) const DERIVATIVE_NOISE: f64 = 0.03;
 const CUTOFF_OVER_MOTION_MAX: f64 = 100.0;
 /// Least ratio of the cut-off to the fastest motion that matters.
 /// Choice: halved or doubled, none of 5 answers changes.
-const CUTOFF_OVER_MOTION: f64 = 3.0;
+pub(super) const CUTOFF_OVER_MOTION: f64 = 3.0;
 
 /// Coordinate and force as recorded: every recording form is reduced to it.
 #[derive(Clone, Debug)]
@@ -79,6 +79,8 @@ pub struct Piece {
     pub direction: Vec<f64>,
     /// Filtered force, N or N m.
     pub force: Option<Vec<f64>>,
+    /// Standard deviation of the noise left on the filtered force, N or N m, as expected of fast noise.
+    pub force_noise: f64,
     /// Samples that are neither at an end nor saturated.
     pub usable: Vec<bool>,
     /// Sampling period, s.
@@ -139,6 +141,12 @@ pub fn raw(recording: &Recording, path: Option<&MechanismPath>) -> Result<Raw, E
         });
     }
     let Some(path) = path else {
+        if super::path::points(recording).is_some() {
+            return Err(EstimateError::Other(format!(
+                "the path of {} is not decided to be a line or a circle, so there is no coordinate along which its force acts; record the coordinate itself (q_m or q_rad), or a longer part of the path",
+                recording.name
+            )));
+        }
         return Err(EstimateError::MissingColumn {
             task: "a mechanism".to_owned(),
             column: "q_m, q_rad, or x_m and y_m".to_owned(),
@@ -175,8 +183,14 @@ pub fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
 /// Cuts at gaps, resamples uneven segments, filters and derives. Segments that are too short are left out.
 pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
     let (spans, median) = uninterrupted(&raw.time_s, name)?;
-    let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median)).collect();
+    let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median, 1.0)).collect();
     if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, raw.time_s.len())) } else { Ok(found) }
+}
+
+/// The same segments behind a filter whose cut-off is this share of the usual one.
+pub fn pieces_below(raw: &Raw, share: f64) -> Result<Vec<Piece>, EstimateError> {
+    let (spans, median) = uninterrupted(&raw.time_s, "")?;
+    Ok(spans.into_iter().map(|(first, end)| piece(raw, first, end, median, share)).collect())
 }
 
 /// Segments without a gap that are long enough (first sample, end), and the usual step, s.
@@ -204,7 +218,8 @@ fn too_few(name: &str, samples: usize) -> EstimateError {
     }
 }
 
-fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
+/// `share`: of the usual cut-off.
+fn piece(raw: &Raw, first: usize, end: usize, period: f64, share: f64) -> Piece {
     let time = &raw.time_s[first..end];
     let even = Resampled::new(time, period);
     let onto = |values: &[f64]| even.onto(&values[first..end]);
@@ -214,7 +229,8 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
     let raw_force = raw.force.as_ref().map(|f| onto(f));
     let rate_hz = 1.0 / even.period_s;
 
-    let choice = choose_cutoff(&position, even.noise(&raw.position[first..end]), rate_hz);
+    let usual = choose_cutoff(&position, even.noise(&raw.position[first..end]), rate_hz);
+    let choice = Choice { cutoff_hz: share * usual.cutoff_hz, ..usual };
     let rounding = quantum(&raw.position[first..end]).powi(2) / 12.0;
     let from_resolution = (rounding / choice.position_noise.powi(2).max(f64::MIN_POSITIVE)).min(1.0);
     let derived = derive(&position, measured_rate.as_ref(), rate_hz, &choice);
@@ -238,6 +254,10 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
     Piece {
         direction: even.through(&derived.velocity, |v| direction(v, blur)),
         motion,
+        force_noise: raw
+            .force
+            .as_ref()
+            .map_or(0.0, |force| derived_noise(even.noise(&force[first..end]), rate_hz, choice.cutoff_hz, 0)),
         force: raw_force.as_ref().map(|f| low_pass(f, rate_hz, choice.cutoff_hz)),
         usable: (0..n).map(|i| i >= edge && i + edge < n && !saturated[i]).collect(),
         period_s: even.period_s,

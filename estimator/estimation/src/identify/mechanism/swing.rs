@@ -1,0 +1,149 @@
+//! A driven motion that is nearly a free swing: gravity alone explains its acceleration.
+//!
+//! The ratio of gravity moment and inertia is then known, and little else. Inertia rests on the small part of the
+//! acceleration that the force explains. Regression of the force on the motion takes its noise for noise of the force;
+//! regression of the acceleration on the force takes it for noise of the acceleration. The truth lies between the two
+//! (Frisch 1934), so that half of their distance joins the errors.
+
+use super::parameters::{Known, Term};
+use super::regress::System;
+use super::signals::{CUTOFF_OVER_MOTION, Piece, Raw, pieces_below};
+use crate::regression::linear::{LinearFit, least_squares, least_squares_values};
+use foundation::estimate::EstimateError;
+use std::f64::consts::TAU;
+
+/// Largest share of the acceleration's power that gravity and friction leave in a swing.
+/// Choice: recorded swings of a motor-driven pendulum leave 0.002 to 0.05; a lever in a hand leaves half and more.
+const LARGEST_REST: f64 = 0.06;
+/// Ratio of neighbouring cut-offs that are tried.
+/// Choice: finer steps change the inertia by less than its error.
+const STEP: f64 = 0.8;
+/// Longest delay between a command and its force, samples, to either side; an even spread between adds to the errors.
+/// Derived: a digital drive computes for one sample and holds its output for another.
+const DELAY: isize = 2;
+/// Terms beside the inertia.
+const OTHERS: [Term; 5] = [Term::Viscous, Term::Coulomb, Term::Offset, Term::GravitySine, Term::GravityCosine];
+
+/// A fit of a swing.
+pub struct Swing {
+    /// Segments behind the filter at which force and acceleration go together best.
+    pub pieces: Vec<Piece>,
+    /// Regressors and target of the fit.
+    pub system: System,
+    /// The solution of `system`, errors of the acceleration included.
+    pub solution: LinearFit,
+    /// Gravity moment over inertia and its standard error, 1/s².
+    pub ratio: [f64; 2],
+    /// Share of the acceleration beside gravity and friction that the force explains.
+    pub coherence: f64,
+}
+
+impl Swing {
+    /// `pieces`: the segments behind the usual filter. `None` if the motion is no swing, or its inertia is known.
+    ///
+    /// # Errors
+    /// Those of a least-squares fit.
+    pub fn of(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Option<Self>, EstimateError> {
+        if !known.values.is_empty() || rest(pieces)? > LARGEST_REST {
+            return Ok(None);
+        }
+        let highest_hz = pieces.iter().map(|p| p.cutoff_hz).fold(0.0, f64::max);
+        let mut best = Self::at(pieces.to_vec())?;
+        for share in std::iter::successors(Some(STEP), |share| Some(share * STEP)) {
+            let below: Result<Vec<_>, _> = raws.iter().map(|raw| pieces_below(raw, share)).collect();
+            let below = below?.concat();
+            if share * highest_hz < CUTOFF_OVER_MOTION * motion_hz(&below) {
+                break;
+            }
+            let other = Self::at(below)?;
+            if other.coherence > best.coherence {
+                best = other;
+            }
+        }
+        Ok(Some(best))
+    }
+
+    fn at(pieces: Vec<Piece>) -> Result<Self, EstimateError> {
+        let terms: Vec<Term> = std::iter::once(Term::Inertia).chain(OTHERS).collect();
+        let system = System::stack(&pieces, &terms, &Known::default(), force);
+        let mut solution = least_squares(&system.columns, &system.target, None)?;
+        // Acceleration as a function of the force and of everything else.
+        let (inertia, others) = (&system.columns[0], &system.columns[1..]);
+        let causes: Vec<Vec<f64>> = std::iter::once(&system.target).chain(others).cloned().collect();
+        let reverse = least_squares(&causes, inertia, None)?;
+        let per_inertia = reverse.values[0];
+        // The force's own fast noise does not count for noise of the acceleration.
+        let fast = pieces.iter().map(|p| p.force_noise.powi(2)).sum::<f64>() / pieces.len().max(1) as f64;
+        let open = (1.0 - fast / solution.rms.powi(2).max(f64::MIN_POSITIVE)).max(0.0);
+        let apart: Vec<f64> = if per_inertia > 0.0 {
+            let other = |k: usize| if k == 0 { per_inertia.recip() } else { -reverse.values[k] / per_inertia };
+            solution.values.iter().enumerate().map(|(k, value)| 0.5 * open * (other(k) - value).abs()).collect()
+        } else {
+            vec![f64::INFINITY; solution.values.len()]
+        };
+        let coherence = (solution.values[0] * per_inertia).clamp(0.0, 1.0);
+        solution.widen(&apart);
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "{:.2} Hz open {open:.2} {:.3?} {:.3?} coh {coherence:.3}",
+                pieces[0].cutoff_hz, solution.values, solution.std_errors
+            );
+        }
+        for shift in [-DELAY, DELAY] {
+            let late = |p: &Piece| later(&force(p), shift);
+            let target = System::stack(&pieces, &terms, &Known::default(), late).target;
+            let other = least_squares_values(&system.columns, &target, None)?;
+            // Half of each, because the two are one error.
+            let moved = other.values.iter().zip(&solution.values).map(|(o, v)| (o - v) / 6.0_f64.sqrt());
+            solution.widen(&moved.collect::<Vec<f64>>());
+        }
+        let [sine, cosine] = [3, 4].map(|k| k + 1);
+        let ratio = reverse.values[sine].hypot(reverse.values[cosine]);
+        Ok(Self { ratio: [ratio, reverse.std_errors[sine]], coherence, solution, system, pieces })
+    }
+
+    /// One sentence about the motion, for the warnings.
+    pub fn sentence(&self) -> String {
+        let [ratio, error] = self.ratio;
+        let known = format!(
+            "the motion is nearly a free swing: gravity explains its acceleration, and the recording shows the gravity moment over the inertia, {ratio:.2} ± {error:.2} 1/s²"
+        );
+        let share = 100.0 * self.coherence;
+        if self.coherence < 0.5 {
+            format!(
+                "{known}; of the rest of the acceleration the force explains {share:.0} %, as if a controller made it out of the motion: inertia and friction cannot be told apart; drive it with a force that does not follow the motion"
+            )
+        } else {
+            format!("{known}; of the rest of the acceleration the force explains {share:.0} %")
+        }
+    }
+}
+
+/// Share of the acceleration's power that all other terms leave.
+fn rest(pieces: &[Piece]) -> Result<f64, EstimateError> {
+    let acceleration = |p: &Piece| p.motion.iter().map(|m| m.acceleration).collect();
+    let system = System::stack(pieces, &OTHERS, &Known::default(), acceleration);
+    let fit = least_squares(&system.columns, &system.target, None)?;
+    let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+    Ok(power(&fit.residuals) / power(&system.target).max(f64::MIN_POSITIVE))
+}
+
+/// These values by one sample later or earlier.
+fn later(values: &[f64], shift: isize) -> Vec<f64> {
+    let last = values.len().saturating_sub(1);
+    (0..values.len()).map(|i| values[i.saturating_add_signed(-shift).min(last)]).collect()
+}
+
+fn force(piece: &Piece) -> Vec<f64> {
+    piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
+}
+
+/// Frequency at which most of the motion takes place.
+fn motion_hz(pieces: &[Piece]) -> f64 {
+    rms(pieces, |m| m.acceleration) / (TAU * rms(pieces, |m| m.velocity)).max(f64::MIN_POSITIVE)
+}
+
+fn rms(pieces: &[Piece], of: impl Fn(&haptics::law::Motion) -> f64) -> f64 {
+    let square = pieces.iter().map(|p| p.rms(&of).powi(2)).sum::<f64>();
+    (square / pieces.len().max(1) as f64).sqrt()
+}
