@@ -25,6 +25,8 @@ mod world;
 use crate::constraint;
 use crate::identify::limits::HELD_OUT;
 use crate::regression::bootstrap::block_bootstrap;
+use crate::regression::linear::LinearFit;
+use crate::regression::long_run_variance::HALF_INTERVAL;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};
 use foundation::signal::chain::is_chain;
 pub use free::{Stated, stated};
@@ -227,7 +229,7 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     solution.widen(&clock_errors(&system.terms, &solution.values));
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
     let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
-    let weights = if swings.is_some() { None } else { system.weights(&solution) };
+    let weights = system.weights(&solution);
     let resampled = block_bootstrap(&system.columns, &system.target, weights.as_deref(), &solution);
     let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
     let material = Material {
@@ -246,6 +248,9 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
         let how = "least squares: the part of the acceleration that follows the sine of the angle";
         Parameter::identified(OBJECT, "gravity_moment_per_inertia_rad_s2", value, error, system.target.len(), how)
     }));
+    if moved_by_another(&system.terms, &solution) {
+        leave_out_what_is_unsure(&mut result);
+    }
     result.correlated = vec![material.correlated()];
     result.quality = quality(pieces, &system, solution.rms, coordinate, known);
     result.warnings = warnings(pieces, &seen, &solution);
@@ -289,17 +294,43 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
     })
 }
 
-fn warnings(pieces: &[Piece], seen: &Shown, solution: &crate::regression::linear::LinearFit) -> Vec<String> {
-    let mut found = Vec::new();
-    for (i, term) in seen.fitted.iter().enumerate() {
-        let negative = solution.values.get(i).is_some_and(|v| *v < -2.0 * solution.std_errors[i]);
-        if negative && matches!(term, Term::Inertia | Term::Viscous | Term::Coulomb) {
-            found.push(
-                "inertia or friction comes out negative: check the sign of the force column (\"sign\" in the sidecar)"
-                    .to_owned(),
-            );
-            break;
+/// Reason why nothing but the force itself is told.
+const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
+
+/// True if the recorded force cannot be the one that moves the mechanism: a negative inertia, beside a friction that is
+/// none. With a wrong sign of the force, both would be negative.
+fn moved_by_another(terms: &[Term], solution: &LinearFit) -> bool {
+    let is_negative = |term: Term| {
+        let is_beyond = |i: usize| solution.values[i] < -HALF_INTERVAL * solution.std_errors[i];
+        terms.iter().position(|t| *t == term).is_some_and(is_beyond)
+    };
+    is_negative(Term::Inertia) && !is_negative(Term::Viscous) && !is_negative(Term::Coulomb)
+}
+
+/// Leaves out the values that may as well be zero. The others describe the recorded force.
+fn leave_out_what_is_unsure(result: &mut Fit) {
+    for parameter in &mut result.parameters {
+        let is_sure =
+            parameter.value.zip(parameter.std_error).is_some_and(|(v, error)| v.abs() > HALF_INTERVAL * error);
+        if !is_sure {
+            *parameter = Parameter::unidentified(OBJECT, &parameter.name, parameter.samples, MOVED_BY_ANOTHER);
         }
+    }
+}
+
+fn warnings(pieces: &[Piece], seen: &Shown, solution: &LinearFit) -> Vec<String> {
+    let mut found = Vec::new();
+    let is_negative = |(i, term): (usize, &Term)| {
+        let is_beyond = solution.values.get(i).is_some_and(|v| *v < -HALF_INTERVAL * solution.std_errors[i]);
+        is_beyond && matches!(term, Term::Inertia | Term::Viscous | Term::Coulomb)
+    };
+    if moved_by_another(&seen.fitted, solution) {
+        found.push(format!("{MOVED_BY_ANOTHER}; record the force that moves it"));
+    } else if seen.fitted.iter().enumerate().any(is_negative) {
+        found.push(
+            "inertia or friction comes out negative: check the sign of the force column (\"sign\" in the sidecar)"
+                .to_owned(),
+        );
     }
     if let Some(piece) = pieces.first() {
         found.push(format!(

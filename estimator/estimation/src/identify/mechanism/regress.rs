@@ -55,6 +55,8 @@ pub struct System {
     pub noise_known_to: f64,
     /// Place of each sample in its recording, 0 … 1: for holding out the end.
     pub place: Vec<f64>,
+    /// True if samples near a reversal count less.
+    pub is_weighted: bool,
 }
 
 impl System {
@@ -68,6 +70,7 @@ impl System {
             motion: Vec::new(),
             noise_known_to: pieces.iter().map(Piece::noise_known_to).fold(0.0, f64::max),
             place: Vec::new(),
+            is_weighted: true,
         };
         for piece in pieces {
             let keep = |values: Vec<f64>| values.into_iter().zip(&piece.usable).filter(|(_, u)| **u).map(|(v, _)| v);
@@ -105,7 +108,7 @@ impl System {
 
     /// Weights of the samples after `fit`; `None` if no term depends on the direction.
     pub fn weights(&self, fit: &LinearFit) -> Option<Vec<f64>> {
-        let dry = self.terms.iter().position(|t| *t == Term::Coulomb)?;
+        let dry = self.terms.iter().position(|t| *t == Term::Coulomb).filter(|_| self.is_weighted)?;
         let level = fit.values[dry].powi(2);
         let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
         Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
@@ -156,6 +159,7 @@ impl System {
             motion: self.motion.iter().zip(kept).filter(|(_, k)| **k).map(|(m, _)| *m).collect(),
             noise_known_to: self.noise_known_to,
             place: pick(&self.place),
+            is_weighted: self.is_weighted,
         }
     }
 

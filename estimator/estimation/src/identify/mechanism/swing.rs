@@ -65,8 +65,9 @@ impl Swing {
 
     fn at(pieces: Vec<Piece>) -> Result<Self, EstimateError> {
         let terms: Vec<Term> = std::iter::once(Term::Inertia).chain(OTHERS).collect();
-        let system = System::stack(&pieces, &terms, &Known::default(), force);
-        let mut solution = least_squares(&system.columns, &system.target, None)?;
+        // A force that follows the direction of motion shows its effect at the reversals alone.
+        let system = System { is_weighted: false, ..System::stack(&pieces, &terms, &Known::default(), force) };
+        let mut solution = system.solve()?;
         // Acceleration as a function of the force and of everything else.
         let (inertia, others) = (&system.columns[0], &system.columns[1..]);
         let causes: Vec<Vec<f64>> = std::iter::once(&system.target).chain(others).cloned().collect();
@@ -83,12 +84,6 @@ impl Swing {
         };
         let coherence = (solution.values[0] * per_inertia).clamp(0.0, 1.0);
         solution.widen(&apart);
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "{:.2} Hz open {open:.2} {:.3?} {:.3?} coh {coherence:.3}",
-                pieces[0].cutoff_hz, solution.values, solution.std_errors
-            );
-        }
         for shift in [-DELAY, DELAY] {
             let late = |p: &Piece| later(&force(p), shift);
             let target = System::stack(&pieces, &terms, &Known::default(), late).target;
