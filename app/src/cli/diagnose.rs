@@ -185,7 +185,7 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     let word = match diagnosis.verdict {
         Verdict::Causes => "causes: each is named below",
         Verdict::None => "none: nothing beyond the noise",
-        Verdict::Ambiguous => "ambiguous: this recording cannot tell which of several",
+        Verdict::Ambiguous => "ambiguous: this recording cannot tell",
         Verdict::Unexplained => "unexplained: something that no known cause explains",
     };
     let _ = writeln!(text, "verdict: {word}");

@@ -29,6 +29,9 @@ pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
         Verdict::None => "Nothing beyond the noise.".to_owned(),
         Verdict::Unexplained => unexplained(diagnosis),
         Verdict::Causes => format!("{model} misses {}.", joined(&names)),
+        Verdict::Ambiguous if certain.is_empty() => {
+            "This recording cannot tell which cause, if any, is there.".to_owned()
+        }
         Verdict::Ambiguous => {
             let either = |cause: &Cause| {
                 let others = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id);

@@ -10,6 +10,7 @@ use super::put_back::PutBack;
 use crate::diagnose::contract::{
     Alternative, Cause, CauseParameter, Diagnosis, NextExperiment, NotExcited, PassedOver, Verdict, is_certain,
 };
+use crate::diagnose::data::limits::HALF;
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -104,6 +105,8 @@ pub struct Draft {
     open: f64,
     /// True if more of the residuals is unexplained than noise.
     is_strange: bool,
+    /// True if the recording can tell no cause for certain.
+    is_doubtful: bool,
     /// Ids of the causes that have less power together than the structured errors of their channel.
     outweighed: Vec<String>,
 }
@@ -151,13 +154,34 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
         ..Findings::default()
     };
     let named = Named { causes, alternatives, not_excited, passed_over, next };
-    Draft { named, findings, figures, terms, open: limit, is_strange: left.is_strange, outweighed }
+    Draft {
+        named,
+        findings,
+        figures,
+        terms,
+        open: limit,
+        is_strange: left.is_strange,
+        is_doubtful: parts.is_empty(),
+        outweighed,
+    }
 }
 
 impl Draft {
+    /// Makes every cause of the comparisons uncertain, for this reason.
+    pub fn doubt(&mut self, why: String) {
+        self.is_doubtful = true;
+        self.findings.diagnosis.warnings.insert(0, why);
+        let Named { causes, alternatives, .. } = &mut self.named;
+        for cause in causes.iter_mut().filter(|c| c.standing.is_some() || self.terms.contains(&c.id)) {
+            cause.posterior *= HALF;
+            let own = alternatives.iter_mut().filter(|a| a.instead_of == cause.id);
+            own.for_each(|a| a.posterior *= HALF);
+        }
+    }
+
     /// The answer with its verdict. `put_back`: shift of the forces before the comparison.
     pub fn finish(self, put_back: Option<&PutBack<'_>>) -> Findings {
-        let Self { mut named, mut findings, mut figures, terms, open, is_strange, outweighed } = self;
+        let Self { mut named, mut findings, mut figures, terms, open, is_strange, is_doubtful, outweighed } = self;
         if let Some(put_back) = put_back {
             figures = put_back.name(&mut named, &mut findings.delay, figures);
         }
@@ -168,7 +192,11 @@ impl Draft {
         let carries_less = |c: &Cause| outweighed.contains(&c.id);
         let is_certain = first.is_some_and(|c| is_certain(c, &alternatives) && !carries_less(c));
         findings.diagnosis = Diagnosis {
-            verdict: verdict(is_certain, is_strange || first.is_some(), is_open),
+            verdict: if is_doubtful && !is_certain {
+                Verdict::Ambiguous
+            } else {
+                verdict(is_certain, is_strange || first.is_some(), is_open)
+            },
             baseline: figures.baseline,
             end: figures.end,
             noise_floor_n: figures.noise_floor,

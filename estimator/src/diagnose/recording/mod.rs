@@ -1,4 +1,5 @@
 pub(crate) mod delay_scan;
+pub(crate) mod driving_force;
 pub(crate) mod grip_axis_signs;
 pub(crate) mod rate_signs;
 pub(crate) mod sample_faults;

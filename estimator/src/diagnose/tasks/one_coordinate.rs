@@ -1,7 +1,7 @@
 //! Force along one coordinate: its residual, and the causes that explain it.
 
 use crate::diagnose::data::direction::{STICKING_ROWS_TOGETHER, blur, blurred};
-use crate::diagnose::data::limits::{CERTAIN, REFINEMENTS};
+use crate::diagnose::data::limits::REFINEMENTS;
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
@@ -266,32 +266,6 @@ pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), Estimate
         })
         .sum();
     Ok((fit.rms, resisting > 0.0))
-}
-
-/// True if the laws of a model, all positive physically, are estimated with the wrong sign: none is certainly positive,
-/// and the strongest and the friction's work are certainly negative.
-pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
-    let mut track = track.clone();
-    blur(&mut track);
-    let plain = PlainFit::of(&track, &Model::new());
-    let mut columns = plain.laws(model);
-    // Effects that may be confused with inertia: a spring, gravity, a constant pull.
-    let beside: [&dyn Fn(&Row) -> f64; 4] =
-        [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
-    let turns = track.coordinate == haptics::law::Coordinate::Angular;
-    columns.extend(beside[..if turns { 4 } else { 2 }].iter().map(|of| plain.rows(of)));
-    let fit = plain.fit_with_errors(&columns)?;
-    let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
-    let friction: f64 = (0..track.rows.len())
-        .map(|i| {
-            let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
-            resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction
-        })
-        .sum();
-    let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
-    // A delayed force also drives the motion, but needs no negative dry friction for that.
-    let negative = |s: &f64| *s < -CERTAIN;
-    Ok(friction < 0.0 && sizes.iter().all(|s| *s < CERTAIN) && (negative(mass) || others.iter().all(negative)))
 }
 
 /// Regressors and target of a fit.

@@ -294,8 +294,21 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
     })
 }
 
+/// One sentence if these recordings are nearly a free swing.
+///
+/// # Errors
+/// As [`fit`].
+pub fn swing(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Result<Option<String>, EstimateError> {
+    let each = recordings.iter().zip(paths);
+    let raws = each.clone().map(|(r, path)| signals::raw(r, path.as_ref())).collect::<Result<Vec<Raw>, _>>()?;
+    let usable: Vec<_> = each.map(|(r, path)| (r, path.as_ref())).collect();
+    let pieces = all_pieces(&raws, &usable)?;
+    let known = recordings.first().map(|r| Known::from_meta(&r.meta, raws[0].coordinate)).unwrap_or_default();
+    Ok(Swing::of(&raws, &pieces, &known)?.map(|swing| swing.sentence()))
+}
+
 /// Reason why nothing but the force itself is told.
-const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
+pub const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
 
 /// True if the recorded force cannot be the one that moves the mechanism: a negative inertia, beside a friction that is
 /// none. With a wrong sign of the force, both would be negative.

@@ -84,17 +84,20 @@ impl Swing {
         };
         let coherence = (solution.values[0] * per_inertia).clamp(0.0, 1.0);
         solution.widen(&apart);
+        let moment_over_inertia = |values: &[f64]| values[4].hypot(values[5]) / values[0];
+        let ratio = reverse.values[4].hypot(reverse.values[5]);
+        let mut ratio_error = reverse.std_errors[4];
         for shift in [-DELAY, DELAY] {
             let late = |p: &Piece| later(&force(p), shift);
             let target = System::stack(&pieces, &terms, &Known::default(), late).target;
-            let other = least_squares_values(&system.columns, &target, None)?;
+            let other = least_squares_values(&system.columns, &target, None)?.values;
             // Half of each, because the two are one error.
-            let moved = other.values.iter().zip(&solution.values).map(|(o, v)| (o - v) / 6.0_f64.sqrt());
+            let share = 6.0_f64.sqrt().recip();
+            let moved = other.iter().zip(&solution.values).map(|(o, v)| share * (o - v));
             solution.widen(&moved.collect::<Vec<f64>>());
+            ratio_error = ratio_error.hypot(share * (moment_over_inertia(&other) - ratio));
         }
-        let [sine, cosine] = [3, 4].map(|k| k + 1);
-        let ratio = reverse.values[sine].hypot(reverse.values[cosine]);
-        Ok(Self { ratio: [ratio, reverse.std_errors[sine]], coherence, solution, system, pieces })
+        Ok(Self { ratio: [ratio, ratio_error], coherence, solution, system, pieces })
     }
 
     /// One sentence about the motion, for the warnings.

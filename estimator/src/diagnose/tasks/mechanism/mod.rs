@@ -17,7 +17,8 @@ use crate::diagnose::data::{coordinate, covariates, hung_weight, regression_data
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::{rate_signs, sample_faults, time_delay};
+use crate::diagnose::recording::driving_force::Driving;
+use crate::diagnose::recording::{driving_force, rate_signs, sample_faults, time_delay};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
 use crate::diagnose::validation::on_other_recordings;
@@ -63,6 +64,8 @@ struct Studied {
     study: ChannelFit,
     /// Faults of the samples and of the signs.
     faults: Vec<Cause>,
+    /// Reason why the forces tell no cause for certain.
+    doubt: Option<String>,
     along: coordinate::Along,
     /// True if a weight is known.
     is_weighed: bool,
@@ -91,7 +94,7 @@ impl Studied {
     /// `skew_s`: shift of these recordings' motion.
     fn of(recordings: &[Recording], options: &Options, skew_s: f64) -> Result<Self, EstimateError> {
         let paths = estimation::identify::mechanism::paths(recordings);
-        let (mut faults, mut tracks) = (Vec::new(), Vec::new());
+        let (mut faults, mut tracks, mut doubt) = (Vec::new(), Vec::new(), None);
         for (recording, path) in recordings.iter().zip(&paths) {
             let found = sample_faults::faults(recording);
             let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
@@ -102,11 +105,16 @@ impl Studied {
             }
             rows.hung = vec![hung_weight::Hung::on_mechanism(recording, rows.coordinate)];
             rows.extra = vec![covariates::of(recording)];
-            faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
+            let driving = Driving::of(&rows, &named("mass+viscous+coulomb")?)?;
+            faults.extend(of_mechanism(&mut rows, recording, (&driving, mirrored_rate)));
+            if let Driving::Unclear(why) = driving {
+                doubt = Some(why);
+            }
             tracks.push(rows);
             faults.extend(found.causes);
         }
         let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
+        let doubt = doubt.or_else(|| driving_force::swing(&track, recordings, &paths));
         let mut model: Model = match (&options.world, options.baseline.as_deref()) {
             (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
             (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
@@ -121,7 +129,7 @@ impl Studied {
         options.progress.tell(0.8)?;
         let is_weighed = !fixed.is_empty() || track.hung.iter().any(Option::is_some);
         let along = coordinate::Along::of(track.coordinate, recordings, &paths);
-        Ok(Self { track, model, study, faults, along, is_weighed, skew_s })
+        Ok(Self { track, model, study, faults, doubt, along, is_weighed, skew_s })
     }
 
     /// True if a delay is named as a cause.
@@ -140,7 +148,7 @@ impl Studied {
     }
 
     fn answer(self, options: &Options, put_back: Option<&PutBack<'_>>) -> Findings {
-        let Self { track, model, study, faults, along, is_weighed, skew_s } = self;
+        let Self { track, model, study, faults, doubt, along, is_weighed, skew_s } = self;
         let study = one_coordinate::beside_errors(&track, study);
         let evidence = Evidence {
             causes: faults,
@@ -154,6 +162,9 @@ impl Studied {
         };
         let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
         sensor_zero::ask(&mut draft.named, &track);
+        if let Some(why) = doubt {
+            draft.doubt(why);
+        }
         Findings { along: Some(along), ..draft.finish(put_back) }
     }
 }
@@ -190,10 +201,10 @@ fn track_of(recording: &Recording, path: Option<&MechanismPath>, diagnosis: &Fin
 pub fn of_mechanism(
     track: &mut Track,
     recording: &Recording,
-    rate: Option<&str>,
-) -> Result<Option<Cause>, EstimateError> {
-    if !one_coordinate::drives(track, &named("mass+viscous+coulomb")?)? {
-        return Ok(rate.map(sample_faults::against_motion));
+    (driving, rate): (&Driving, Option<&str>),
+) -> Option<Cause> {
+    if *driving != Driving::Reversed {
+        return rate.map(sample_faults::against_motion);
     }
     for row in &mut track.rows {
         row.target = -row.target;
@@ -203,5 +214,5 @@ pub fn of_mechanism(
     // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
     let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
     let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
-    Ok(Some(sample_faults::driving(name)))
+    Some(sample_faults::driving(name))
 }
