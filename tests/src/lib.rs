@@ -13,6 +13,7 @@ pub mod held_evenly;
 pub mod mechanisms;
 pub mod python;
 pub mod reaching;
+pub mod real;
 pub mod schema;
 pub mod spoiled;
 pub mod tasks;

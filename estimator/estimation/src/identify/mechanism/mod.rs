@@ -6,6 +6,7 @@
 //! clock, which shows its constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
 mod chain;
+mod driven;
 mod free;
 mod gravity;
 mod motion_segments;
@@ -23,22 +24,15 @@ mod transmission;
 mod world;
 
 use crate::constraint;
-use crate::identify::limits::HELD_OUT;
-use crate::regression::bootstrap::block_bootstrap;
-use crate::regression::linear::LinearFit;
-use crate::regression::long_run_variance::HALF_INTERVAL;
-use foundation::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};
+pub use driven::MOVED_BY_ANOTHER;
+use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};
 use foundation::signal::chain::is_chain;
 pub use free::{Stated, stated};
-use gravity::Gravity;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
-use parameters::{CLOCK_TOLERANCE, Known, Term};
-use regress::{Shown, System, shown};
-use report::Material;
+use parameters::{Known, Term};
 pub use report::{OBJECT, PHASE};
-use std::borrow::Cow;
 use swing::Swing;
 pub use world::{Prediction, measured, path_of, predict, world};
 
@@ -93,7 +87,7 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     let pieces = all_pieces(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
     let mut result = if raws.iter().all(|r| r.force.is_some()) {
-        driven(&raws, &pieces, &known, first)?
+        driven::fit(&raws, &pieces, &known, recordings)?
     } else if raws.iter().all(|r| r.force.is_none()) {
         freely(&raws, &pieces, &known)?
     } else {
@@ -193,107 +187,6 @@ fn clockless(recordings: &[Recording], constraints: Vec<Constraint>, paths: &[Op
     result
 }
 
-/// Motion under a measured force.
-fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> Result<Fit, EstimateError> {
-    let coordinate = raws[0].coordinate;
-    let base = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset];
-    let mut seen = shown(pieces, known, &base, Term::Coulomb);
-    if let Some(nothing) = offset::told_nothing(raws, pieces, &seen, known) {
-        return Ok(nothing);
-    }
-    let can_hang =
-        coordinate == Coordinate::Angular && known.value(Term::GravitySine).is_none() && path::up(first).is_some();
-    let swing = if can_hang && seen.fitted == base { Swing::of(raws, pieces, known)? } else { None };
-    let swings = swing.as_ref().map(Swing::sentence);
-    let ratio = swing.as_ref().map(|swing| swing.ratio);
-    let gravity = match &swing {
-        Some(_) => Some(Gravity::Present(vec![Term::GravitySine, Term::GravityCosine])),
-        None if can_hang => Some(gravity::decide(pieces, &seen.fitted, known)?),
-        None => None,
-    };
-    if let Some(Gravity::Present(terms)) = &gravity {
-        seen.fitted.extend(terms);
-    }
-    let (pieces, system, mut solution) = match swing {
-        Some(Swing { pieces, system, solution, .. }) => (Cow::Owned(pieces), system, solution),
-        None => {
-            let system = System::stack(pieces, &seen.fitted, known, force_of);
-            let solution = system.solve()?;
-            (Cow::Borrowed(pieces), system, solution)
-        }
-    };
-    let pieces = pieces.as_ref();
-    if let Some(Gravity::Absent { doubt, .. }) = &gravity {
-        solution.widen(doubt);
-    }
-    solution.widen(&clock_errors(&system.terms, &solution.values));
-    let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
-    let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
-    let weights = system.weights(&solution);
-    let resampled = block_bootstrap(&system.columns, &system.target, weights.as_deref(), &solution);
-    let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
-    let material = Material {
-        coordinate,
-        shown: &seen,
-        terms: &system.terms,
-        fit: &solution,
-        effect: &effect,
-        force_rms: rms(&system.target),
-        known,
-        resampled: resampled.as_ref(),
-        gravity: gravity.as_ref(),
-    };
-    material.push(&mut result);
-    result.parameters.extend(ratio.map(|[value, error]| {
-        let how = "least squares: the part of the acceleration that follows the sine of the angle";
-        Parameter::identified(OBJECT, "gravity_moment_per_inertia_rad_s2", value, error, system.target.len(), how)
-    }));
-    if moved_by_another(&system.terms, &solution) {
-        leave_out_what_is_unsure(&mut result);
-    }
-    result.correlated = vec![material.correlated()];
-    result.quality = quality(pieces, &system, solution.rms, coordinate, known);
-    result.warnings = warnings(pieces, &seen, &solution);
-    result.warnings.extend(swings);
-    Ok(result)
-}
-
-/// Errors by the clock's tolerance of parameters of a motion under a measured force: inertia goes as time squared,
-/// viscous friction as time.
-fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
-    let powers = |term: &Term| Term::GravitySine.powers_of_time() - term.powers_of_time();
-    terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
-}
-
-fn force_of(piece: &Piece) -> Vec<f64> {
-    piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
-}
-
-/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %.
-fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
-    let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
-    let late = system.part(|place| place >= 1.0 - HELD_OUT);
-    let n = late.target.len();
-    if n == 0 {
-        return None;
-    }
-    let residual =
-        |i: usize| late.target[i] - late.columns.iter().zip(&early.values).map(|(c, v)| c[i] * v).sum::<f64>();
-    let root = |sum: f64| (sum / n as f64).sqrt();
-    let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
-    // Relative to the force as measured, its known part included.
-    let nothing_known = System::stack(pieces, &[], &Known::default(), force_of).part(|place| place >= 1.0 - HELD_OUT);
-    debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
-    let force = root(nothing_known.target.iter().map(|f| f * f).sum());
-    Some(Quality {
-        rms,
-        heldout_rms,
-        heldout_relative: if force > 0.0 { heldout_rms / force } else { f64::NAN },
-        heldout_share: HELD_OUT,
-        unit: if coordinate == Coordinate::Linear { "N" } else { "Nm" }.to_owned(),
-    })
-}
-
 /// One sentence if these recordings are nearly a free swing.
 ///
 /// # Errors
@@ -305,53 +198,6 @@ pub fn swing(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Resul
     let pieces = all_pieces(&raws, &usable)?;
     let known = recordings.first().map(|r| Known::from_meta(&r.meta, raws[0].coordinate)).unwrap_or_default();
     Ok(Swing::of(&raws, &pieces, &known)?.map(|swing| swing.sentence()))
-}
-
-/// Reason why nothing but the force itself is told.
-pub const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
-
-/// True if the recorded force cannot be the one that moves the mechanism: a negative inertia, beside a friction that is
-/// none. With a wrong sign of the force, both would be negative.
-fn moved_by_another(terms: &[Term], solution: &LinearFit) -> bool {
-    let is_negative = |term: Term| {
-        let is_beyond = |i: usize| solution.values[i] < -HALF_INTERVAL * solution.std_errors[i];
-        terms.iter().position(|t| *t == term).is_some_and(is_beyond)
-    };
-    is_negative(Term::Inertia) && !is_negative(Term::Viscous) && !is_negative(Term::Coulomb)
-}
-
-/// Leaves out the values that may as well be zero. The others describe the recorded force.
-fn leave_out_what_is_unsure(result: &mut Fit) {
-    for parameter in &mut result.parameters {
-        let is_sure =
-            parameter.value.zip(parameter.std_error).is_some_and(|(v, error)| v.abs() > HALF_INTERVAL * error);
-        if !is_sure {
-            *parameter = Parameter::unidentified(OBJECT, &parameter.name, parameter.samples, MOVED_BY_ANOTHER);
-        }
-    }
-}
-
-fn warnings(pieces: &[Piece], seen: &Shown, solution: &LinearFit) -> Vec<String> {
-    let mut found = Vec::new();
-    let is_negative = |(i, term): (usize, &Term)| {
-        let is_beyond = solution.values.get(i).is_some_and(|v| *v < -HALF_INTERVAL * solution.std_errors[i]);
-        is_beyond && matches!(term, Term::Inertia | Term::Viscous | Term::Coulomb)
-    };
-    if moved_by_another(&seen.fitted, solution) {
-        found.push(format!("{MOVED_BY_ANOTHER}; record the force that moves it"));
-    } else if seen.fitted.iter().enumerate().any(is_negative) {
-        found.push(
-            "inertia or friction comes out negative: check the sign of the force column (\"sign\" in the sidecar)"
-                .to_owned(),
-        );
-    }
-    if let Some(piece) = pieces.first() {
-        found.push(format!(
-            "velocity and acceleration are derived from the recording with a zero-phase filter at {:.1} Hz, which the force also goes through",
-            piece.cutoff_hz
-        ));
-    }
-    found
 }
 
 #[cfg(test)]

@@ -233,13 +233,13 @@ pub struct Shown {
 }
 
 impl Shown {
-    fn hide(&mut self, term: Term, why: &str) {
+    pub(super) fn hide(&mut self, term: Term, why: &str) {
         if !self.hidden.iter().any(|(t, _)| *t == term) {
             self.hidden.push((term, why.to_owned()));
         }
     }
 
-    fn drop(&mut self, term: Term) {
+    pub(super) fn drop(&mut self, term: Term) {
         self.fitted.retain(|t| *t != term);
     }
 }

@@ -14,6 +14,7 @@ mod joints;
 mod report;
 mod solve;
 
+use crate::identify::limits::HELD_OUT;
 use foundation::estimate::{EstimateError, Fit};
 use haptics::recording::Recording;
 use joints::{Joints, joints};
@@ -42,11 +43,11 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     } else {
         (0..recordings.len()).filter_map(|r| kept(&|row| row.recording != r)).collect()
     };
-    let early = kept(&|row| row.place < 1.0 - super::HELD_OUT);
+    let early = kept(&|row| row.place < 1.0 - HELD_OUT);
     let late = best.rows.clone();
     let seen = report::Seen { best, neighbours: [&tried[chosen - 1], &tried[chosen + 1]], left_out: &left_out };
     let mut result = Fit { task: "mechanism".to_owned(), parameters: seen.parameters(), warnings, ..Fit::default() };
-    result.quality = early.map(|early| report::quality(&early, &late, best, super::HELD_OUT));
+    result.quality = early.map(|early| report::quality(&early, &late, best, HELD_OUT));
     result.warnings.push(seen.how_it_was_filtered());
     Ok(result)
 }
