@@ -56,14 +56,14 @@ impl Pendulum {
             let read = (q / quantum).round() * quantum;
             let rate = v + 0.02 * chance.normal();
             for (column, value) in columns.iter_mut().zip([
-                k as f64 * period_s,
+                f64::from(k) * period_s,
                 read,
                 rate,
                 held + 0.002 * self.moment_nm() * chance.normal(),
             ]) {
                 column.push(value);
             }
-            held = command(k as f64 * period_s, read, rate);
+            held = command(f64::from(k) * period_s, read, rate);
             for _ in 0..STEPS {
                 torque += (held - torque) * step_s / self.lag_s;
                 // Midpoint rule.
