@@ -1,7 +1,7 @@
 //! Is the recorded force the one that moves the mechanism?
 
 use crate::diagnose::data::direction::blur;
-use crate::diagnose::data::limits::CERTAIN;
+use crate::diagnose::data::limits::{CERTAIN, HALF};
 use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Row, Track};
 use crate::diagnose::selection::dry_friction::is_resisting;
@@ -60,9 +60,6 @@ impl Driving {
 
 /// One sentence if a recording is nearly a free swing, in which causes in the force show at the reversals alone.
 pub fn swing(track: &Track, recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Option<String> {
-    /// Share of the acceleration above which the rows are no swing, noise included.
-    /// Choice: only the time of the closer look depends on it.
-    const NOISY_REST: f64 = 0.5;
     let acceleration: Vec<f64> = track.along().map(|i| track.rows[i].motion.acceleration).collect();
     let of_state = |of: &dyn Fn(&Row) -> f64| track.along().map(|i| of(&track.rows[i])).collect::<Vec<f64>>();
     let columns = [
@@ -74,7 +71,8 @@ pub fn swing(track: &Track, recordings: &[Recording], paths: &[Option<MechanismP
     ];
     let fit = estimation::regression::linear::least_squares_values(&columns, &acceleration, None).ok()?;
     let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
-    if track.coordinate == Coordinate::Linear || power(&fit.residuals) > NOISY_REST * power(&acceleration) {
+    // The closer look takes time; slow rows add noise to a swing.
+    if track.coordinate == Coordinate::Linear || power(&fit.residuals) > HALF * power(&acceleration) {
         return None;
     }
     mechanism::swing(recordings, paths).ok()?

@@ -38,10 +38,6 @@ const PATH_PARTS: usize = 160;
 /// Choice: no case of the ablation reads it.
 const PATH_WIDTHS: Axis = Axis::geometric(0.08, 0.9, 6);
 
-/// Least number of those parts for a comparison.
-/// Choice: four rows for each of ten regressors.
-const LEAST_ROWS: usize = 40;
-
 /// Units of force and place.
 struct Units {
     force: &'static str,
@@ -121,11 +117,13 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Findings, E
     let timed = [inertia::ID, viscous_friction::ID, time_delay::ID];
     let why = "there is no clock; give a t_s column or rate_hz";
     beside.not_excited.extend(timed.map(|id| NotExcited::new(id, why)));
+    // A quarter of the parts of one path.
+    let least = PATH_PARTS / 4;
     let has_forces = recordings.iter().all(|r| path::forces(r).is_some());
-    let forced = has_forces && rows.len() >= LEAST_ROWS;
+    let forced = has_forces && rows.len() >= least;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {
-        let few = format!("the path has {} places with a force, and {LEAST_ROWS} are needed", rows.len());
+        let few = format!("the path has {} places with a force, and {least} are needed", rows.len());
         let why = if has_forces { few.as_str() } else { "no force was recorded: a path alone shows its shape" };
         beside.not_excited.push(NotExcited::new(coulomb_friction::ID, why));
         return Ok(answer(&[], beside));
