@@ -8,19 +8,11 @@
 use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::{CUTOFF_OVER_MOTION, Piece, Raw, pieces_below};
+use crate::identify::limits::CLEARLY_SIGNIFICANT;
 use crate::regression::linear::{LinearFit, least_squares, least_squares_values};
 use foundation::estimate::EstimateError;
 use std::f64::consts::TAU;
 
-/// Largest share of the acceleration's power that gravity and friction leave in a swing.
-/// Choice: recorded swings of a motor-driven pendulum leave 0.002 to 0.05; a lever in a hand leaves half and more.
-const LARGEST_REST: f64 = 0.06;
-/// Ratio of neighbouring cut-offs that are tried.
-/// Choice: finer steps change the inertia by less than its error.
-const STEP: f64 = 0.8;
-/// Longest delay between a command and its force, samples, to either side; an even spread between adds to the errors.
-/// Derived: a digital drive computes for one sample and holds its output for another.
-const DELAY: isize = 2;
 /// Terms beside the inertia.
 const OTHERS: [Term; 5] = [Term::Viscous, Term::Coulomb, Term::Offset, Term::GravitySine, Term::GravityCosine];
 
@@ -44,12 +36,14 @@ impl Swing {
     /// # Errors
     /// Those of a least-squares fit.
     pub fn of(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Option<Self>, EstimateError> {
-        if !known.values.is_empty() || rest(pieces)? > LARGEST_REST {
+        // Recorded swings of a motor-driven pendulum leave 0.002 to 0.05; a lever in a hand leaves half and more.
+        if !known.values.is_empty() || rest(pieces)? > CLEARLY_SIGNIFICANT.powi(-2) {
             return Ok(None);
         }
         let highest_hz = pieces.iter().map(|p| p.cutoff_hz).fold(0.0, f64::max);
         let mut best = Self::at(pieces.to_vec())?;
-        for share in std::iter::successors(Some(STEP), |share| Some(share * STEP)) {
+        // In the steps in which the usual cut-off is sought.
+        for share in std::iter::successors(Some(0.8), |share| Some(share * 0.8)) {
             let below: Result<Vec<_>, _> = raws.iter().map(|raw| pieces_below(raw, share)).collect();
             let below = below?.concat();
             if share * highest_hz < CUTOFF_OVER_MOTION * motion_hz(&below) {
@@ -87,7 +81,8 @@ impl Swing {
         let moment_over_inertia = |values: &[f64]| values[4].hypot(values[5]) / values[0];
         let ratio = reverse.values[4].hypot(reverse.values[5]);
         let mut ratio_error = reverse.std_errors[4];
-        for shift in [-DELAY, DELAY] {
+        // A digital drive computes for one sample and holds its output for another; a sensor may be as late.
+        for shift in [-2, 2] {
             let late = |p: &Piece| later(&force(p), shift);
             let target = System::stack(&pieces, &terms, &Known::default(), late).target;
             let other = least_squares_values(&system.columns, &target, None)?.values;
