@@ -220,8 +220,10 @@ pub struct Freely {
     pub is_known: bool,
     /// Acceleration of gravity, m/s².
     pub gravity_m_s2: f64,
-    /// Friction that is stated.
-    pub known: [Option<Effect>; 2],
+    /// True if the rows are means over half swings, whose noise is not that of differences.
+    pub is_energy: bool,
+    /// Friction that is stated, and gravity if it is known.
+    pub known: [Option<Effect>; 3],
 }
 
 impl Track {

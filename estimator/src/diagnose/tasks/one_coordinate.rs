@@ -13,7 +13,8 @@ use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::{
-    backlash, force_bias, force_cross_axis, force_drift, force_gain, force_step, hysteresis, time_delay,
+    backlash, coulomb_friction, force_bias, force_cross_axis, force_drift, force_gain, force_step, hysteresis,
+    quadratic_drag, time_delay, viscous_friction,
 };
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_coordinate;
@@ -190,6 +191,10 @@ impl Refinement for Search<'_> {
         base.extend(stick_phases::creep(track, &y, &losses));
         base.extend(self.is_sharp.then(|| blurred(track, &dry)));
         candidates.extend(self.generic.iter().cloned());
+        // One decay takes time and amplitude away together: causes over time or place are not told from those of speed.
+        if track.freely.is_some_and(|free| free.is_energy) {
+            candidates.retain(|c| [coulomb_friction::ID, viscous_friction::ID, quadratic_drag::ID].contains(&c.id));
+        }
         let rules = Rules::of_coordinate(track.period_s)
             .with_friction(model.iter().any(|e| e.law().is_dry()))
             .with_noise(track.noise_is_measured);
@@ -239,7 +244,7 @@ fn layout(track: &Track, weight: Vec<f64>) -> Layout {
         time_s: track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect(),
         weight,
         period_s: track.period_s,
-        noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
+        noise: if track.freely.is_some_and(|free| !free.is_energy) { Noise::OfDifferences } else { Noise::Any },
         may_stand: true,
         blocks: Blocks::OfTime,
     }

@@ -74,7 +74,9 @@ impl Swing {
             let other = |k: usize| if k == 0 { per_inertia.recip() } else { -reverse.values[k] / per_inertia };
             solution.values.iter().enumerate().map(|(k, value)| 0.5 * open * (other(k) - value).abs()).collect()
         } else {
-            vec![f64::INFINITY; solution.values.len()]
+            // Any size that the force could hold.
+            let size = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
+            system.columns.iter().map(|c| size(&system.target) / size(c).max(f64::MIN_POSITIVE)).collect()
         };
         let coherence = (solution.values[0] * per_inertia).clamp(0.0, 1.0);
         solution.widen(&apart);

@@ -8,6 +8,7 @@
 //!
 //! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
+mod half_swings;
 pub(crate) mod rows;
 mod unit_per_inertia;
 
@@ -16,6 +17,7 @@ use super::coordinate_answer::explain;
 use super::one_coordinate;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::answer::named::Named;
+use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::contract;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::coordinate::Along;
@@ -23,16 +25,20 @@ use crate::diagnose::data::covariates;
 use crate::diagnose::data::limits::{HALF, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
+use crate::diagnose::free_run::FreeRun;
+use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::with_both_ways;
 use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::ChannelFit;
+use crate::diagnose::selection::held_out_gain::rms;
 use estimation::identify::mechanism;
 use estimation::identify::mechanism::{Stated, raw};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
-use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, Law, Role, ViscousFriction};
+use foundation::tasks::SystemState;
+use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, Law, ViscousFriction};
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
@@ -89,9 +95,69 @@ pub(crate) fn diagnose(
         atlas: options.atlas,
         ..Evidence::default()
     };
-    let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
+    let energy = energy(recordings, paths, &model, &track)?;
+    let parts = energy.iter().map(Energy::part).collect();
+    let mut draft = explain(&track, &model, &study, parts, evidence);
     put_right(&mut draft.named, &track);
     Ok(Findings { along: Some(Along::of(track.coordinate, recordings, paths)), ..draft.finish(None) })
+}
+
+/// Comparison of the energy of a pendulum's half swings.
+struct Energy {
+    track: Track,
+    study: ChannelFit,
+    along: Vec<bool>,
+    /// Laws of the base model, which are no causes.
+    of_model: Vec<&'static str>,
+}
+
+impl Told for Energy {
+    fn is_cause(&self, k: usize) -> bool {
+        let id = self.study.candidates[self.study.chosen[k].candidate].id;
+        !self.of_model.contains(&id)
+    }
+}
+
+impl Energy {
+    fn part(&self) -> Part<'_> {
+        let end = rms(&self.study, &self.study.picks(), &self.along).0;
+        Part {
+            role: Role::Path,
+            study: &self.study,
+            terms: None,
+            channel: "energy of the swings",
+            unit: self.track.force_unit(),
+            floor: self.track.force_noise.min(end),
+            noise: self.track.force_noise,
+            along: &self.along,
+            state: vec![Some(("force over each half swing", SystemState::FreeMotion)); self.study.target.len()],
+            view: None,
+            told: self,
+            free_run: FreeRun::None(AT_ONCE),
+            in_world: None,
+        }
+    }
+}
+
+/// The loss of energy of a pendulum, with gravity known by its period. `None` if nothing swings long enough.
+fn energy(
+    recordings: &[Recording],
+    paths: &[Option<MechanismPath>],
+    model: &Model,
+    motion: &Track,
+) -> Result<Option<Energy>, EstimateError> {
+    let Some(freely) = motion.freely.filter(|_| swings(motion)) else { return Ok(None) };
+    let mut tracks = Vec::new();
+    for (recording, path) in recordings.iter().zip(paths) {
+        tracks.extend(half_swings::track(recording, &sample_faults::faults(recording).bad, path.as_ref(), freely)?);
+    }
+    let Some(mut track) = join(tracks) else { return Ok(None) };
+    let fixed = fixed(&track);
+    // Each kind of friction has to show: one that drag replaces would come out negative.
+    let study = one_coordinate::study(&mut track, &Model::new(), &fixed)?;
+    let of_model = model.iter().map(|e| e.law().id()).collect();
+    let along = vec![true; track.rows.len()];
+    Ok(Some(Energy { track, study, along, of_model }))
 }
 
 /// The rows of all recordings, and the faults of their samples.
@@ -122,7 +188,7 @@ fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, E
             laws
         }
     };
-    model.retain(|e| e.role() != Role::Inertia);
+    model.retain(|e| e.role() != haptics::law::Role::Inertia);
     Ok(model)
 }
 
@@ -163,7 +229,8 @@ pub(crate) enum Scale {
 /// Sets the inertia if it is stated; otherwise returns the known parameter that determines it.
 fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
     let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
-    let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
+    let of_world: f64 =
+        laws.into_iter().flatten().filter(|e| e.role() == haptics::law::Role::Inertia).map(|e| e.values[0]).sum();
     let stated = mechanism::stated(&first.meta, track.coordinate);
     let of_sidecar = stated.iter().find_map(|s| if let Stated::Inertia(value) = s { Some(*value) } else { None });
     if let Some(inertia) = Some(of_world).into_iter().chain(of_sidecar).find(|inertia| *inertia > 0.0) {
@@ -204,7 +271,7 @@ fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Opt
     model.extend(had.iter().filter(is_spared).filter(|e| known.iter().any(|k| k.law().id() == e.law().id())));
     let Some(free) = &mut track.freely else { return };
     let mut kept = known.iter().filter(|e| !is_spared(e)).copied();
-    free.known = [kept.next(), kept.next()];
+    free.known = [kept.next(), kept.next(), None];
 }
 
 /// Known forces: that of the inertia, and friction that the sidecar states.

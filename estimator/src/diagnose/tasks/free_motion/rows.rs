@@ -65,14 +65,14 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
 }
 
 /// Samples on an even clock.
-struct Piece {
-    time_s: Vec<f64>,
-    position: Vec<f64>,
+pub(super) struct Piece {
+    pub(super) time_s: Vec<f64>,
+    pub(super) position: Vec<f64>,
     rate: Option<Vec<f64>>,
 }
 
 /// Segments without a gap, and the usual time step, s.
-fn pieces(raw: &Raw, bad: &[bool]) -> (Vec<Piece>, f64) {
+pub(super) fn pieces(raw: &Raw, bad: &[bool]) -> (Vec<Piece>, f64) {
     let (found, period_s) = uninterrupted(&raw.time_s, &|i| !bad.get(i).copied().unwrap_or(false));
     let long = found.into_iter().filter(|range| range.len() > 2 * LEAST_HALF + 1);
     (long.map(|range| Piece::of(raw, range, period_s)).collect(), period_s)
@@ -282,7 +282,14 @@ impl Made {
             position_noise,
             force_noise: plan.acceleration_noise.max(1e-12),
             span_s,
-            freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),
+            freely: Some(Freely {
+                inertia: 1.0,
+                relative_error: 0.0,
+                is_known: false,
+                gravity_m_s2,
+                is_energy: false,
+                known: [None; 3],
+            }),
             ..Track::of(raw.coordinate)
         }
     }
