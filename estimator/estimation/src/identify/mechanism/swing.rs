@@ -16,6 +16,9 @@ use std::f64::consts::TAU;
 /// Terms beside the inertia.
 const OTHERS: [Term; 5] = [Term::Viscous, Term::Coulomb, Term::Offset, Term::GravitySine, Term::GravityCosine];
 
+/// The same with a spring: a regular stroke of a hand goes with the place as well, but not with its sine.
+const SPRING: [Term; 4] = [Term::Viscous, Term::Coulomb, Term::Offset, Term::Spring];
+
 /// A fit of a swing.
 pub struct Swing {
     /// Segments behind the filter at which force and acceleration go together best.
@@ -37,7 +40,8 @@ impl Swing {
     /// Those of a least-squares fit.
     pub fn of(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Option<Self>, EstimateError> {
         // Recorded swings of a motor-driven pendulum leave 0.002 to 0.05; a lever in a hand leaves half and more.
-        if !known.values.is_empty() || rest(pieces)? > CLEARLY_SIGNIFICANT.powi(-2) {
+        let left = rest(pieces, &OTHERS)?;
+        if !known.values.is_empty() || left > CLEARLY_SIGNIFICANT.powi(-2) || left > rest(pieces, &SPRING)? {
             return Ok(None);
         }
         let highest_hz = pieces.iter().map(|p| p.cutoff_hz).fold(0.0, f64::max);
@@ -114,10 +118,10 @@ impl Swing {
     }
 }
 
-/// Share of the acceleration's power that all other terms leave.
-fn rest(pieces: &[Piece]) -> Result<f64, EstimateError> {
+/// Share of the acceleration's power that these terms leave.
+fn rest(pieces: &[Piece], terms: &[Term]) -> Result<f64, EstimateError> {
     let acceleration = |p: &Piece| p.motion.iter().map(|m| m.acceleration).collect();
-    let system = System::stack(pieces, &OTHERS, &Known::default(), acceleration);
+    let system = System::stack(pieces, terms, &Known::default(), acceleration);
     let fit = least_squares(&system.columns, &system.target, None)?;
     let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
     Ok(power(&fit.residuals) / power(&system.target).max(f64::MIN_POSITIVE))
