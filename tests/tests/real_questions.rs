@@ -1,4 +1,4 @@
-//! What the program says of real measurements: right, or honest.
+//! Answers about real measurements are right, or honest.
 
 use tests::real::{Outcome, QUESTIONS, ask};
 

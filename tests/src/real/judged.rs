@@ -1,4 +1,4 @@
-//! What the program says to a question, and whether it is right.
+//! Answers of the program to the questions, and their judgement.
 
 use super::questions::{Expected, Question};
 use crate::shared_recordings;

@@ -1,4 +1,4 @@
-//! Questions about real measurements that other people answered with other means, and what the program says to them.
+//! Questions about real measurements that other people answered with other means, and the answers of the program.
 //!
 //! The measurements are not part of this repository. `cargo run -p tests --bin real` writes the table
 //! `docs/evidence/real-data.md`.

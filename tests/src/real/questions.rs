@@ -1,7 +1,7 @@
-//! The questions. What is so was measured by others: published values, and figures that plain methods give
+//! The questions. The known answers were measured by others: published values, and figures that plain methods give
 //! (`../shared/data/*/ANSWERS.md`).
 
-/// What is known about an answer.
+/// Knowledge about an answer.
 #[derive(Clone, Debug)]
 pub enum Expected {
     /// A parameter of a fit, in the unit of its name.
@@ -48,7 +48,7 @@ pub struct Question {
     pub baseline: Option<&'static str>,
     /// In words.
     pub asked: &'static str,
-    /// What is so.
+    /// The known answer.
     pub expected: Expected,
 }
 

@@ -5,7 +5,7 @@
 
 use super::evidence::{Element, Fitted, Prior, Products};
 use super::null_model::{Autoregression, NullModel, StructuredError};
-use super::smooth::Discrepancy;
+use super::smooth::{Discrepancy, rms};
 use super::standing::Competition;
 use crate::diagnose::contract::Standing;
 use crate::diagnose::data::limits::{HALF, MOST_ROUNDS, REFINEMENTS};
@@ -251,13 +251,6 @@ fn elements(study: &ChannelFit, picks: &[usize], discrepancies: &[Discrepancy], 
     let causes = picks.iter().map(of_cause);
     let errors = discrepancies.iter().map(|d| (d.columns.len(), Prior::Estimated));
     causes.chain(errors).map(|(columns, prior)| Element { columns: place(columns), prior }).collect()
-}
-
-/// Root mean square over the rows on which a force acts, each by its weight.
-pub(super) fn rms(values: &[f64], weight: &[f64]) -> f64 {
-    let acting = || values.iter().zip(weight).filter(|(v, _)| **v != 0.0);
-    let rows: f64 = acting().map(|(_, w)| w * w).sum();
-    (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
 }
 
 /// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays,

@@ -1,6 +1,6 @@
 //! A channel as it would be if no cause acted: base model, structured errors and noise.
 
-use super::competition::rms;
+use super::smooth::rms;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 

@@ -115,3 +115,10 @@ pub fn field(variables: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
         })
         .collect()
 }
+
+/// Root mean square over the rows on which a force acts, each by its weight.
+pub fn rms(values: &[f64], weight: &[f64]) -> f64 {
+    let acting = || values.iter().zip(weight).filter(|(v, _)| **v != 0.0);
+    let rows: f64 = acting().map(|(_, w)| w * w).sum();
+    (acting().map(|(v, w)| (v * w).powi(2)).sum::<f64>() / rows.max(f64::MIN_POSITIVE)).sqrt()
+}

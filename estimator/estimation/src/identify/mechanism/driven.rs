@@ -91,7 +91,7 @@ impl<'a> Solved<'a> {
         let (pieces, system, mut solution) = if let Some(Swing { pieces, system, solution, .. }) = swing {
             (Cow::Owned(pieces), system, solution)
         } else {
-            let system = System::stack(pieces, &seen.fitted, known, force_of);
+            let system = System::stack(pieces, &seen.fitted, known, Piece::applied_force);
             let solution = system.solve()?;
             (Cow::Borrowed(pieces), system, solution)
         };
@@ -204,10 +204,6 @@ fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
     terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
 }
 
-fn force_of(piece: &Piece) -> Vec<f64> {
-    piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
-}
-
 /// Refit on the first 70 % of every segment, held-out RMS on the last 30 %.
 fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
     let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
@@ -221,7 +217,8 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
     let root = |sum: f64| (sum / n as f64).sqrt();
     let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
     // Relative to the force as measured, its known part included.
-    let nothing_known = System::stack(pieces, &[], &Known::default(), force_of).part(|place| place >= 1.0 - HELD_OUT);
+    let nothing_known =
+        System::stack(pieces, &[], &Known::default(), Piece::applied_force).part(|place| place >= 1.0 - HELD_OUT);
     debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
     let force = root(nothing_known.target.iter().map(|f| f * f).sum());
     Some(Quality {

@@ -45,7 +45,7 @@ impl Models {
     fn new(pieces: &[Piece], base: &[Term], known: &Known) -> Result<Self, EstimateError> {
         let fit = |extra: &[Term]| -> Result<LinearFit, EstimateError> {
             let terms: Vec<Term> = base.iter().chain(extra).copied().collect();
-            System::stack(pieces, &terms, known, |p| p.force.clone().unwrap_or_default()).solve()
+            System::stack(pieces, &terms, known, Piece::applied_force).solve()
         };
         let richest = fit(&[Term::GravitySine, Term::GravityCosine, Term::Spring])?;
         Ok(Self {

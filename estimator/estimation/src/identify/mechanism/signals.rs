@@ -108,6 +108,11 @@ impl Piece {
         COLUMN_NOISE_UNCERTAINTY + 0.5 * self.from_resolution
     }
 
+    /// Filtered force, N or N m; zero for a free motion.
+    pub fn applied_force(&self) -> Vec<f64> {
+        self.force.clone().unwrap_or_else(|| vec![0.0; self.motion.len()])
+    }
+
     /// The same zero-phase filter that the force went through.
     pub fn filter(&self, values: &[f64]) -> Vec<f64> {
         low_pass(values, 1.0 / self.period_s, self.cutoff_hz)

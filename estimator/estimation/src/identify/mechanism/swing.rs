@@ -64,7 +64,8 @@ impl Swing {
     fn at(pieces: Vec<Piece>) -> Result<Self, EstimateError> {
         let terms: Vec<Term> = std::iter::once(Term::Inertia).chain(OTHERS).collect();
         // A force that follows the direction of motion shows its effect at the reversals alone.
-        let system = System { is_weighted: false, ..System::stack(&pieces, &terms, &Known::default(), force) };
+        let system =
+            System { is_weighted: false, ..System::stack(&pieces, &terms, &Known::default(), Piece::applied_force) };
         let mut solution = system.solve()?;
         // Acceleration as a function of the force and of everything else.
         let (inertia, others) = (&system.columns[0], &system.columns[1..]);
@@ -82,14 +83,14 @@ impl Swing {
             let size = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
             system.columns.iter().map(|c| size(&system.target) / size(c).max(f64::MIN_POSITIVE)).collect()
         };
-        let coherence = (solution.values[0] * per_inertia).clamp(0.0, 1.0);
+        let coherence = (solution.values[0].max(0.0) * per_inertia.max(0.0)).min(1.0);
         solution.widen(&apart);
         let moment_over_inertia = |values: &[f64]| values[4].hypot(values[5]) / values[0];
         let ratio = reverse.values[4].hypot(reverse.values[5]);
         let mut ratio_error = reverse.std_errors[4];
         // A digital drive computes for one sample and holds its output for another; a sensor may be as late.
         for shift in [-2, 2] {
-            let late = |p: &Piece| later(&force(p), shift);
+            let late = |p: &Piece| later(&p.applied_force(), shift);
             let target = System::stack(&pieces, &terms, &Known::default(), late).target;
             let other = least_squares_values(&system.columns, &target, None)?.values;
             // Half of each, because the two are one error.
@@ -131,10 +132,6 @@ fn rest(pieces: &[Piece], terms: &[Term]) -> Result<f64, EstimateError> {
 fn later(values: &[f64], shift: isize) -> Vec<f64> {
     let last = values.len().saturating_sub(1);
     (0..values.len()).map(|i| values[i.saturating_add_signed(-shift).min(last)]).collect()
-}
-
-fn force(piece: &Piece) -> Vec<f64> {
-    piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
 }
 
 /// Frequency at which most of the motion takes place.

@@ -105,20 +105,20 @@ fn turns(piece: &Piece, period_s: f64) -> Option<Vec<Turn>> {
     Some(found.chunk_by(is_one).map(|turn| turn[turn.len() / 2]).collect())
 }
 
-/// The turning points after the last rise of the amplitude, while they alternate and stand out of the noise.
+/// The longest run of turning points between which the swings never grow and stand out of the noise.
 fn free_part(turns: &[Turn], noise: f64) -> Vec<Turn> {
     let ways: Vec<f64> = turns.windows(2).map(|pair| (pair[1].angle - pair[0].angle).abs()).collect();
-    let rises = |k: &usize| ways[k + 1] > ways[*k] + 2.0 * SIGNIFICANT * noise;
-    let begin = (0..ways.len().saturating_sub(1))
-        .rfind(|k| rises(k) && ways[*k + 1] > HALF * ways.iter().copied().fold(0.0, f64::max))
-        .map_or(0, |k| k + 1);
-    let is_clear = |k: usize| {
-        let small = ways[k] < 10.0 * SIGNIFICANT * noise || ways[k].abs() > TAU;
-        !small && (k == begin || ways[k] < ways[k - 1] + 2.0 * SIGNIFICANT * noise)
-    };
-    let end = (begin..ways.len()).find(|k| !is_clear(*k)).unwrap_or(ways.len());
+    let is_clear = |way: f64| (10.0 * SIGNIFICANT * noise..TAU).contains(&way);
+    let decays = |a: &f64, b: &f64| is_clear(*a) && is_clear(*b) && *b < a + 2.0 * SIGNIFICANT * noise;
+    let (mut first, mut longest) = (0, 0..0);
+    for run in ways.chunk_by(decays) {
+        if run.len() > longest.len() {
+            longest = first..first + run.len();
+        }
+        first += run.len();
+    }
     // The hand may still hold it at the first turn.
-    turns.get(begin + 1..=end).map_or_else(Vec::new, <[Turn]>::to_vec)
+    turns.get(longest.start + 1..=longest.end).map_or_else(Vec::new, <[Turn]>::to_vec)
 }
 
 /// Angle at which it hangs, rad: the loss of amplitude between neighbours cancels.

@@ -8,6 +8,7 @@
 //!
 //! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
+mod energy;
 mod half_swings;
 pub(crate) mod rows;
 mod unit_per_inertia;
@@ -17,7 +18,6 @@ use super::coordinate_answer::explain;
 use super::one_coordinate;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::answer::named::Named;
-use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::contract;
 use crate::diagnose::contract::NotExcited;
 use crate::diagnose::data::coordinate::Along;
@@ -25,20 +25,16 @@ use crate::diagnose::data::covariates;
 use crate::diagnose::data::limits::{HALF, SIGNIFICANT};
 use crate::diagnose::data::regression_data::{Model, Row, Track, join};
 use crate::diagnose::findings::Findings;
-use crate::diagnose::free_run::FreeRun;
-use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::all::with_both_ways;
 use crate::diagnose::hypotheses::{force_bias, force_gain};
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{rate_signs, sample_faults};
 use crate::diagnose::selection::comparison::ChannelFit;
-use crate::diagnose::selection::held_out_gain::rms;
 use estimation::identify::mechanism;
 use estimation::identify::mechanism::{Stated, raw};
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
-use foundation::tasks::SystemState;
-use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, Law, ViscousFriction};
+use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, Law, Role, ViscousFriction};
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
@@ -67,7 +63,7 @@ pub(crate) fn diagnose(
     paths: &[Option<MechanismPath>],
     options: &Options,
 ) -> Result<Findings, EstimateError> {
-    let (mut track, faults) = tracks(recordings, paths)?;
+    let Read { mut track, faults, bad } = read(recordings, paths)?;
     let first = &recordings[0];
     let mut model = model(&track, first, options)?;
     options.progress.tell(0.4)?;
@@ -95,77 +91,25 @@ pub(crate) fn diagnose(
         atlas: options.atlas,
         ..Evidence::default()
     };
-    let energy = energy(recordings, paths, &model, &track)?;
-    let parts = energy.iter().map(Energy::part).collect();
+    let energy = energy::energy(recordings, paths, (&model, &track), &bad)?;
+    let parts = energy.iter().map(energy::Energy::part).collect();
     let mut draft = explain(&track, &model, &study, parts, evidence);
     put_right(&mut draft.named, &track);
     Ok(Findings { along: Some(Along::of(track.coordinate, recordings, paths)), ..draft.finish(None) })
 }
 
-/// Comparison of the energy of a pendulum's half swings.
-struct Energy {
+/// Recordings of free motions, as read.
+struct Read {
+    /// The rows of all of them.
     track: Track,
-    study: ChannelFit,
-    along: Vec<bool>,
-    /// Laws of the base model, which are no causes.
-    of_model: Vec<&'static str>,
+    /// Faults of their samples.
+    faults: Vec<contract::Cause>,
+    /// Flags of samples that no sensor measured, recording by recording.
+    bad: Vec<Vec<bool>>,
 }
 
-impl Told for Energy {
-    fn is_cause(&self, k: usize) -> bool {
-        let id = self.study.candidates[self.study.chosen[k].candidate].id;
-        !self.of_model.contains(&id)
-    }
-}
-
-impl Energy {
-    fn part(&self) -> Part<'_> {
-        let end = rms(&self.study, &self.study.picks(), &self.along).0;
-        Part {
-            role: Role::Path,
-            study: &self.study,
-            terms: None,
-            channel: "energy of the swings",
-            unit: self.track.force_unit(),
-            floor: self.track.force_noise.min(end),
-            noise: self.track.force_noise,
-            along: &self.along,
-            state: vec![Some(("force over each half swing", SystemState::FreeMotion)); self.study.target.len()],
-            view: None,
-            told: self,
-            free_run: FreeRun::None(AT_ONCE),
-            in_world: None,
-        }
-    }
-}
-
-/// The loss of energy of a pendulum, with gravity known by its period. `None` if nothing swings long enough.
-fn energy(
-    recordings: &[Recording],
-    paths: &[Option<MechanismPath>],
-    model: &Model,
-    motion: &Track,
-) -> Result<Option<Energy>, EstimateError> {
-    let Some(freely) = motion.freely.filter(|_| swings(motion)) else { return Ok(None) };
-    let mut tracks = Vec::new();
-    for (recording, path) in recordings.iter().zip(paths) {
-        tracks.extend(half_swings::track(recording, &sample_faults::faults(recording).bad, path.as_ref(), freely)?);
-    }
-    let Some(mut track) = join(tracks) else { return Ok(None) };
-    let fixed = fixed(&track);
-    // Each kind of friction has to show: one that drag replaces would come out negative.
-    let study = one_coordinate::study(&mut track, &Model::new(), &fixed)?;
-    let of_model = model.iter().map(|e| e.law().id()).collect();
-    let along = vec![true; track.rows.len()];
-    Ok(Some(Energy { track, study, along, of_model }))
-}
-
-/// The rows of all recordings, and the faults of their samples.
-fn tracks(
-    recordings: &[Recording],
-    paths: &[Option<MechanismPath>],
-) -> Result<(Track, Vec<contract::Cause>), EstimateError> {
-    let (mut tracks, mut faults) = (Vec::new(), Vec::new());
+fn read(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Result<Read, EstimateError> {
+    let (mut tracks, mut faults, mut bad) = (Vec::new(), Vec::new(), Vec::new());
     for (recording, path) in recordings.iter().zip(paths) {
         let found = sample_faults::faults(recording);
         let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
@@ -174,8 +118,9 @@ fn tracks(
         faults.extend(mirrored_rate.map(sample_faults::against_motion));
         faults.extend(found.causes);
         tracks.push(rows);
+        bad.push(found.bad);
     }
-    Ok((join(tracks).ok_or_else(nothing)?, faults))
+    Ok(Read { track: join(tracks).ok_or_else(nothing)?, faults, bad })
 }
 
 /// The laws of the base model, without the inertia.
@@ -188,7 +133,7 @@ fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, E
             laws
         }
     };
-    model.retain(|e| e.role() != haptics::law::Role::Inertia);
+    model.retain(|e| e.role() != Role::Inertia);
     Ok(model)
 }
 
@@ -229,8 +174,7 @@ pub(crate) enum Scale {
 /// Sets the inertia if it is stated; otherwise returns the known parameter that determines it.
 fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
     let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
-    let of_world: f64 =
-        laws.into_iter().flatten().filter(|e| e.role() == haptics::law::Role::Inertia).map(|e| e.values[0]).sum();
+    let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
     let stated = mechanism::stated(&first.meta, track.coordinate);
     let of_sidecar = stated.iter().find_map(|s| if let Stated::Inertia(value) = s { Some(*value) } else { None });
     if let Some(inertia) = Some(of_world).into_iter().chain(of_sidecar).find(|inertia| *inertia > 0.0) {
