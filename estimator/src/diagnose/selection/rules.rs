@@ -13,8 +13,8 @@ pub(crate) const THRESHOLD_SLOW: f64 = 25.0;
 /// Choice: halved, 1 of 43 answers change; doubled, 0 of 43 answers change.
 pub(crate) const MUCH: f64 = 1.6;
 /// The same ratio for a noise that was estimated from fast changes.
-/// Choice: doubled, 0 of 62 answers change; four times as much, 1 of 62 answers change.
-pub(crate) const MUCH_UNSEEN: f64 = 2.0;
+/// Choice: halved, 0 of 62 answers change; doubled, 1 of 62 answers change.
+pub(crate) const MUCH_UNSEEN: f64 = 4.0;
 /// Largest ratio of residuals, after over before, of an explanation that is as good.
 /// Choice: halved, 4 of 48 answers change; doubled, 0 of 48 answers change.
 pub(crate) const AS_GOOD: f64 = 1.1;
