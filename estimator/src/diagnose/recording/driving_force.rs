@@ -6,56 +6,35 @@ use crate::diagnose::data::plain_fit::PlainFit;
 use crate::diagnose::data::regression_data::{Model, Row, Track};
 use crate::diagnose::selection::dry_friction::is_resisting;
 use estimation::identify::mechanism;
-use estimation::identify::mechanism::MOVED_BY_ANOTHER;
 use foundation::estimate::EstimateError;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
-/// Relation of the recorded force to the motion.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Driving {
-    /// It moves the mechanism, as far as the rows show.
-    Moves,
-    /// It has the sign of the reaction.
-    Reversed,
-    /// It tells no cause, for this reason.
-    Unclear(String),
-}
-
-impl Driving {
-    /// The laws of a model are positive physically. If none is certainly positive, and the strongest and the friction's
-    /// work are certainly negative, the sign is wrong. If the inertia alone is negative, another force moves it.
-    pub fn of(track: &Track, model: &Model) -> Result<Self, EstimateError> {
-        let mut track = track.clone();
-        blur(&mut track);
-        let plain = PlainFit::of(&track, &Model::new());
-        let mut columns = plain.laws(model);
-        // Effects that may be confused with inertia: a spring, gravity, a constant pull.
-        let beside: [&dyn Fn(&Row) -> f64; 4] =
-            [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
-        let turns = track.coordinate == Coordinate::Angular;
-        columns.extend(beside[..if turns { 4 } else { 2 }].iter().map(|of| plain.rows(of)));
-        let fit = plain.fit_with_errors(&columns)?;
-        let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
-        let friction: f64 = (0..track.rows.len())
-            .map(|i| {
-                let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
-                resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction
-            })
-            .sum();
-        let [mass, others @ ..] = sizes.as_slice() else { return Ok(Self::Moves) };
-        let negative = |s: &f64| *s < -CERTAIN;
-        // A delayed force also drives the motion, but needs no negative dry friction for that.
-        let is_driven = friction < 0.0 && sizes.iter().all(|s| *s < CERTAIN);
-        Ok(if is_driven && (negative(mass) || others.iter().all(negative)) {
-            Self::Reversed
-        } else if negative(mass) && !others.iter().any(negative) {
-            Self::Unclear(MOVED_BY_ANOTHER.to_owned())
-        } else {
-            Self::Moves
+/// True if the laws of a model, all positive physically, are estimated with the wrong sign: none is certainly positive,
+/// and the strongest and the friction's work are certainly negative.
+pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
+    let mut track = track.clone();
+    blur(&mut track);
+    let plain = PlainFit::of(&track, &Model::new());
+    let mut columns = plain.laws(model);
+    // Effects that may be confused with inertia: a spring, gravity, a constant pull.
+    let beside: [&dyn Fn(&Row) -> f64; 4] =
+        [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
+    let turns = track.coordinate == Coordinate::Angular;
+    columns.extend(beside[..if turns { 4 } else { 2 }].iter().map(|of| plain.rows(of)));
+    let fit = plain.fit_with_errors(&columns)?;
+    let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
+    let friction: f64 = (0..track.rows.len())
+        .map(|i| {
+            let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
+            resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction
         })
-    }
+        .sum();
+    let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
+    // A delayed force also drives the motion, but needs no negative dry friction for that.
+    let negative = |s: &f64| *s < -CERTAIN;
+    Ok(friction < 0.0 && sizes.iter().all(|s| *s < CERTAIN) && (negative(mass) || others.iter().all(negative)))
 }
 
 /// One sentence if a recording is nearly a free swing, in which causes in the force show at the reversals alone.

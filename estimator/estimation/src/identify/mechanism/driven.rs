@@ -184,7 +184,7 @@ impl<'a> Solved<'a> {
 const RATIO: &str = "gravity_moment_per_inertia_rad_s2";
 
 /// Reason why nothing but the force itself is told.
-pub const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
+const MOVED_BY_ANOTHER: &str = "the inertia comes out negative and the friction does not: another force moves it, as a hand does, and the recorded one follows the motion, as a controller's does";
 
 /// Leaves out the values that may as well be zero. The others describe the recorded force.
 fn leave_out_what_is_unsure(result: &mut Fit) {

@@ -24,7 +24,6 @@ mod transmission;
 mod world;
 
 use crate::constraint;
-pub use driven::MOVED_BY_ANOTHER;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};
 use foundation::signal::chain::is_chain;
 pub use free::{Stated, stated};

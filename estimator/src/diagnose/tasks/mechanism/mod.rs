@@ -17,7 +17,6 @@ use crate::diagnose::data::{coordinate, covariates, hung_weight, regression_data
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses;
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::driving_force::Driving;
 use crate::diagnose::recording::{driving_force, rate_signs, sample_faults, time_delay};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
@@ -94,7 +93,7 @@ impl Studied {
     /// `skew_s`: shift of these recordings' motion.
     fn of(recordings: &[Recording], options: &Options, skew_s: f64) -> Result<Self, EstimateError> {
         let paths = estimation::identify::mechanism::paths(recordings);
-        let (mut faults, mut tracks, mut doubt) = (Vec::new(), Vec::new(), None);
+        let (mut faults, mut tracks) = (Vec::new(), Vec::new());
         for (recording, path) in recordings.iter().zip(&paths) {
             let found = sample_faults::faults(recording);
             let (recording, mirrored_rate) = rate_signs::with_rates_of_motion(recording);
@@ -105,16 +104,12 @@ impl Studied {
             }
             rows.hung = vec![hung_weight::Hung::on_mechanism(recording, rows.coordinate)];
             rows.extra = vec![covariates::of(recording)];
-            let driving = Driving::of(&rows, &named("mass+viscous+coulomb")?)?;
-            faults.extend(of_mechanism(&mut rows, recording, (&driving, mirrored_rate)));
-            if let Driving::Unclear(why) = driving {
-                doubt = Some(why);
-            }
+            faults.extend(of_mechanism(&mut rows, recording, mirrored_rate)?);
             tracks.push(rows);
             faults.extend(found.causes);
         }
         let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
-        let doubt = doubt.or_else(|| driving_force::swing(&track, recordings, &paths));
+        let doubt = driving_force::swing(&track, recordings, &paths);
         let mut model: Model = match (&options.world, options.baseline.as_deref()) {
             (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
             (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
@@ -201,10 +196,10 @@ fn track_of(recording: &Recording, path: Option<&MechanismPath>, diagnosis: &Fin
 pub fn of_mechanism(
     track: &mut Track,
     recording: &Recording,
-    (driving, rate): (&Driving, Option<&str>),
-) -> Option<Cause> {
-    if *driving != Driving::Reversed {
-        return rate.map(sample_faults::against_motion);
+    rate: Option<&str>,
+) -> Result<Option<Cause>, EstimateError> {
+    if !driving_force::drives(track, &named("mass+viscous+coulomb")?)? {
+        return Ok(rate.map(sample_faults::against_motion));
     }
     for row in &mut track.rows {
         row.target = -row.target;
@@ -214,5 +209,5 @@ pub fn of_mechanism(
     // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
     let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
     let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
-    Some(sample_faults::driving(name))
+    Ok(Some(sample_faults::driving(name)))
 }
