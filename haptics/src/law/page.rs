@@ -76,10 +76,11 @@ fn enters(enters: Enters) -> &'static str {
 pub fn nameless() -> String {
     format!(
         "{MADE}\n\n# Something that no law explains\n\n`other:<expression>` · unnamed\n\n{}\n\n[All causes](README.md)\n",
-        "## What it is\n\nSomething is left beyond the noise, and none of the causes of this list explains it. The answer is then \
-         *unexplained*, and the expression says what the rest goes with: a wave over the position, a bend with the speed, a slow \
-         change in time. It is a description, not a law: no world is extended by it.\n\n\
-         ## How it shows\n\nAs a gain on data that took no part, which only generic terms reach.\n\n\
+        "## What it is\n\nAn effect on one measured quantity that no law of this list describes: a force that follows another recorded channel \
+         (a temperature, a voltage), friction that grows with the length of a needle in its hole, puncture forces that differ. The \
+         expression names that quantity. It is a description, not a law: no world is extended by it. Unknown smooth forces over \
+         position, speed, load or time have no entry of this kind; the field `model_error` states them.\n\n\
+         ## How it shows\n\nAs a gain on held-out data.\n\n\
          ## What mimics it\n\nA cause of the list in a form far from the law's, several causes at once that cancel in part, or \
          noise whose size changes during the recording.\n\n\
          ## Which motion reveals it\n\nOne that changes what the expression names and holds everything else still. When the \

@@ -79,7 +79,7 @@ pub(super) fn strongest<'a>(study: &'a ChannelFit, left: &[f64]) -> Vec<(&'a Can
     let selection = study.of_each();
     let mut best: Vec<(&str, usize, f64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
-        if candidate.expression.is_some() || cause(candidate.id).is_none() || !system.supported(c) {
+        if cause(candidate.id).is_none() || !system.supported(c) {
             continue;
         }
         let Some(score) = selection.score_beside(&[], c) else { continue };

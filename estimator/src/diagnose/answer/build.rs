@@ -3,7 +3,6 @@
 //! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use super::atlas::Atlas;
-use super::cause::Unnamed;
 use super::named::Named;
 use super::part::{Part, Role};
 use super::put_back::PutBack;
@@ -13,6 +12,7 @@ use crate::diagnose::contract::{
 use crate::diagnose::data::limits::HALF;
 use crate::diagnose::extension::hypothetical_worlds::of_channels;
 use crate::diagnose::findings::{DelayFindings, Figures, Findings};
+use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::rules::OPEN;
 use crate::diagnose::validation::on_other_recordings::of_study;
@@ -99,7 +99,7 @@ pub struct Draft {
     /// Everything else.
     pub findings: Findings,
     figures: Figures,
-    /// Ids of the unnamed terms among the causes.
+    /// Ids of the causes without a law.
     terms: Vec<String>,
     /// Probability above which an alternative is open.
     open: f64,
@@ -125,14 +125,11 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
     let unknown = evidence.without_known.into_iter().filter(|n| !is_said(&n.id));
     add_new(&mut not_excited, unknown.collect());
     let passed_over = unsaid(compared.passed, &causes, &alternatives, &not_excited);
-    let mut left = left_over(parts, causes.is_empty());
-    warnings.append(&mut left.much);
-    let terms: Vec<String> = left.unnamed.iter().map(|u| u.cause.id.clone()).collect();
-    for Unnamed { cause, warning } in left.unnamed {
-        causes.push(cause);
-        warnings.push(warning);
-    }
-    warnings.extend(remarks);
+    let left = left_over(parts, causes.is_empty());
+    let is_strange = !left.is_empty();
+    warnings.extend(left.into_iter().chain(remarks));
+    let chosen = parts.iter().flat_map(|p| p.study.picks().into_iter().map(|pick| &p.study.candidates[pick]));
+    let terms = chosen.filter(|c| c.expression.is_some()).map(Candidate::name).collect();
     let limit = parts.first().map_or(OPEN, |p| p.study.rules.open);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > limit).cloned().collect();
     let next = (evidence.next)(&open);
@@ -154,16 +151,7 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
         ..Findings::default()
     };
     let named = Named { causes, alternatives, not_excited, passed_over, next };
-    Draft {
-        named,
-        findings,
-        figures,
-        terms,
-        open: limit,
-        is_strange: left.is_strange,
-        is_doubtful: parts.is_empty(),
-        outweighed,
-    }
+    Draft { named, findings, figures, terms, open: limit, is_strange, is_doubtful: parts.is_empty(), outweighed }
 }
 
 impl Draft {
@@ -172,7 +160,7 @@ impl Draft {
         self.is_doubtful = true;
         self.findings.diagnosis.warnings.insert(0, why);
         let Named { causes, alternatives, .. } = &mut self.named;
-        for cause in causes.iter_mut().filter(|c| c.standing.is_some() || self.terms.contains(&c.id)) {
+        for cause in causes.iter_mut().filter(|c| c.standing.is_some()) {
             cause.posterior *= HALF;
             let own = alternatives.iter_mut().filter(|a| a.instead_of == cause.id);
             own.for_each(|a| a.posterior *= HALF);
@@ -191,11 +179,12 @@ impl Draft {
         let first = causes.iter().find(|c| !terms.contains(&c.id));
         let carries_less = |c: &Cause| outweighed.contains(&c.id);
         let is_certain = first.is_some_and(|c| is_certain(c, &alternatives) && !carries_less(c));
+        let is_strange = is_strange || !causes.is_empty();
         findings.diagnosis = Diagnosis {
             verdict: if is_doubtful && !is_certain {
                 Verdict::Ambiguous
             } else {
-                verdict(is_certain, is_strange || first.is_some(), is_open)
+                verdict(is_certain, is_strange, is_open)
             },
             baseline: figures.baseline,
             end: figures.end,
@@ -251,34 +240,14 @@ fn add_new(all: &mut Vec<NotExcited>, mut more: Vec<NotExcited>) {
     all.append(&mut more);
 }
 
-/// Parts of the residuals that no known cause explains.
-struct Left {
-    /// Sentences on large residuals.
-    much: Vec<String>,
-    /// Generic terms; of a path only those that no other part has.
-    unnamed: Vec<Unnamed>,
-    is_strange: bool,
-}
-
-/// `is_nothing_named`: a large residual along a coordinate is then told.
-fn left_over(parts: &[Part<'_>], is_nothing_named: bool) -> Left {
-    let mut left = Left { much: Vec::new(), unnamed: Vec::new(), is_strange: false };
-    for part in parts {
-        let unnamed = part.unnamed();
-        let may_be_much = match part.role {
-            Role::Channel => true,
-            Role::Coordinate => is_nothing_named && unnamed.is_none(),
-            Role::Path => false,
-        };
-        let much = if may_be_much { part.much_left() } else { None };
-        let error = part.structured();
-        left.is_strange |= much.is_some() || unnamed.is_some() || error.is_some();
-        left.much.extend(error.or(much));
-        let is_new = |u: &Unnamed| part.role == Role::Channel || left.unnamed.iter().all(|o| o.cause.id != u.cause.id);
-        let unnamed = unnamed.filter(is_new);
-        left.unnamed.extend(unnamed);
-    }
-    left
+/// Sentences on the parts of the residuals that no known cause explains. `is_nothing_named`: a large residual along a
+/// coordinate is then told.
+fn left_over(parts: &[Part<'_>], is_nothing_named: bool) -> Vec<String> {
+    let much = |part: &Part<'_>| match part.role {
+        Role::Coordinate if !is_nothing_named => None,
+        Role::Channel | Role::Coordinate | Role::Path => part.much_left(),
+    };
+    parts.iter().filter_map(|part| part.structured().or_else(|| much(part))).collect()
 }
 
 /// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.
@@ -304,7 +273,7 @@ pub fn passed_over(study: &ChannelFit) -> Vec<PassedOver> {
     let picks = study.picks();
     let mut ids: Vec<&str> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
-        let known = candidate.expression.is_none() && system.supported(c) && cause(candidate.id).is_some();
+        let known = system.supported(c) && cause(candidate.id).is_some();
         if known && !ids.contains(&candidate.id) && picks.iter().all(|p| candidates[*p].id != candidate.id) {
             ids.push(candidate.id);
         }

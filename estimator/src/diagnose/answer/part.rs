@@ -78,8 +78,6 @@ pub trait Told {
 pub struct Part<'a> {
     pub role: Role,
     pub study: &'a ChannelFit,
-    /// The comparison with the generic terms of the residual, if there are any.
-    pub terms: Option<&'a ChannelFit>,
     /// Name of the channel, in words.
     pub channel: &'static str,
     pub unit: &'static str,
@@ -107,7 +105,6 @@ impl<'a> Part<'a> {
         Self {
             role: Role::Channel,
             study,
-            terms: Some(study),
             channel,
             unit,
             floor: *floor,

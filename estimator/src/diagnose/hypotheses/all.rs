@@ -84,7 +84,7 @@ static ALL: LazyLock<Vec<&dyn Hypothesis>> = LazyLock::new(|| {
     all
 });
 
-/// The hypothesis of a cause; none for a regressor of the base model or a generic term.
+/// The hypothesis of a cause; none for a regressor of the base model or a cause without a law.
 pub(crate) fn hypothesis(id: &str) -> Option<&'static dyn Hypothesis> {
     ALL.iter().copied().find(|hypothesis| hypothesis.id() == id)
 }

@@ -95,7 +95,7 @@ pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
 /// One cause with its searched values fixed: its regressors are linear in the residual.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Id from `docs/causes/README.md`; terms of the base model and of the generic library have names of their own.
+    /// Id from `docs/causes/README.md`; terms of the base model have names of their own.
     pub id: &'static str,
     pub kind: Kind,
     /// One regressor per linear parameter, one entry per row.
@@ -115,7 +115,7 @@ pub struct Candidate {
     pub noise: f64,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
-    /// Expression of a generic term.
+    /// Expression of a cause without a law.
     pub expression: Option<String>,
     /// Channel on which it depends, and that channel's unit.
     pub channel: Option<(String, String)>,
@@ -160,10 +160,15 @@ impl Candidate {
         }
     }
 
-    /// A generic term: regressors without a physical law, in this unit.
+    /// A cause without a law, in this unit.
     pub fn term(expression: String, unit: &'static str, columns: Vec<Vec<f64>>) -> Self {
         let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
         Self { expression: Some(expression), ..Self::several("other", Kind::Plant, columns, linear) }
+    }
+
+    /// Id in an answer.
+    pub fn name(&self) -> String {
+        self.expression.as_ref().map_or_else(|| self.id.to_owned(), |expression| format!("other:{expression}"))
     }
 
     /// Adds one more searched value.

@@ -4,9 +4,9 @@
 pub(crate) mod all;
 pub(crate) mod axis;
 pub(crate) mod axis_sign;
-pub(crate) mod basis_functions;
 pub(crate) mod candidate;
 pub(crate) mod channel_fault;
+pub(crate) mod covariate;
 pub(crate) mod dictionary;
 pub(crate) mod dry_share;
 pub(crate) mod fingertip_slip;

@@ -255,12 +255,13 @@ fn elements(study: &ChannelFit, picks: &[usize], discrepancies: &[Discrepancy], 
 
 /// Lets the causes of a comparison compete, and chooses them anew beside the discrepancies found, until the choice stays,
 /// for a few rounds. Values and figures stay those of the model with its causes alone, which a world can have.
-pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
-    let mut found = compete(&study, errors);
+pub fn settle(mut study: ChannelFit) -> ChannelFit {
+    let errors = std::mem::take(&mut study.errors);
+    let mut found = compete(&study, &errors);
     let mut plain = None;
     for _ in 0..REFINEMENTS {
         let before = study.picks();
-        let Some(system) = found.as_ref().and_then(|found| beside(&study, found, errors)) else { break };
+        let Some(system) = found.as_ref().and_then(|found| beside(&study, found, &errors)) else { break };
         study.chosen = Stepwise::new(&system, &study.candidates, &study.rules).run(&before);
         let before_this = std::mem::replace(&mut study.system, system);
         let alone = plain.get_or_insert(before_this);
@@ -270,7 +271,7 @@ pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
         study.solved = study.system.solve(&study.picks());
         study.competition = found.take();
         leave_out_what_is_unsure(&mut study);
-        found = compete(&study, errors);
+        found = compete(&study, &errors);
         if study.picks() == before {
             break;
         }
@@ -280,6 +281,7 @@ pub fn settle(mut study: ChannelFit, errors: &[Discrepancy]) -> ChannelFit {
         study.solved = study.system.solve(&study.picks());
     }
     study.competition = found.map(|found| Competition { error: Vec::new(), ..found });
+    study.errors = errors;
     study
 }
 

@@ -1,15 +1,16 @@
 //! Structured errors of a channel in whose view stand the variables that it may go with.
 
-use super::competition::settle;
 use super::of_coordinate::{CREEP_LAGS_S, MANY_TERMS, TERMS};
 use super::smooth::{Discrepancy, field, over_range, over_time};
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::diagnose::selection::comparison::{ChannelFit, View};
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::View;
+use estimation::regression::linear::{Values, least_squares_values};
 
 /// All discrepancies of the rows of a comparison: functions of each variable, with and without the direction of motion, of
 /// time, of all variables together, and of the past. Each sensor has its own.
-fn discrepancies(view: &View, own: &[Variable], study: &ChannelFit) -> Vec<Discrepancy> {
+fn discrepancies(view: &View, own: &[Variable], predicted: &[f64]) -> Vec<Discrepancy> {
     let sensors = sensors(view);
     // Many sensors have few terms each, but enough for a curve.
     let many = (MANY_TERMS / sensors.len().max(1)).max(TERMS / 3);
@@ -44,18 +45,21 @@ fn discrepancies(view: &View, own: &[Variable], study: &ChannelFit) -> Vec<Discr
         found.push(Discrepancy::new("all of these together", all));
     }
     if let Some((_, values)) = view.over.iter().find(|(v, _)| *v == Variable::Time) {
-        let predicted: Vec<f64> = study.target.iter().zip(study.residual(&[])).map(|(y, r)| y - r).collect();
-        let late = each(&|own| past(&predicted, &joined(view, values), own));
+        let late = each(&|own| past(predicted, &joined(view, values), own));
         found.push(Discrepancy::new("past force", late));
     }
     found.into_iter().flatten().collect()
 }
 
-/// A comparison with its causes chosen beside structured errors. `own`: variables without a function of their own. One is
-/// the target itself, with the same noise, or one whose curve is the law of the channel, which causes describe.
-pub fn beside_errors(view: &View, own: &[Variable], study: ChannelFit) -> ChannelFit {
-    let errors = discrepancies(view, own, &study);
-    settle(study, &errors)
+/// A channel with its structured errors. `own`: variables without a function of their own. One is the target itself, with
+/// the same noise, or one whose curve is the law of the channel, which causes describe.
+pub fn beside_errors(channel: Channel, view: &View, own: &[Variable]) -> Channel {
+    let Channel { target, baseline, layout, .. } = &channel;
+    let weight: Vec<f64> = layout.weight.iter().map(|w| w * w).collect();
+    let of_model = |fit: Values| target.iter().zip(fit.residuals).map(|(y, r)| y - r).collect();
+    let predicted =
+        least_squares_values(baseline, target, Some(&weight)).map_or_else(|_| vec![0.0; target.len()], of_model);
+    Channel { errors: discrepancies(view, own, &predicted), ..channel }
 }
 
 /// Functions of time in these rows alone, over their own span.

@@ -3,11 +3,10 @@
 use super::smooth::{Discrepancy, field, over_range, over_time, periodic};
 use crate::diagnose::data::regression_data::{Place, Row, Track};
 use crate::diagnose::hypotheses::axis::Axis;
-use crate::diagnose::selection::comparison::ChannelFit;
 
 /// Terms of a function of one variable.
 /// Choice: halved, 117 of 244 answers change (1 to right); doubled, 173 of 374 answers change (1 to wrong).
-pub(super) const TERMS: usize = 12;
+pub(crate) const TERMS: usize = 12;
 /// Terms of a function of time or of several variables.
 /// Choice: halved, 81 of 374 answers change (1 to right); doubled, 49 of 374 answers change.
 pub(super) const MANY_TERMS: usize = 64;
@@ -15,10 +14,10 @@ pub(super) const MANY_TERMS: usize = 64;
 /// Choice: halved, 44 of 374 answers change (1 to right); doubled, 42 of 374 answers change.
 pub(super) const CREEP_LAGS_S: Axis = Axis::geometric(0.1, 8.0, 5);
 
-/// All discrepancies of the rows of a comparison.
-pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
-    let (rows, time_s) = (&track.rows, study.layout.time_s.as_slice());
-    let predicted: Vec<f64> = study.target.iter().zip(study.residual(&[])).map(|(y, r)| y - r).collect();
+/// All discrepancies of the rows of a track. `time_s`: of each row, one recording after the other; `predicted`: force of
+/// the base model.
+pub fn discrepancies(track: &Track, time_s: &[f64], predicted: &[f64]) -> Vec<Discrepancy> {
+    let rows = &track.rows;
     let along: Vec<bool> = rows.iter().map(|r| r.place == Place::Along).collect();
     let of = |value: &dyn Fn(&Row) -> f64| -> Vec<f64> {
         rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()
@@ -63,8 +62,8 @@ pub fn discrepancies(track: &Track, study: &ChannelFit) -> Vec<Discrepancy> {
     }
     found.push(state(&angle, turns, (&speed, load.as_deref()), &along));
     found.push(wander(track, &sensor));
-    found.push(creep(track, time_s, &predicted));
-    found.push(reading(track, &predicted));
+    found.push(creep(track, time_s, predicted));
+    found.push(reading(track, predicted));
     found.into_iter().flatten().collect()
 }
 

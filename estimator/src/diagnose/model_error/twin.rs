@@ -2,7 +2,6 @@
 
 use super::competition::without_causes;
 use super::null_model::NullModel;
-use super::of_coordinate::discrepancies;
 use crate::diagnose::data::regression_data::{Place, Track};
 use crate::diagnose::selection::comparison::ChannelFit;
 use foundation::signal::derive::interpolate;
@@ -45,7 +44,7 @@ impl Twin {
         if track.freely.is_some() {
             return None;
         }
-        let null = without_causes(study, &discrepancies(track, study))?;
+        let null = without_causes(study, &study.errors)?;
         let placed = track.rows.iter().map(|row| Placed {
             recording: row.recording,
             time_s: row.motion.time_s,

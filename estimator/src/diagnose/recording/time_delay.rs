@@ -8,10 +8,11 @@
 use super::delay_scan::{Demands, look};
 use crate::diagnose::data::direction::CLOCKS_S;
 use crate::diagnose::data::limits::SURE;
-use crate::diagnose::data::regression_data::{Model, Row, Track};
+use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::{Weights, column};
-use crate::diagnose::hypotheses::basis_functions::generic;
 use crate::diagnose::hypotheses::time_delay;
+use crate::diagnose::model_error::of_coordinate::TERMS;
+use crate::diagnose::model_error::smooth::{over_range, over_time, periodic};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::gram::gram;
 use crate::diagnose::selection::normal_equations::solve;
@@ -19,7 +20,6 @@ use crate::diagnose::selection::profile_likelihood::parameters;
 use foundation::signal::derive::{interpolate, interpolate_cubic};
 use haptics::law::{CoulombFriction, Effect, Inertia, Law};
 use haptics::recording::{Recording, Span};
-use std::sync::Arc;
 
 /// Demands on a guess of a delay with which the diagnosis is repeated.
 /// Choice: not varied one by one. The limits are the longest delay between two movements of a hand, half of the scan,
@@ -33,6 +33,10 @@ pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     let late = look(track.period_s, &GUESS, &|rows| moved.left(rows))?;
     late.is_seen.then_some(late.tau_s)
 }
+
+/// Functions of the place, and of time, beside which an offset is looked for.
+/// Derived: half of those of a discrepancy; the scan of offsets fits them many times.
+const WAVES: usize = TERMS / 2;
 
 /// Rows along the motion whose forces are shifted against it.
 struct Moved<'a> {
@@ -52,9 +56,13 @@ impl<'a> Moved<'a> {
         let laws = model.iter().copied().chain(missing.map(|law| Effect::new(law, &[1.0])));
         let (loads, others): (Vec<Effect>, Vec<Effect>) = laws.partition(|e| e.law().feels_load());
         let mut motion: Vec<Vec<f64>> = others.iter().map(|effect| column(track, effect)).collect();
-        let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
-        let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
-        motion.extend(terms.flat_map(|c| c.regressors).map(Arc::unwrap_or_clone));
+        let of = |value: &dyn Fn(&Row) -> f64| track.rows.iter().map(value).collect::<Vec<f64>>();
+        let angle = of(&|row| row.angle_rad);
+        let along = track.rows.iter().map(|row| row.place == Place::Along).collect::<Vec<bool>>();
+        let turns = track.radius_m.is_some();
+        let of_place = if turns { periodic(&angle, WAVES as u32) } else { over_range(&angle, &along, 0.06, 2 * WAVES) };
+        motion.extend(of_place);
+        motion.extend(over_time(&of(&|row| row.motion.time_s), f64::INFINITY, 1.0, WAVES));
         motion.push(vec![1.0; track.rows.len()]);
         Self { track, rows: track.along().collect(), loads, motion }
     }

@@ -5,9 +5,10 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
-use super::comparison::{ChannelFit, residual};
+use super::comparison::ChannelFit;
+use super::gram::gram;
 use super::held_out_gain::{LEAST_CHANGE_SHARE, confirmed, gain, holds_out, is_tested};
-use super::layout::Layout;
+use super::layout::{Layout, Use};
 use super::noise_model::whitener;
 use super::normal_equations::{System, columns_of, solve, uses};
 use super::prescreen::Rough;
@@ -16,6 +17,8 @@ use super::stepwise::Stepwise;
 use crate::diagnose::hypotheses::all::relations;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::relations::Relation;
+use crate::diagnose::model_error::of_coordinate::TERMS;
+use crate::diagnose::model_error::smooth::Discrepancy;
 use foundation::estimate::EstimateError;
 
 /// One measured quantity and all that may explain it.
@@ -26,15 +29,16 @@ pub struct Channel {
     pub baseline: Vec<Vec<f64>>,
     /// Indices of those among them that can only resist: a negative coefficient is no explanation.
     pub resisting: Vec<usize>,
-    /// Causes and generic terms.
     pub candidates: Vec<Candidate>,
+    /// Structured errors that may stand beside the causes.
+    pub errors: Vec<Discrepancy>,
     pub layout: Layout,
     pub rules: Rules,
 }
 
 impl Channel {
     pub fn new(y: Vec<f64>, base: Vec<Vec<f64>>, candidates: Vec<Candidate>, layout: Layout, rules: Rules) -> Self {
-        Self { target: y, baseline: base, resisting: Vec::new(), candidates, layout, rules }
+        Self { target: y, baseline: base, resisting: Vec::new(), candidates, errors: Vec::new(), layout, rules }
     }
 
     /// Selects among the candidates that differ from zero, and removes what the held-out rows do not confirm.
@@ -52,9 +56,9 @@ impl Channel {
         if !made.rules.has_dry_friction && lifts_nothing(&made) {
             // The dry friction beside which the change was found was removed: a change of friction without friction is
             // not possible.
-            let ChannelFit { target: y, baseline: base, mut candidates, layout, rules, .. } = made;
+            let ChannelFit { target: y, baseline: base, mut candidates, errors, layout, rules, .. } = made;
             candidates.retain(|c| !relations(c.id).contains(&Relation::OfDryFriction));
-            return Self::new(y, base, candidates, layout, rules).fit();
+            return Self { errors, ..Self::new(y, base, candidates, layout, rules) }.fit();
         }
         Ok(made)
     }
@@ -62,7 +66,7 @@ impl Channel {
     /// Selects among the candidates, without a final check. `before`: an earlier round, whose whitening stays as long
     /// as the weights do (the same terms together have the same residual), and from whose choice the search starts, too.
     pub fn select(self, before: Option<ChannelFit>) -> Result<ChannelFit, EstimateError> {
-        let Self { target: y, baseline: base, resisting, candidates, layout, rules } = self;
+        let Self { target: y, baseline: base, resisting, candidates, errors, layout, rules } = self;
         let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
         let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
         let start: Vec<usize> = found.filter_map(place).collect();
@@ -73,14 +77,14 @@ impl Channel {
                 System::after(system, &columns_of(&had_base, &had, &had_y), &base, &candidates, &y, &layout)
             }
             _ => {
-                let coefficients = whitening(&base, &candidates, &y, &layout, &rules)?;
+                let coefficients = whitening((&base, &candidates, &errors), &y, &layout, &rules)?;
                 System::new(&base, &candidates, &y, &layout, coefficients)
             }
         };
         system.resisting = resisting;
         system.pieces = layout.pieces();
         let chosen = Stepwise::new(&system, &candidates, &rules).run(&start);
-        Ok(ChannelFit::of(candidates, chosen, system, (y, base, layout), rules))
+        Ok(ChannelFit { errors, ..ChannelFit::of(candidates, chosen, system, (y, base, layout), rules) })
     }
 }
 
@@ -90,39 +94,49 @@ fn lifts_nothing(study: &ChannelFit) -> bool {
     is(Relation::OfDryFriction) && !is(Relation::DryFriction)
 }
 
-/// Autoregression of the residual after all likely causes together. Learnt from the model's residual, it would absorb
-/// the causes.
+/// Columns of a structured error, smoothest first, beside which the first autoregression is learnt.
+/// Derived: the functions of one variable.
+const SMOOTHEST: usize = TERMS;
+/// Least number of rows for each of those columns.
+/// Choice: without it, 1 of 174 answers changes (to wrong).
+const ROWS_OF_A_COLUMN: usize = 4;
+
+/// Autoregression of the residual after all likely causes and structured errors together. Learnt from the model's
+/// residual, it would absorb the causes. `columns`: regressors of the model, causes, and structured errors.
 fn whitening(
-    base: &[Vec<f64>],
-    candidates: &[Candidate],
+    (base, candidates, errors): (&[Vec<f64>], &[Candidate], &[Discrepancy]),
     y: &[f64],
     layout: &Layout,
     rules: &Rules,
 ) -> Result<Vec<f64>, EstimateError> {
     let mut rough = Rough::new(base, candidates, y, layout);
     let causes = rough.greedy();
-    let generic = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some());
-    let used: Vec<usize> = causes.iter().copied().chain(generic).collect();
-    rough.know(&used);
     let rough = rough.system();
     let own = |k: &usize| {
         let others: Vec<usize> = causes.iter().filter(|c| *c != k).copied().collect();
         rough.distinct(*k, &others).max(LEAST_CHANGE_SHARE)
     };
-    let mut kept_out: Vec<f64> =
-        causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].regressors.len()]).collect();
-    let columns = rough.columns(&used);
-    let target = rough.train.ncols() - 1;
-    let mut ridged = rough.train.clone();
-    kept_out.resize(columns.len() - rough.base, rules.ridge);
-    for (column, share) in columns[rough.base..].iter().zip(&kept_out) {
-        ridged[(*column, *column)] *= 1.0 + share;
-    }
-    let solved = solve(&ridged, &columns, target)
+    let kept_out = causes.iter().flat_map(|k| vec![rules.ridge * own(k); candidates[*k].regressors.len()]);
+    let of_causes = causes.iter().flat_map(|k| candidates[*k].regressors.iter().map(|c| c.as_slice()));
+    let uses = uses(layout);
+    let training: Vec<usize> = (0..y.len()).filter(|i| matches!(uses[*i], Use::Always | Use::Fold(_))).collect();
+    // Few rows determine few functions.
+    let smoothest = SMOOTHEST.min(training.len() / (ROWS_OF_A_COLUMN * errors.len().max(1)));
+    let of_errors = errors.iter().flat_map(|e| e.columns.iter().take(smoothest).map(Vec::as_slice));
+    let columns: Vec<&[f64]> = base.iter().map(Vec::as_slice).chain(of_causes).chain(of_errors).collect();
+    let mut shares: Vec<f64> = vec![0.0; base.len()].into_iter().chain(kept_out).collect();
+    shares.resize(columns.len(), rules.ridge);
+    let weighted = |column: &[f64]| column.iter().zip(&layout.weight).map(|(v, w)| v * w).collect::<Vec<f64>>();
+    let whole: Vec<Vec<f64>> = columns.iter().copied().chain([y]).map(weighted).collect();
+    let mut ridged = gram(&whole, &training);
+    shares.iter().enumerate().for_each(|(k, share)| ridged[(k, k)] *= 1.0 + share);
+    let solved = solve(&ridged, &(0..columns.len()).collect::<Vec<_>>(), columns.len())
         .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
-    let residual = residual(y, base, candidates, &used, &solved);
-    let weighted: Vec<f64> = residual.iter().zip(&layout.weight).map(|(r, w)| r * w).collect();
-    Ok(whitener(&weighted, layout, &uses(layout)))
+    let mut residual = whole[columns.len()].clone();
+    for (column, value) in whole.iter().zip(&solved.values) {
+        residual.iter_mut().zip(column).for_each(|(r, c)| *r -= value * c);
+    }
+    Ok(whitener(&residual, layout, &uses))
 }
 
 /// Removes unsound causes: those that certainly increase the held-out error, those that are unsteady over blocks of the

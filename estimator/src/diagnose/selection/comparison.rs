@@ -4,6 +4,7 @@ use super::rules::Rules;
 use super::stepwise::{SelectedTerm, Stepwise, without};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
+use crate::diagnose::model_error::smooth::Discrepancy;
 use crate::diagnose::model_error::standing::Competition;
 use foundation::tasks::SystemState;
 
@@ -66,7 +67,9 @@ pub struct ChannelFit {
     /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
     /// error.
     pub shares_of: [f64; 2],
-    /// The chosen causes beside structured errors.
+    /// Structured errors that may stand beside the causes.
+    pub errors: Vec<Discrepancy>,
+    /// The chosen causes beside them.
     pub competition: Option<Competition>,
 }
 
@@ -80,8 +83,20 @@ impl ChannelFit {
         rules: Rules,
     ) -> Self {
         let solved = system.solve(&chosen.iter().map(|c| c.candidate).collect::<Vec<usize>>());
-        let shares_of = [1.0, 0.0];
-        Self { candidates, chosen, system, solved, target, baseline, layout, rules, shares_of, competition: None }
+        let (shares_of, errors) = ([1.0, 0.0], Vec::new());
+        Self {
+            candidates,
+            chosen,
+            system,
+            solved,
+            target,
+            baseline,
+            layout,
+            rules,
+            shares_of,
+            errors,
+            competition: None,
+        }
     }
 
     /// Candidates that were chosen.
@@ -119,19 +134,6 @@ impl ChannelFit {
     /// Residual of a solution with these candidates, row by row.
     pub fn residual_of(&self, picks: &[usize], solved: &Solved) -> Vec<f64> {
         residual(&self.target, &self.baseline, &self.candidates, picks, solved)
-    }
-
-    /// The same comparison with these generic terms beside the found causes, whitened as before.
-    pub fn beside(&self, terms: Vec<Candidate>) -> Self {
-        let found = self.chosen.iter().map(|c| self.candidates[c.candidate].clone());
-        let candidates: Vec<Candidate> = found.chain(terms).collect();
-        let Self { target: y, baseline: base, layout, .. } = self;
-        let system = System::new(base, &candidates, y, layout, self.system.coefficients.clone());
-        let as_before =
-            |(candidate, c): (usize, &SelectedTerm)| SelectedTerm { candidate, rivals: Vec::new(), ..c.clone() };
-        let chosen: Vec<SelectedTerm> = self.chosen.iter().enumerate().map(as_before).collect();
-        let rows = (self.target.clone(), self.baseline.clone(), self.layout.clone());
-        Self { shares_of: self.shares_of, ..Self::of(candidates, chosen, system, rows, self.rules) }
     }
 
     /// Each of these candidates with its coefficients. `values`: of the model's regressors, then of the candidates' ones.

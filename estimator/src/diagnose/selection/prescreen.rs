@@ -92,13 +92,6 @@ impl<'a> Rough<'a> {
         }
     }
 
-    /// Computes all products of these candidates with everything.
-    pub fn know(&mut self, candidates: &[usize]) {
-        let columns = self.columns_of(candidates);
-        let strips: Vec<Vec<usize>> = columns.chunks(STRIP).map(<[usize]>::to_vec).collect();
-        self.learn(&strips, &columns, false);
-    }
-
     fn columns_of(&self, candidates: &[usize]) -> Vec<usize> {
         candidates.iter().flat_map(|c| self.system.places[*c].clone()).collect()
     }
@@ -172,13 +165,11 @@ mod tests {
         let mut rough = Rough::new(&base, &candidates, &y, &layout);
         let chosen = rough.greedy();
         assert!(chosen.len() > 2 && chosen.contains(&17) && chosen.contains(&40), "{chosen:?}");
-        let some: Vec<usize> = chosen.iter().copied().chain([3, 9, 21]).collect();
-        rough.know(&some);
         let whole = System::new(&base, &candidates, &y, &layout, Vec::new());
         assert_eq!(rough.system.rows.to_bits(), whole.rows.to_bits());
         let bits = |energy: &[(f64, f64)]| energy.iter().map(|(a, b)| [a.to_bits(), b.to_bits()]).collect::<Vec<_>>();
         assert_eq!(bits(&rough.system.energy), bits(&whole.energy));
-        let mut columns = whole.columns(&some);
+        let mut columns = whole.columns(&chosen);
         columns.push(whole.target());
         for a in &columns {
             for b in &columns {

@@ -57,12 +57,6 @@ pub struct Rules {
     /// Ratio of held-out residuals from which a cause is harmful. A true but poorly estimated small cause may increase
     /// the residual slightly.
     pub harms: f64,
-    /// Evidence of a generic term from which the residual has an unexplained part.
-    pub unexplained: f64,
-    /// Ratio of held-out residuals above which such a term is an overfit.
-    pub overfit: f64,
-    /// Share of the explainable power up to which such a term is noise.
-    pub least_share: f64,
     /// Largest ratio of final residual to noise under a correct model; `None` if it is not known.
     pub much: Option<f64>,
     /// The final residual is not white if noise would have this p-value or less.
@@ -99,9 +93,6 @@ impl Rules {
             shown: 1.0,
             steady: 15.0,
             harms: 1.05,
-            unexplained: THRESHOLD_SLOW,
-            overfit: f64::INFINITY,
-            least_share: 0.0,
             much: None,
             surely_not_white: 1e-12,
             visible: THRESHOLD_SLOW,
@@ -123,9 +114,6 @@ impl Rules {
         Self {
             one_loss: true,
             is_sparse: false,
-            unexplained: THRESHOLD,
-            overfit: AS_GOOD,
-            least_share: f64::NEG_INFINITY,
             visible: THRESHOLD,
             // An evidence margin of 6.
             open: 1.0 / (1.0 + 3.0_f64.exp()),
@@ -135,7 +123,7 @@ impl Rules {
 
     /// Path of a handle: a circle, without friction.
     pub fn of_path(period_s: f64) -> Self {
-        Self { one_loss: false, ridge: 0.0, overfit: f64::INFINITY, ..Self::of_coordinate(period_s) }
+        Self { one_loss: false, ridge: 0.0, much: Some(MUCH), ..Self::of_coordinate(period_s) }
     }
 
     /// The same rules for a model with or without dry friction.

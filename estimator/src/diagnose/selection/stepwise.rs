@@ -5,7 +5,7 @@ use super::rules::Rules;
 use crate::diagnose::data::limits::{MOST_ROUNDS, SIGNIFICANT};
 use crate::diagnose::hypotheses::all::{form, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::relations::{Form, Relation};
+use crate::diagnose::hypotheses::relations::Relation;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -51,11 +51,6 @@ const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 /// Choice: halved, 1 of 17 answers change (1 to right); doubled, 0 of 17 answers change.
 const CANCELLED_SHARE: f64 = 0.1;
-
-/// True if the cause has an empirical curve.
-pub fn is_curve(id: &str) -> bool {
-    matches!(form(id), Form::Curve(_))
-}
 
 impl<'a> Stepwise<'a> {
     pub fn new(system: &'a System, candidates: &'a [Candidate], rules: &Rules) -> Self {
@@ -113,20 +108,6 @@ impl Stepwise<'_> {
         Some(self.paid(chosen, self.system.least_sound(chosen)?.1))
     }
 
-    /// True if a generic term in place of the k-th cause has more evidence, penalised for its search, by more than the
-    /// cause's curve may miss. Its name is then a guess. A small misfit of a strong cause's curve does not count.
-    fn outdone(&self, chosen: &[usize], k: usize) -> bool {
-        let rest = without(chosen, k);
-        let generic: Vec<usize> = (0..self.candidates.len())
-            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
-            .collect();
-        let search = 2.0 * (generic.len().max(1) as f64).ln();
-        let whole = self.price(chosen);
-        let score = self.plain_price(&rest).map_or(0.0, |less| less - whole);
-        let more = search + (self.rules.remainder * score).max(self.rules.ambiguous);
-        generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
-    }
-
     /// True if the cause of a candidate has a relation.
     pub(crate) fn has(&self, candidate: usize, relation: Relation) -> bool {
         self.relations[candidate].contains(&relation)
@@ -141,24 +122,13 @@ impl Stepwise<'_> {
     /// Candidates that may join the chosen ones: supported, and of another cause.
     pub(crate) fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
         (0..self.candidates.len())
-            .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
+            .filter(|c| self.system.supported(*c))
             .filter(|c| chosen.iter().all(|o| !self.excludes(*o, *c)))
     }
 
     /// Price of each candidate that may join the chosen ones.
     pub fn priced(&self, chosen: &[usize]) -> Vec<(usize, f64)> {
         self.open(chosen).map(|c| (c, self.price(&[chosen, &[c]].concat()))).collect()
-    }
-
-    /// The strongest generic term beside the chosen causes, and its evidence after the penalty for the search.
-    pub fn unexplained(&self, chosen: &[usize]) -> Option<(usize, f64)> {
-        let whole = self.price(chosen);
-        let generic: Vec<usize> = (0..self.candidates.len())
-            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
-            .collect();
-        let search = 2.0 * (generic.len().max(1) as f64).ln();
-        let score = |c: usize| whole - self.price(&[chosen, &[c]].concat()) - search;
-        generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Evidence of a candidate beside the chosen ones, penalised for its parameters. `None` if it cannot join them, or
@@ -215,10 +185,6 @@ impl Stepwise<'_> {
             self.merge(&mut chosen);
         }
         self.prune(&mut chosen);
-        while let Some(k) = (0..chosen.len()).find(|k| self.outdone(&chosen, *k)) {
-            chosen.remove(k);
-            self.prune(&mut chosen);
-        }
         chosen
     }
 

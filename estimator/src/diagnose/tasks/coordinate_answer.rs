@@ -38,7 +38,6 @@ pub fn explain(
     let force = Part {
         role: Role::Coordinate,
         study,
-        terms: Some(study),
         channel: if track.freely.is_some() { "motion" } else { "force" },
         unit: track.force_unit(),
         floor: if track.freely.is_some() { end_train.min(end) } else { track.force_noise.hypot(track.inertial_noise) },

@@ -7,8 +7,8 @@ use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
 use crate::diagnose::data::row_means::column;
 use crate::diagnose::data::stick_phases::Load;
 use crate::diagnose::data::{known_weight, stick_phases};
-use crate::diagnose::hypotheses::basis_functions::generic;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::covariate::covariates;
 use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
@@ -16,8 +16,8 @@ use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, force_bias, force_cross_axis, force_drift, force_gain, force_step, hysteresis,
     quadratic_drag, time_delay, viscous_friction,
 };
-use crate::diagnose::model_error::competition::settle;
-use crate::diagnose::model_error::of_coordinate;
+use crate::diagnose::model_error::of_coordinate::discrepancies;
+use crate::diagnose::model_error::smooth::Discrepancy;
 use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
@@ -45,38 +45,28 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelF
         stick_phases::add(track, &loads);
     }
     let is_free = track.freely.is_some();
-    let (coarse, generic) = (Grid::coarse(track), generic(track));
+    let coarse = Grid::coarse(track);
     let (fine, columns) = (Grid::default(), Columns::default());
-    let mut search = Search { track, model, fixed, coarse, fine, columns, generic, is_sharp: false, noise: None };
+    let mut search = Search { track, model, fixed, coarse, fine, columns, errors: None, is_sharp: false, noise: None };
     let mut made = refined(&mut search, if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS })?;
     // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
-    // estimated too small, which looks like friction that rises there or like a misfit of the curves.
+    // estimated too small, which looks like friction that rises there.
     let rises = |study: &ChannelFit| study.has(Stribeck.id());
-    let bends = |study: &ChannelFit| {
-        study.of_each().unexplained(&study.picks()).is_some_and(|(_, score)| score > study.rules.threshold)
-    };
-    let is_planar = search.track.planar;
-    let (rose, bent) = (rises(&made), !is_planar && bends(&made));
-    if !is_planar && (rose || bent) {
+    if !search.track.planar && rises(&made) {
         search.is_sharp = true;
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
         search.fine = Grid::around(&found, search.track, 1.0);
         let sharp = search.compare(None)?;
-        if rose && !rises(&sharp) || bent && !bends(&sharp) {
+        if !rises(&sharp) {
             made = sharp;
         }
     }
     leave_out_what_is_unsure(&mut made);
-    Ok(made)
-}
-
-/// A comparison with its causes chosen beside structured errors. A free motion has too few rows for those.
-pub fn beside_errors(track: &Track, study: ChannelFit) -> ChannelFit {
-    if track.freely.is_some() {
-        return study;
+    if !is_free {
+        let predicted: Vec<f64> = made.target.iter().zip(made.residual(&[])).map(|(y, r)| y - r).collect();
+        made.errors = discrepancies(track, &made.layout.time_s, &predicted);
     }
-    let errors = of_coordinate::discrepancies(track, &study);
-    settle(study, &errors)
+    Ok(made)
 }
 
 /// A comparison on a track, with what is common to all rounds.
@@ -89,7 +79,8 @@ struct Search<'a> {
     /// Values around those found.
     fine: Grid,
     columns: Columns,
-    generic: Vec<Candidate>,
+    /// Structured errors of the first round, or of the last one in which the load changed.
+    errors: Option<Vec<Discrepancy>>,
     /// True if the width of the direction's blur is reduced.
     is_sharp: bool,
     /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
@@ -190,7 +181,7 @@ impl Refinement for Search<'_> {
         let losses: Vec<&[f64]> = losses.map(|c| c.regressors[0].as_slice()).collect();
         base.extend(stick_phases::creep(track, &y, &losses));
         base.extend(self.is_sharp.then(|| blurred(track, &dry)));
-        candidates.extend(self.generic.iter().cloned());
+        candidates.extend(covariates(track));
         // One decay takes time and amplitude away together: causes over time or place are not told from those of speed.
         if track.freely.is_some_and(|free| free.is_energy) {
             candidates.retain(|c| [coulomb_friction::ID, viscous_friction::ID, quadratic_drag::ID].contains(&c.id));
@@ -200,7 +191,18 @@ impl Refinement for Search<'_> {
             .with_noise(track.noise_is_measured);
         let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
         let layout = layout(track, weight);
-        let mut study = Channel { target: y, baseline: base, resisting, candidates, layout, rules }.select(before)?;
+        // A free motion has too few rows for structured errors.
+        let is_free = track.freely.is_some();
+        let make = || {
+            if is_free || taken.contains(&hysteresis::ID) {
+                Vec::new()
+            } else {
+                discrepancies(track, &layout.time_s, &predicted)
+            }
+        };
+        let errors = self.errors.get_or_insert_with(make).clone();
+        let mut study =
+            Channel { target: y, baseline: base, resisting, candidates, errors, layout, rules }.select(before)?;
         let solved = study.solved.as_ref();
         study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
         Ok(study)
@@ -224,7 +226,7 @@ impl Refinement for Search<'_> {
         // Load on the friction: the sensor's reading, corrected for its faults found so far.
         if correct_load(self.track, made) {
             self.columns.forget_loads();
-            self.generic = generic(self.track);
+            self.errors = None;
         }
         true
     }

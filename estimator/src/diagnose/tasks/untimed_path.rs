@@ -16,6 +16,7 @@ use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_cross_axis, force_gain, inertia, local_resistance, return_spring, time_delay,
     viscous_friction,
 };
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::channel::Channel;
@@ -248,10 +249,6 @@ fn along(rows: &[Row], units: &Units) -> Result<AlongPath, EstimateError> {
         let resists = Candidate::one(local_resistance::ID, Kind::Plant, "F", units.force, column).positive();
         candidates.push(resists.at("place", place, units.place).at("width", width, units.place));
     }
-    candidates.extend((1..=4).map(|n| {
-        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
-        Candidate::term(format!("cos({n} pi s/S)"), "", vec![wave])
-    }));
     let n = rows.len();
     let y = of(&|r| r.force);
     let quarter = |from: usize, to: usize| y[from..to].iter().sum::<f64>() / (to - from).max(1) as f64;
@@ -264,8 +261,10 @@ fn along(rows: &[Row], units: &Units) -> Result<AlongPath, EstimateError> {
     );
     let layout = Layout::of(rows.iter().map(|r| r.recording).collect(), &vec![true; n], 1.0);
     let floor = white_noise(&y);
-    let study = Channel::new(y, base, candidates, layout, Rules::of_observations()).fit()?;
     let view = View { is_angular: units.is_angular, ..view(rows) };
+    // The laws are functions of the place, as a structured error is: they do not compete, but the noise is learnt beside it.
+    let channel = Channel::new(y, base, candidates, layout, Rules::of_observations());
+    let study = beside_errors(channel, &view, &[]).fit()?;
     Ok(AlongPath { compared: compared(study, ("force along the way", units.force), floor, view), falls })
 }
 

@@ -47,6 +47,7 @@ fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> ChannelFit {
         layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
         rules: Rules::of_observations(),
         resisting: Vec::new(),
+        errors: Vec::new(),
     };
     channel.fit().expect("a constant fits")
 }
@@ -127,6 +128,7 @@ fn short(size: f64, seed: u64) -> ChannelFit {
         layout: Layout::of(vec![0; FEW], &[true; FEW], 0.02),
         rules: Rules::of_observations(),
         resisting: Vec::new(),
+        errors: Vec::new(),
     };
     channel.fit().expect("a constant fits")
 }
@@ -164,6 +166,7 @@ fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
             layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
             rules: Rules::of_observations().with_friction(is_dry),
             resisting: Vec::new(),
+            errors: Vec::new(),
         };
         channel.fit()
     };
@@ -184,6 +187,7 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
         layout: Layout::of(vec![0; ROWS], &[true; ROWS], 0.02),
         rules: Rules::of_observations(),
         resisting: Vec::new(),
+        errors: Vec::new(),
     };
     let study = channel.fit().expect("two terms");
     let strongest = study.system.coefficients.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
@@ -207,6 +211,7 @@ fn a_dozen_of_single_observations_can_be_tested() {
         layout: Layout::of((0..n).collect(), &vec![true; n], 1.0),
         rules: Rules::of_observations(),
         resisting: Vec::new(),
+        errors: Vec::new(),
     };
     let study = channel.fit().expect("a line");
     assert_eq!(study.picks(), [0]);

@@ -6,10 +6,10 @@ use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::{ASSUMED_ERROR, LEAST_ROWS_OF_A_FIT};
 use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::axis::Axis;
-use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{length_scale, pad_compliance, stiffness_hardening};
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
@@ -107,7 +107,6 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
         let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
         candidates.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", column));
     }
-    candidates.extend(generic(&rows));
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let means = (1..=blocks)
         .map(|k| {
@@ -121,13 +120,11 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, rules: Rules) -> Result<O
     let layout = Layout::of(rows.stretch.clone(), &along, period_s);
     let (channel, state) = ("distance of the tips", rows.state);
     let time = (Variable::Time, rows.time_s.clone());
-    let over = vec![time, (Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)];
+    let [place, _] = rows.place_m;
+    let over = vec![time, (Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m), (Variable::Place, place)];
     let view = View::of(rows.recording, over, best_seen);
-    let study = beside_errors(
-        &view,
-        &[Variable::Grip, Variable::Width],
-        Channel::new(y, base, candidates, layout, rules).fit()?,
-    );
+    let channel_of = Channel::new(y, base, candidates, layout, rules);
+    let study = settle(beside_errors(channel_of, &view, &[Variable::Grip, Variable::Width]).fit()?);
     let pads = Pads { time_s: rows.time_s, stretch: rows.stretch, period_s, rate };
     let compared = Compared { study, channel, unit: "m", floor: floor_m, along, state, view };
     Ok(Some(Grasp { compared, means, modelled, pads }))
@@ -160,13 +157,6 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
         found.push(cause.at("end", end_n, "N"));
     }
     found
-}
-
-/// Generic terms of the residual: waves over time, and positions.
-fn generic(rows: &Rows) -> Vec<Candidate> {
-    let places = [("x", &rows.place_m[0]), ("y", &rows.place_m[1])];
-    let of_places = places.map(|(axis, place)| Candidate::term(axis.to_owned(), "", vec![place.clone()]));
-    slow_waves(&rows.time_s, 4, "").chain(of_places).collect()
 }
 
 impl Grasp {

@@ -6,7 +6,7 @@
 
 use super::cable::{cables, errors, pulls};
 use super::free_body::Airborne;
-use super::net_force_candidates::{generic, instrument, plant};
+use super::net_force_candidates::{instrument, plant};
 use super::rows::{Place, Row, Rows};
 use super::signals::Seen;
 use crate::diagnose::answer::part::{Found, Told};
@@ -19,6 +19,7 @@ use crate::diagnose::hypotheses::{
     added_constraint, force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change,
     viscous_friction,
 };
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::channel::Channel;
@@ -77,14 +78,11 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     let mut candidates = plant;
     candidates.extend(instrument(&rows, &known, &given));
     candidates.extend(cables);
-    candidates.extend(generic(&rows));
     let layout = Layout::of(rows.stretch.clone(), &testable, rows.period_s()).weighted(weight);
     let view = view(&rows);
-    let study = beside_errors(
-        &view,
-        &[Variable::Lift, Variable::Acceleration],
-        beside_swinging(Channel::new(y, base, candidates, layout, rules), &rows)?,
-    );
+    let channel = Channel::new(y, base, candidates, layout, rules);
+    let channel = beside_errors(channel, &view, &[Variable::Lift, Variable::Acceleration]);
+    let study = settle(beside_swinging(channel, &rows)?);
     let cable_errors = errors(&rows, &study);
     let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
     let carried: Vec<f64> = study.target.iter().zip(&along).filter(|(_, is)| **is).map(|(y, _)| *y).collect();
@@ -108,16 +106,12 @@ fn without_remainders(mut channel: Channel) -> Result<ChannelFit, EstimateError>
         let of = |c: &SelectedTerm| &study.candidates[c.candidate];
         let cable =
             study.chosen.iter().filter(|c| of(c).id == added_constraint::ID).map(|c| c.score).fold(0.0, f64::max);
-        let rests: Vec<(&str, Option<String>)> = study
-            .chosen
-            .iter()
-            .filter(|c| of(c).id != added_constraint::ID && c.score < channel.rules.remainder * cable)
-            .map(|c| (of(c).id, of(c).expression.clone()))
-            .collect();
+        let is_rest = |c: &&SelectedTerm| of(c).id != added_constraint::ID && c.score < channel.rules.remainder * cable;
+        let rests: Vec<&str> = study.chosen.iter().filter(is_rest).map(|c| of(c).id).collect();
         if rests.is_empty() {
             break;
         }
-        channel.candidates.retain(|c| rests.iter().all(|(id, expression)| c.id != *id || c.expression != *expression));
+        channel.candidates.retain(|c| !rests.contains(&c.id));
         study = channel.clone().fit()?;
     }
     Ok(study)

@@ -1,15 +1,12 @@
 //! Candidate terms of the net force on carried blocks: laws of the block and faults of the sensors.
 
 use super::rows::{Place, Row, Rows};
-use super::signals::Seen;
-use crate::diagnose::data::row_means::{mean_and_error, spread};
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::{
     force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change, viscous_friction,
 };
-use crate::diagnose::recording::grip_axis_signs::TRAVEL_M;
 use haptics::law::Kind;
 
 /// Starts of a change of weight that are tried in every carry, in shares of its duration.
@@ -114,39 +111,6 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     }
     if known.iter().any(Option::is_some) {
         found.push(Candidate::one(force_gain::ID, Kind::Instrument, "g - 1", "1", given.to_vec()));
-    }
-    found
-}
-
-/// Mean place of carried blocks along an axis and its standard deviation, m.
-fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
-    let carried = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }));
-    let places: Vec<f64> = carried.map(|r| rows.seen[r.recording].place[axis][r.i]).collect();
-    (mean_and_error(&places).0, spread(&places))
-}
-
-/// Generic terms.
-pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
-    let span = rows.all.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
-    let mut found = Vec::new();
-    for (axis, name) in [(1, "lift"), (0, "side force")] {
-        let mut term = |expression: &str, of: &dyn Fn(&Seen<'_>, &Row) -> f64| {
-            let column = rows.carried(|one, row, _, a| if a == axis { of(one, row) } else { 0.0 });
-            found.push(Candidate::term(format!("{expression} ({name})"), "", vec![column]));
-        };
-        for k in 1..=4 {
-            term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());
-        }
-        for (axis, name) in [(0, "x"), (1, "y")] {
-            let (middle, spread) = along(rows, axis);
-            // An axis without motion shows no dependence on position.
-            if spread > TRAVEL_M {
-                term(name, &|s, r| s.place[axis][r.i] - middle);
-            }
-        }
-        term("grip", &|s, r| s.blocks.grip[r.i]);
-        term("vx abs(vx)", &|s, r| s.velocity[0][r.i] * s.velocity[0][r.i].abs());
-        term("vy abs(vy)", &|s, r| s.velocity[1][r.i] * s.velocity[1][r.i].abs());
     }
     found
 }

@@ -7,10 +7,10 @@ use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
 use crate::diagnose::data::limits::LEAST_PIECES;
 use crate::diagnose::data::row_means::mean_and_error;
-use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{fingertip_slip, pad_compliance};
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
@@ -80,7 +80,6 @@ pub fn ground(
         candidates.push(cause(vec![give, contact], vec![("give", "m/N"), ("give of a contact", "m/N")]));
     }
     slips(&rows, &stands, &model, &mut candidates);
-    candidates.extend(slow_waves(&rows.time_s, 3, ""));
     let stretch = segments(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
     let since = |i: usize| i - stands[rows.stand[i]].first;
     let along: Vec<bool> = (0..n).map(|i| since(i) >= RESTS_NEVER_HELD_OUT && since(i) % HELD_OUT_RESTS == 0).collect();
@@ -90,7 +89,8 @@ pub fn ground(
     let recording = rows.stand.iter().map(|s| stands[*s].recording).collect();
     // Each rest has a height of its own.
     let view = View { sensor: rows.stand.clone(), ..View::of(recording, over, best_seen) };
-    let study = beside_errors(&view, &[], Channel::new(rows.height_m.clone(), base, candidates, layout, rules).fit()?);
+    let channel = Channel::new(rows.height_m.clone(), base, candidates, layout, rules);
+    let study = settle(beside_errors(channel, &view, &[]).fit()?);
     let ways = ways(&rows, &stands, &model, &study);
     let channel = "height of the grip over the ground";
     let state = vec![SystemState::HoldOnGround; n];

@@ -3,7 +3,6 @@
 //!
 //! Weight on a crank's bearing, compared with other hidden causes.
 
-use crate::diagnose::answer::cause::unexplained;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::limits::SURE;
 use crate::diagnose::data::plain_fit::{PlainFit, weights};
@@ -12,7 +11,7 @@ use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::{eccentric_mass, force_bias, force_cross_axis, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
-use crate::diagnose::selection::rules::{AS_GOOD, THRESHOLD_SLOW};
+use crate::diagnose::selection::rules::{AS_GOOD, MUCH, THRESHOLD_SLOW};
 use crate::diagnose::tasks::one_coordinate;
 use estimation::regression::linear::least_squares_values;
 use foundation::estimate::EstimateError;
@@ -144,7 +143,9 @@ pub fn beside_causes(
 ) -> Result<Option<(f64, Track, ChannelFit)>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
     let mistaken = MISTAKEN.iter().any(|id| study.has(id));
-    if !rubs || !track.planar || !(mistaken || unexplained(study).is_some()) {
+    let along: Vec<bool> = looked_at.rows.iter().map(|r| r.place == Place::Along).collect();
+    let is_much = rms(study, &study.picks(), &along).0 > MUCH * track.force_noise;
+    if !rubs || !track.planar || !(mistaken || is_much) {
         return Ok(None);
     }
     let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);

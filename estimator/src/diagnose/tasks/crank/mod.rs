@@ -20,6 +20,7 @@ use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
@@ -68,7 +69,7 @@ pub fn crank(
         }
     }
     options.progress.tell(0.8)?;
-    let study = one_coordinate::beside_errors(&track, study);
+    let study = settle(study);
     // The path itself may have shown a scale of all lengths.
     let scale = scale.filter(|scale| paths.iter().all(|p| !p.study.has(&scale.id)));
     let on_bearing = bearing_n.map(|weight_n| {
@@ -129,10 +130,10 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
         found.tracks.push(rows);
         let path = signals.path(recording);
         found.short.extend(path::short_arc(&path, &circle.arm, &circle.study));
-        let terms = path::unexplained(&path, &circle.arm, &circle.study);
         let mut study = circle.study;
         study.competition = path::competition(&path, &circle.arm, &study);
-        found.paths.push(PathFit { study, terms, link: None });
+        let along = vec![true; study.target.len()];
+        found.paths.push(PathFit { study, along, link: None });
     }
     Ok(found)
 }

@@ -5,7 +5,6 @@
 use super::grasp_slip::{Course, SLIP_STARTS, jump};
 use super::path_points::{Path, PathPoint};
 use crate::diagnose::data::limits::MOST_ROUNDS;
-use crate::diagnose::hypotheses::basis_functions::FEW_WAVES;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{fingertip_slip, joint_offset, length_scale, pad_compliance};
 use crate::diagnose::model_error::competition::compete;
@@ -15,7 +14,7 @@ use crate::diagnose::selection::channel::{Channel, leave_out_what_is_unsure};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::layout::{Blocks, Layout};
 use crate::diagnose::selection::refinement::{Refinement, refined};
-use crate::diagnose::selection::rules::{MUCH, Rules};
+use crate::diagnose::selection::rules::Rules;
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -265,34 +264,6 @@ fn corrections(path: &Path, study: &ChannelFit, shift_m: &mut [Vec2], center_m: 
 /// Choice: halved or doubled, none of 43 answers changes.
 const UNSURE: f64 = 0.05;
 
-/// Generic terms of a path: waves around the turn (those of first order belong to the circle's centre) and slow
-/// changes.
-fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
-    let angle = |i: usize| outward[i].y.atan2(outward[i].x);
-    let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
-    let waves = (2..=FEW_WAVES).map(|n| {
-        let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
-        Candidate::term(format!("cos({n} theta + phi) of the path"), "m", vec![wave(f64::cos), wave(f64::sin)])
-    });
-    let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
-    let slow = (1..=FEW_WAVES).map(|k| {
-        let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
-        Candidate::term(format!("cos({k} pi t/T) of the path"), "m", vec![column(&wave)])
-    });
-    waves.chain(slow).collect()
-}
-
-/// The comparison of the path with generic terms beside the causes found; `None` if the residual is near the noise.
-pub fn unexplained(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<ChannelFit> {
-    let residual = study.residual_of(&study.picks(), study.solved.as_ref()?);
-    let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64).sqrt();
-    if rms < MUCH * white_noise(&study.target) {
-        return None;
-    }
-    let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
-    Some(study.beside(generic(path, &outward)))
-}
-
 /// Sentence on an arc that is too short, for the noise of its positions, to determine its circle well. The error is the
 /// drift of a centre estimated from ever less of a slow motion.
 pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
@@ -320,7 +291,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     })
 }
 
-/// Causes of the path beside its generic discrepancies.
+/// Causes of the path beside its structured errors.
 pub fn competition(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<Competition> {
     let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
     let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();

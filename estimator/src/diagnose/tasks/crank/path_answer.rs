@@ -17,10 +17,11 @@ pub enum Link {
     Second,
 }
 
-/// Comparison of a path, and the same with generic terms if its residual needs some.
+/// Comparison of a path.
 pub struct PathFit {
     pub study: ChannelFit,
-    pub terms: Option<ChannelFit>,
+    /// True for every point.
+    pub along: Vec<bool>,
     /// Link whose angle has an error; `None` if the data do not tell.
     pub link: Option<Link>,
 }
@@ -63,12 +64,11 @@ impl PathFit {
         Part {
             role: Role::Path,
             study: &self.study,
-            terms: self.terms.as_ref(),
             channel: "path",
             unit: "m",
             floor: 0.0,
             noise: white_noise(&self.study.target),
-            along: &[],
+            along: &self.along,
             state: vec![Some(("distance from the circle", SystemState::Turning)); self.study.target.len()],
             view: None,
             told: self,

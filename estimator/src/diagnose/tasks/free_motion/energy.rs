@@ -35,7 +35,6 @@ impl Energy {
         Part {
             role: Role::Path,
             study: &self.study,
-            terms: None,
             channel: "energy of the swings",
             unit: self.track.force_unit(),
             floor: self.track.force_noise.min(end),

@@ -16,6 +16,7 @@ use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::{coordinate, covariates, hung_weight, regression_data};
 use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::hypotheses;
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{driving_force, rate_signs, sample_faults, time_delay};
 use crate::diagnose::selection::comparison::ChannelFit;
@@ -144,7 +145,8 @@ impl Studied {
 
     fn answer(self, options: &Options, put_back: Option<&PutBack<'_>>) -> Findings {
         let Self { track, model, study, faults, doubt, along, is_weighed, skew_s } = self;
-        let study = one_coordinate::beside_errors(&track, study);
+        // A free motion has too few rows for structured errors.
+        let study = if track.freely.is_some() { study } else { settle(study) };
         let evidence = Evidence {
             causes: faults,
             remarks: (skew_s != 0.0).then(|| time_delay::apart(skew_s)).into_iter().collect(),

@@ -10,7 +10,6 @@ use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
-use crate::diagnose::hypotheses::basis_functions::{FEW_WAVES, generic_of};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::dictionary::Dictionary;
 use crate::diagnose::hypotheses::grid::Grid;
@@ -20,6 +19,7 @@ use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
     viscous_friction,
 };
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
@@ -186,7 +186,6 @@ fn candidates(
             candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
         }
     }
-    candidates.extend(generic_of(track, FEW_WAVES, FEW_WAVES));
     candidates
 }
 
@@ -221,11 +220,11 @@ pub fn shaft<'a>(
     let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
     let layout = Layout::of(stretch, &along, needle.period_s).weighted(weight);
     let rules = Rules { much: Some(MUCH_UNSEEN), ..rules.with_friction(law.is_some()) };
-    let channel = Channel::new(y, base, Vec::new(), layout, rules);
+    let view = super::sheet::view(&rows);
+    let channel = beside_errors(Channel::new(y, base, Vec::new(), layout, rules), &view, &[Variable::Velocity]);
     let grid = Grid::coarse(&track);
     let mut closer = Closer { channel, track: &track, asked: &asked, grid, first_n: dry_n, dry_n };
-    let view = super::sheet::view(&rows);
-    let study = beside_errors(&view, &[Variable::Velocity], refined(&mut closer, HOLE_REFINEMENT.values().count())?);
+    let study = settle(refined(&mut closer, HOLE_REFINEMENT.values().count())?);
     let beside_n = closer.dry_n;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };

@@ -7,13 +7,14 @@ use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
-use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
 };
+use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
+use crate::diagnose::model_error::smooth::over_time;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
@@ -108,7 +109,6 @@ fn candidates(
     elastic: &dyn Fn(f64) -> f64,
 ) -> Vec<Candidate> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
-    let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     let acts = |law: Law, id, name, unit| {
         Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic))).positive()
@@ -131,9 +131,6 @@ fn candidates(
     if law.is_some_and(|l| l.give > 0.0) {
         candidates.retain(|c| c.id != hysteresis::ID);
     }
-    // A curve of yet another form, so that the whitening is not too optimistic.
-    candidates.push(Candidate::term("x²".to_owned(), "", vec![of(&|r| pressed(r).powi(2))]));
-    candidates.extend(slow_waves(&of(&|r| r.time_s), 3, ""));
     candidates
 }
 
@@ -198,7 +195,8 @@ pub fn sheet<'a>(needle: &'a Needle, law: Option<&'a MembraneLaw>, rules: Rules)
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
-    let study = beside_errors(&view, &[Variable::Depth], Channel::new(y, base, candidates, layout, rules).fit()?);
+    let beside = beside_errors(Channel::new(y, base, candidates, layout, rules), &view, &[Variable::Depth]);
+    let study = settle(beside.fit()?);
     let compared = Compared { study, channel, unit: "N", floor: floor_n, along, state, view };
     Ok(Sheet { compared, pressed: Pressed { needle, law, rows } })
 }
@@ -213,10 +211,11 @@ fn said_by_a_row(
     candidates: &[Candidate],
 ) -> Result<f64, EstimateError> {
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
-    let slow = candidates.iter().filter(|c| c.id == force_drift::ID || c.expression.is_some());
+    let drifts = candidates.iter().filter(|c| c.id == force_drift::ID).flat_map(|c| &c.regressors).map(|c| &**c);
+    let times: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+    let slow = over_time(&times, f64::INFINITY, 1.0, 3);
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
-    let mut columns: Vec<Vec<f64>> =
-        base.iter().chain(slow.flat_map(|c| &c.regressors).map(|c| &**c)).map(here).collect();
+    let mut columns: Vec<Vec<f64>> = base.iter().chain(drifts).chain(&slow).map(here).collect();
     columns.retain(|column| column.iter().any(|v| *v != 0.0));
     let y: Vec<f64> = free.iter().map(|i| rows[*i].force_n).collect();
     if y.len() < 2 * columns.len() {

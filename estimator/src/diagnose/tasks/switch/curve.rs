@@ -18,6 +18,8 @@ use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
 };
+use crate::diagnose::model_error::competition::settle;
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
@@ -27,9 +29,6 @@ use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
-/// Least evidence of an unexplained term, as a multiple of a cause's threshold.
-/// Choice: halved or doubled, none of 12 answers changes.
-const STRANGE_CURVE_RATIO: f64 = 2.0;
 /// Tried widths of a local resistance, as shares of the travel.
 /// Choice: halved, 1 of 12 answers change (1 to wrong); doubled, 2 of 12 answers change.
 const CURVE_WIDTHS: Axis = Axis::geometric(0.08, 0.3, 4);
@@ -63,13 +62,15 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     let time: Vec<f64> = times.iter().map(|t| t.1).collect();
     let stretch = segments(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
     let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
-    let base = base(&points);
+    let (base, y) = (base(&points), of(&|p| p.residual_n));
     let candidates = candidates(&points, known, viscous);
     let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
     let layout = Layout::of(stretch.clone(), &along, period_s);
-    let study = Channel::new(of(&|p| p.residual_n), base, candidates, layout, rules).fit()?;
-    let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
+    let (channel, unit) = ("force over the knob's way beside the world's curve", "N");
+    // A world's curve is known only so well.
+    let floor = push.compared.floor.hypot(SIGNIFICANT * known.error_n);
     let over = vec![
+        (Variable::Time, time.clone()),
         (Variable::Place, of(&|p| p.at_m)),
         (Variable::Velocity, of(&|p| p.speed_m_s)),
         (Variable::Force, of(&|p| p.asked_n)),
@@ -77,6 +78,8 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     let state = vec![SystemState::Turning; points.len()];
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over, best_seen) };
+    let beside = beside_errors(Channel::new(y, base, candidates, layout, rules), &view, &[]);
+    let study = settle(beside.fit()?);
     let time = times.iter().map(|t| t.1).collect();
     let knob = Knob::captured(&known.switch.curve, points, time, &stretch, period_s);
     Ok(Some(Beside { compared: Compared { study, channel, unit, floor, along, state, view }, knob }))
@@ -180,12 +183,6 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     found.push(Candidate::one(force_gain::ID, Kind::Instrument, "g - 1", "1", of(&|p| p.asked_n)));
     let scaled = of(&|p| -direction(p.side) * p.slope_n_m * p.at_m);
     found.push(Candidate::one(length_scale::ID, Kind::Instrument, "epsilon", "1", scaled));
-    for k in 1..=3 {
-        let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
-        for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
-            found.push(Candidate::term(format!("cos({k} pi x/X) {words}"), "N", vec![column]));
-        }
-    }
     found.into_iter().map(|c| seen(c, SIGNIFICANT * known.error_n)).collect()
 }
 
@@ -195,6 +192,5 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
     let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
-    let strange = if candidate.expression.is_some() { STRANGE_CURVE_RATIO } else { 1.0 };
-    candidate.at_least(strange * least_n / size.max(1e-12))
+    candidate.at_least(least_n / size.max(1e-12))
 }

@@ -6,7 +6,6 @@ use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::free_run::channel::Pads;
-use crate::diagnose::hypotheses::basis_functions::slow_waves;
 use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{added_constraint, pad_compliance, stiffness_hardening};
@@ -19,9 +18,6 @@ use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
 use haptics::law::Kind;
 
-/// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
-/// Choice: halved or doubled, none of 12 answers changes.
-const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
 /// Derived: 1 − 1/10, because the stiffest pads are taken as ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
@@ -61,7 +57,6 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
         base.push(force);
         candidates.push(Candidate::one(stiffness_hardening::ID, Kind::Plant, "bend", "m/N", bend).positive());
     }
-    candidates.extend(slow_waves(&of(&|r| r.time_s), 3, "m").map(|wave| wave.at_least(STRANGE_M)));
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let floor = white_noise(&y);
     let layout = Layout::of(stretch.clone(), &along, seen.period_s);

@@ -13,6 +13,8 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
+use crate::diagnose::model_error::competition::settle;
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
@@ -109,11 +111,12 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let candidates = candidates(seen, &rows, &curves, &forces);
     let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let layout = Layout::of(stretch.clone(), &testable, seen.period_s);
-    let study = Channel::new(y, base, candidates, layout, rules).fit()?;
+    let view = view(&rows);
+    let channel = Channel::new(y, base, candidates, layout, rules);
+    let study = settle(beside_errors(channel, &view, &[Variable::Place]).fit()?);
     let found = of_found(&study, rows.len());
     let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
     let state = rows.iter().map(Row::state).collect();
-    let view = view(&rows);
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
     let thrown = Knob::thrown(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
@@ -187,12 +190,6 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
     }
     found.extend(of_fingers(force_bias::ID, &BIAS, &|finger, axis| of(&|r| r.share(finger, axis))));
     found.extend(of_fingers(force_drift::ID, &DRIFT, &|finger, axis| of(&|r| r.share(finger, axis) * r.time_s)));
-    for k in 1..=3 {
-        let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
-        let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
-        let expression = format!("cos({k} pi t/T), the same way in both directions");
-        found.push(Candidate::term(expression, "N", vec![column]));
-    }
     found
 }
 

@@ -19,10 +19,11 @@ use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, hysteresis, load_friction, quadratic_drag, return_spring, viscous_friction,
 };
+use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
 use crate::diagnose::selection::layout::Use;
 use crate::diagnose::selection::normal_equations::solve;
-use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
+use crate::diagnose::tasks::transmission::{channel, compared, shows, view};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use haptics::law::{
@@ -86,7 +87,8 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
         let column = rows.iter().zip(&direction).map(|(r, d)| r.load.map_or(0.0, f64::abs) * d).collect();
         plain.push(Candidate::one(load_friction::ID, Kind::Plant, "mu", "1", column).positive());
     }
-    plain.extend(generic(&rows, low, high));
+    let view = view(&rows, names);
+    let channel = channel(of(&|r| r.force.unwrap_or(0.0)), base, &rows, &view);
     let once = |tried: &[Tried]| {
         let bend = |way: &f64| {
             let bent = seen.column(&kept, &|f| f.bent(*way)).iter().zip(&direction).map(|(z, d)| z - d).collect();
@@ -94,12 +96,12 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
             cause.at("way", *way, names.unit)
         };
         let candidates = tried[0].values().iter().map(bend).chain(plain.iter().cloned()).collect();
-        fit(of(&|r| r.force.unwrap_or(0.0)), &base, candidates, &rows)
+        Channel { candidates, ..channel.clone() }.fit()
     };
     let study = closer(&mut [Tried::new(hysteresis::ID, high - low)], &once)?;
     let told = if is_loaded { Confounding::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
-    let compared = compared(study, (&rows, names), ("force at the input", names.force_unit), floor);
+    let compared = compared(study, view, ("force at the input", names.force_unit), floor);
     let input = Input { rows, stretch, unit: names.force_unit, inertia, middle };
     Ok(Some(Force { compared, told, input }))
 }

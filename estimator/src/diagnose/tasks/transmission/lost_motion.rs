@@ -10,8 +10,9 @@ use crate::diagnose::data::row_means::spread;
 use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
+use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared};
-use crate::diagnose::tasks::transmission::{compared, fit, generic, shows};
+use crate::diagnose::tasks::transmission::{channel, compared, shows, view};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -61,10 +62,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let rate_noise = seen.fine.iter().map(Fine::rate_noise).fold(0.0, f64::max);
     let delay = Candidate::one(time_delay::ID, Kind::Instrument, "tau", "s", late);
     plain.push(delay.at_least(least_late).noisy(rate_noise));
-    plain.extend(generic(rows, low, high).into_iter().map(|term| {
-        let least = least(&term.regressors[0]);
-        term.at_least(least)
-    }));
+    let view = view(rows, names);
+    let channel = channel(of(&|r| r.output), base, rows, &view);
     let once = |tried: &[Tried]| {
         let gap = |half: &f64| {
             let lost = seen.column(&kept, &|f| f.lost(*half));
@@ -78,11 +77,11 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
         };
         let searched = tried[0].values().iter().map(gap).chain(tried[1].values().iter().map(bend));
         let candidates = searched.chain(plain.iter().cloned()).collect();
-        fit(of(&|r| r.output), &base, candidates, rows)
+        Channel { candidates, ..channel.clone() }.fit()
     };
     let mut tried = [backlash::ID, hysteresis::ID].map(|id| Tried::new(id, high - low));
     let study = closer(&mut tried, &once)?;
-    let compared = compared(study, (rows, names), ("output's place", names.unit), noise);
+    let compared = compared(study, view, ("output's place", names.unit), noise);
     Ok(Way { compared, names, step: seen.step })
 }
 

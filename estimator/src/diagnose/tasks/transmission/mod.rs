@@ -15,11 +15,12 @@ use crate::diagnose::data::limits::{CERTAIN, PARTS, SHORTEST_S};
 use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
-use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     backlash, coulomb_friction, hysteresis, load_friction, pad_compliance, quadratic_drag, time_delay, viscous_friction,
 };
+use crate::diagnose::model_error::competition::settle;
+use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -41,21 +42,25 @@ pub fn is_driven(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_some() && columns(r).is_some())
 }
 
-/// The comparison of a channel, with the variables of its plots.
-fn compared(
-    study: ChannelFit,
-    (rows, names): (&[Row], &Columns),
-    (channel, unit): (&'static str, &'static str),
-    floor: f64,
-) -> Compared {
-    let (along, state) = (vec![true; rows.len()], vec![SystemState::Turning; rows.len()]);
+/// The comparison of a channel beside structured errors, with the variables of its plots.
+fn compared(study: ChannelFit, view: View, (channel, unit): (&'static str, &'static str), floor: f64) -> Compared {
+    let rows = study.target.len();
+    let (along, state) = (vec![true; rows], vec![SystemState::Turning; rows]);
+    Compared { study: settle(study), channel, unit, floor, along, state, view }
+}
+
+/// Variables of the plots.
+fn view(rows: &[Row], names: &Columns) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
-    let over =
-        vec![(Variable::Place, of(&|r| r.input)), (Variable::Velocity, of(&|r| r.rate)), (Variable::Load, of(&load))];
+    let over = vec![
+        (Variable::Place, of(&|r| r.input)),
+        (Variable::Velocity, of(&|r| r.rate)),
+        (Variable::Load, of(&load)),
+        (Variable::Time, of(&|r| r.time_s)),
+    ];
     let recording = rows.iter().map(|r| r.recording).collect();
-    let view = View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over, best_seen) };
-    Compared { study, channel, unit, floor, along, state, view }
+    View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over, best_seen) }
 }
 
 /// Diagnoses recordings of one transmission.
@@ -139,24 +144,11 @@ fn best_seen(id: &str) -> Variable {
     }
 }
 
-fn fit(y: Vec<f64>, base: &[Vec<f64>], candidates: Vec<Candidate>, rows: &[Row]) -> Result<ChannelFit, EstimateError> {
+/// A channel of these rows, without candidates.
+fn channel(y: Vec<f64>, base: Vec<Vec<f64>>, rows: &[Row], view: &View) -> Channel {
     let layout = Layout::of(stretches_of(rows), &vec![true; rows.len()], SHORTEST_S);
-    Channel::new(y, base.to_vec(), candidates, layout, Rules::of_channel(SHORTEST_S)).fit()
-}
-
-fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
-    let range = (high - low).max(1e-12);
-    let term = |expression: String, of: &dyn Fn(&Row) -> f64| {
-        Candidate::term(expression, "", vec![rows.iter().map(of).collect()])
-    };
-    let mut found: Vec<Candidate> = (2..=5_u32)
-        .map(|n| {
-            let n = f64::from(n);
-            term(format!("cos({n} pi q/Q)"), &move |r| (std::f64::consts::PI * n * (r.input - low) / range).cos())
-        })
-        .collect();
-    found.push(term("v abs(v)".to_owned(), &|r| r.rate * r.rate.abs()));
-    found
+    let laws = [Variable::Velocity, Variable::Load];
+    beside_errors(Channel::new(y, base, Vec::new(), layout, Rules::of_channel(SHORTEST_S)), view, &laws)
 }
 
 /// Sentence on how the residual shows a cause.
