@@ -262,22 +262,22 @@ impl<'a> Part<'a> {
         found.into_iter().map(one).collect()
     }
 
-    /// Causes of usual size whose effect this recording would hide.
+    /// Causes of usual size whose effect this recording would hide behind the base model. A cause that is hidden behind a
+    /// chosen one is not meant: the motion excites it.
     pub fn not_excited(&self) -> Vec<NotExcited> {
         let ChannelFit { system, candidates, solved, rules, .. } = self.study;
-        let picks = self.study.picks();
         let mut best: Vec<(&str, f64, String)> = Vec::new();
         for (k, candidate) in candidates.iter().enumerate().filter(|(_, c)| !self.study.has(c.id)) {
             let seen = if self.role == Role::Channel {
                 self.told.usual(candidate).zip(solved.as_ref()).map(|((size, why), solved)| {
                     let first = system.places[k].start;
-                    let power = system.distinct(k, &picks) * system.train[(first, first)] * size * size;
+                    let power = system.distinct(k, &[]) * system.train[(first, first)] * size * size;
                     (power / solved.variance(system.rows), why.to_owned())
                 })
             } else {
                 // A cause as large as the noise.
                 hidden_by_law(candidate.id)
-                    .map(|why| (system.distinct(k, &picks) * system.rows - candidate.cost * system.rows.ln(), why))
+                    .map(|why| (system.distinct(k, &[]) * system.rows - candidate.cost * system.rows.ln(), why))
             };
             let Some((evidence, why)) = seen else { continue };
             match best.iter_mut().find(|b| b.0 == candidate.id) {

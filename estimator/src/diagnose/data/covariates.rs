@@ -50,7 +50,10 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
     }
     let bin_s = span_s / bins as f64;
     let extra = |channel: &haptics::recording::Channel| {
-        let mark = MARKS.iter().any(|mark| channel.name.starts_with(mark));
+        let is_whole = channel.values.iter().filter(|v| v.is_finite()).all(|v| v.fract() == 0.0);
+        let unit = split(&channel.name).map_or_else(|| channel.unit.clone(), |(_, unit)| unit.symbol.to_owned());
+        // Whole numbers without a unit count or name something.
+        let mark = MARKS.iter().any(|mark| channel.name.starts_with(mark)) || is_whole && unit.is_empty();
         // `fx_human_N`, `q_out_rad` are further forces and motions.
         let quantity = channel.name.split('_').next()?.trim_end_matches(|c: char| c.is_ascii_digit());
         let further = FURTHER.contains(&quantity);
@@ -66,7 +69,6 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
         let seen: Vec<usize> = (0..bins).filter(|b| counts[*b] > 0.0).collect();
         let values: Vec<f64> = seen.iter().map(|b| sums[*b] / counts[*b]).collect();
         let time_s: Vec<f64> = seen.iter().map(|b| (*b as f64 + 0.5) * bin_s).collect();
-        let unit = split(&channel.name).map_or_else(|| channel.unit.clone(), |(_, unit)| unit.symbol.to_owned());
         is_slow(&values).then(|| Extra { name: channel.name.clone(), unit, time_s, values })
     };
     recording.channels.iter().filter_map(extra).collect()
@@ -110,6 +112,7 @@ mod tests {
             ("volts_V", &noise),
             ("fx_other_N", &slow),
             ("label", &slow),
+            ("segment", &|t| (0.25 * (t - 100.0)).floor()),
             ("level_V", &|_| 3.0),
         ]);
         let found = of(&made);
