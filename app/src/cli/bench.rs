@@ -10,6 +10,7 @@ mod loglog;
 pub(crate) mod online;
 mod opening;
 mod peers;
+mod reliability;
 pub(crate) mod scale;
 pub(crate) mod table;
 mod verdict;

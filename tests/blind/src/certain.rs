@@ -142,21 +142,39 @@ fn frequent<R: Counted>(rows: &[R]) -> String {
     format!("wrong certain names (fair): {}\n", words.join(", "))
 }
 
-/// Stated posteriors of names in bins: how many are right, and of those that do not describe the structure.
-pub fn bins<R: Counted>(rows: &[R]) -> Vec<[Share; 2]> {
+/// Names whose stated posterior lies in one bin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reliability {
+    /// Ends of the bin.
+    pub bin: [f64; 2],
+    /// Mean of the stated posteriors; not a number without names.
+    pub stated: f64,
+    /// Names that are right.
+    pub right: Share,
+    /// The same without names that describe the structure.
+    pub fair: Share,
+}
+
+/// Stated posteriors of names in bins, and how many of the names are right.
+pub fn reliability<R: Counted>(rows: &[R]) -> Vec<Reliability> {
     let counted = rows.iter().filter(|r| matches!(r.set(), Set::Structured | Set::Beside) && !r.is_missed());
     let names: Vec<Name<'_>> = counted.flat_map(R::names).collect();
     let bin = |edge: &[f64]| {
         let there = || names.iter().filter(|n| n.posterior >= edge[0] && n.posterior < edge[1]);
-        [Share::count(there(), |n| n.is_right), Share::count(there().filter(|n| !n.is_tolerated), |n| n.is_right)]
+        Reliability {
+            bin: [edge[0], edge[1].min(1.0)],
+            stated: there().map(|n| n.posterior).sum::<f64>() / there().count() as f64,
+            right: Share::count(there(), |n| n.is_right),
+            fair: Share::count(there().filter(|n| !n.is_tolerated), |n| n.is_right),
+        }
     };
     BINS.windows(2).map(bin).collect()
 }
 
 fn calibration<R: Counted>(rows: &[R]) -> String {
     let mut text = String::from("posterior of a name → how often it is right, fair\n");
-    for (edge, [all, fair]) in BINS.windows(2).zip(bins(rows)) {
-        let _ = writeln!(text, "  {:.2}–{:.2}  {:<30} {fair}", edge[0], edge[1], all.to_string());
+    for Reliability { bin: [from, to], right, fair, .. } in reliability(rows) {
+        let _ = writeln!(text, "  {from:.2}–{to:.2}  {:<30} {fair}", right.to_string());
     }
     text
 }
@@ -234,7 +252,7 @@ mod tests {
         assert_eq!((alone.ambiguous.hits, alone.unexplained.hits, alone.floor), (1, 1, 2.0 / 0.8));
         assert_eq!((beside.right.hits, beside.in_set.hits, beside.in_set.of), (1, 2, 2));
         assert_eq!(beside.false_certain, [1.0, 0.5]);
-        let [all, fair] = bins(&rows)[4];
+        let Reliability { right: all, fair, .. } = reliability(&rows)[4];
         assert_eq!((all, fair), (Share { hits: 1, of: 6 }, Share { hits: 1, of: 4 }));
         let text = report(&rows);
         assert!(text.contains("mechanisms") && text.contains("angle-field"), "{text}");

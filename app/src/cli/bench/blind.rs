@@ -1,11 +1,14 @@
 //! `touchstone bench blind`: generated recordings with hidden effects, and the detection rate of the diagnosis.
 
 use super::super::{Output, progress};
+use super::reliability;
 use super::table::{Figure, Wanted};
+use blind::certain::Reliability;
 use clap::Args;
 use estimator::diagnose::diagnose;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
@@ -21,6 +24,12 @@ pub struct BlindBench {
     /// Repeats a battery; a new one every day when not given
     #[arg(long)]
     seed: Option<u64>,
+    /// Recordings of cranks and mechanisms with structured model error instead, and how often certain names are right
+    #[arg(long, conflicts_with_all = ["fast", "whole"])]
+    structured: bool,
+    /// Draws the reliability diagram of these recordings (SVG)
+    #[arg(long, value_name = "FILE", requires = "structured")]
+    picture: Option<PathBuf>,
     /// Only so many cases, spread over the battery: a first look
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cases: Option<u64>,
@@ -35,15 +44,51 @@ pub(crate) struct Said {
     whole: bool,
     /// How long it took, generator included, s.
     took_s: f64,
+    /// Figures of the battery; none of recordings with structured model error.
     #[serde(flatten)]
-    counts: blind::Said,
+    counts: Option<blind::Said>,
+    /// How often names are right, by their posterior, in recordings with structured model error.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    reliability: Vec<Bin>,
+}
+
+/// Names with nearly the same posterior.
+#[derive(JsonSchema, Serialize)]
+struct Bin {
+    /// Ends of the bin.
+    ends: [f64; 2],
+    /// Mean posterior; none without names.
+    stated: Option<f64>,
+    /// Names, and how many of them are right.
+    names: usize,
+    right: usize,
+    /// The same without names that describe the structure.
+    fair_names: usize,
+    fair_right: usize,
+}
+
+impl From<&Reliability> for Bin {
+    fn from(Reliability { bin, stated, right, fair }: &Reliability) -> Self {
+        Self {
+            ends: *bin,
+            stated: stated.is_finite().then_some(*stated),
+            names: right.of,
+            right: right.hits,
+            fair_names: fair.of,
+            fair_right: fair.hits,
+        }
+    }
 }
 
 impl BlindBench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let seed = self.seed.unwrap_or_else(today);
         let counts = if self.fast { blind::Counts::FAST } else { blind::Counts::WHOLE };
-        let mut jobs = blind::battery(counts, seed);
+        let mut jobs = if self.structured {
+            blind::structured(blind::StructureCounts::USUAL, seed)
+        } else {
+            blind::battery(counts, seed)
+        };
         if let Some(cases) = self.cases {
             let (all, wanted) = (jobs.len(), usize::try_from(cases)?.min(jobs.len()));
             // Evenly spaced: the sets are in sequence.
@@ -62,9 +107,19 @@ impl BlindBench {
         let text = format!(
             "{} cases, seed {seed}\n{}\n{took_s:.0} s in all, generator included\n",
             rows.len(),
-            blind::report(&rows)
+            if self.structured { blind::certain::report(&rows) } else { blind::report(&rows) }
         );
-        let said = Said { seed, whole: !self.fast && self.cases.is_none(), took_s, counts: blind::Said::of(&rows) };
+        let bins = if self.structured { blind::certain::reliability(&rows) } else { Vec::new() };
+        if let Some(file) = &self.picture {
+            crate::write_whole::write_whole(file, &reliability::svg(&bins)).map_err(anyhow::Error::msg)?;
+        }
+        let said = Said {
+            seed,
+            whole: !self.fast && self.cases.is_none(),
+            took_s,
+            counts: (!self.structured).then(|| blind::Said::of(&rows)),
+            reliability: bins.iter().map(Bin::from).collect(),
+        };
         Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }
@@ -118,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_few_cases_come_out_with_tables_and_intervals_and_can_be_repeated() {
-        let bench = BlindBench { fast: true, whole: false, seed: Some(3), cases: Some(4) };
+        let bench = BlindBench { fast: true, seed: Some(3), cases: Some(4), ..BlindBench::default() };
         let output = bench.run().expect("cases are made and asked");
         assert!(output.text.starts_with("4 cases, seed 3\n"), "{}", output.text);
         for part in
@@ -136,5 +191,23 @@ mod tests {
         assert!(named.iter().any(|f| f.name.contains("nothing hidden") && f.name.ends_with("cases)")), "{named:?}");
         let again = bench.run().expect("the same again");
         assert_eq!(again.json["confusion"], output.json["confusion"]);
+    }
+
+    #[test]
+    fn recordings_with_structure_come_out_with_their_reliability_and_a_diagram() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let picture = folder.path().join("reliability.svg");
+        let bench = BlindBench {
+            structured: true,
+            seed: Some(3),
+            cases: Some(3),
+            picture: Some(picture.clone()),
+            ..BlindBench::default()
+        };
+        let output = bench.run().expect("cases are made and asked");
+        assert!(output.text.contains("posterior of a name"), "{}", output.text);
+        let bins = output.json["reliability"].as_array().expect("bins");
+        assert!(bins.len() == 5 && output.json.get("figures").is_none(), "{}", output.json);
+        assert!(std::fs::read_to_string(picture).expect("a picture").ends_with("</svg>\n"));
     }
 }
