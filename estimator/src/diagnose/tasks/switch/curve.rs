@@ -18,7 +18,6 @@ use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_gain, friction_asymmetry, length_scale, local_resistance, return_spring, viscous_friction,
 };
-use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
@@ -79,7 +78,8 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over, best_seen) };
     let beside = beside_errors(Channel::new(y, base, candidates, layout, rules), &view, &[]);
-    let study = settle(beside.fit()?);
+    // The laws are functions of the place, as a structured error is: they do not compete, but the noise is learnt beside it.
+    let study = beside.fit()?;
     let time = times.iter().map(|t| t.1).collect();
     let knob = Knob::captured(&known.switch.curve, points, time, &stretch, period_s);
     Ok(Some(Beside { compared: Compared { study, channel, unit, floor, along, state, view }, knob }))
