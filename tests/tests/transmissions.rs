@@ -81,6 +81,7 @@ fn named<'a>(found: &'a Findings, id: &str) -> Option<&'a Cause> {
 
 fn value(found: &Findings, id: &str, name: &str) -> f64 {
     let cause = named(found, id).unwrap_or_else(|| panic!("{id}: {:?}", found.causes));
+    assert!(cause.standing.is_some(), "it competes with structured errors: {cause:?}");
     cause.parameters.iter().find(|p| p.name == name).unwrap_or_else(|| panic!("{name}: {cause:?}")).value
 }
 

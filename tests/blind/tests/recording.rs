@@ -127,6 +127,23 @@ fn what_shows_where_the_object_stands_is_worth_something_there() {
 }
 
 #[test]
+fn a_force_that_follows_another_channel_is_named_by_it() {
+    let mut case = plain(Bench::Linear, Log::Mixed, seed());
+    let recording = &mut case.recordings[0];
+    let time_s = recording.time_s.clone().expect("a clock");
+    let warm: Vec<f64> = time_s.iter().map(|t| 24.0 + 2.0 * (0.5 * t).sin() + (1.1 * t).cos()).collect();
+    let force = values(recording, "f_N");
+    let size = (force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64).sqrt();
+    force.iter_mut().zip(&warm).for_each(|(f, w)| *f += 0.2 * size * (w - 24.0));
+    recording.channels.push(Channel { name: "temperature_degC".to_owned(), unit: "degC".to_owned(), values: warm });
+    let found = answer(&case);
+    let cause = named(&found, "other:temperature_degC");
+    assert!(cause.standing.is_some() && cause.posterior > 0.95, "{cause:?}");
+    let amplitude = &cause.parameters[0];
+    assert!((amplitude.value - 0.2 * size).abs() < 5.0 * amplitude.std_error, "{size}: {amplitude:?}");
+}
+
+#[test]
 fn what_slowly_changes_beside_the_motion_is_a_suspect_and_none_where_it_changes_nothing() {
     let mut case = plain(Bench::Linear, Log::Mixed, seed());
     let recording = &mut case.recordings[0];

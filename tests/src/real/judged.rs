@@ -115,14 +115,10 @@ fn told(diagnosis: &Diagnosis) -> String {
     if causes.is_empty() { verdict } else { format!("{verdict}: {}", causes.join(", ")) }
 }
 
-/// Right if one of `any` is certain and nothing else but what is tolerated, alone or in a stated ambiguity set.
+/// Right if one of `any` is certain and nothing else but what is tolerated.
 fn named(diagnosis: &Diagnosis, any: &[&str], tolerated: &[&str]) -> Judged {
     let certain = certain(diagnosis);
-    let is_known = |id: &str| any.contains(&id) || tolerated.contains(&id);
-    let is_false = |id: &&str| {
-        let mut set = diagnosis.alternatives.iter().filter(|a| a.instead_of == **id);
-        !is_known(id) && !set.any(|a| is_known(&a.id))
-    };
+    let is_false = |id: &&str| !any.contains(id) && !tolerated.contains(id);
     let outcome = if certain.iter().any(is_false) {
         Outcome::Wrong
     } else if any.is_empty() || certain.iter().any(|id| any.contains(id)) {

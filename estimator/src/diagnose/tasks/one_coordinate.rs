@@ -62,7 +62,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model) -> Result<ChannelF
         }
     }
     leave_out_what_is_unsure(&mut made);
-    if !is_free {
+    if !made.errors.is_empty() {
         let predicted: Vec<f64> = made.target.iter().zip(made.residual(&[])).map(|(y, r)| y - r).collect();
         made.errors = discrepancies(track, &made.layout.time_s, &predicted);
     }
@@ -191,10 +191,9 @@ impl Refinement for Search<'_> {
             .with_noise(track.noise_is_measured);
         let resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
         let layout = layout(track, weight);
-        // A free motion has too few rows for structured errors.
-        let is_free = track.freely.is_some();
+        // A free motion has too few rows for structured errors. Pads that bend before a block slides look like several.
         let make = || {
-            if is_free || taken.contains(&hysteresis::ID) {
+            if track.freely.is_some() || taken.contains(&hysteresis::ID) {
                 Vec::new()
             } else {
                 discrepancies(track, &layout.time_s, &predicted)

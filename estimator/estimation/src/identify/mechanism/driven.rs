@@ -49,7 +49,7 @@ const CLOCK: &str =
     "the recorded rate contradicts the clock and the position (see the warning); correct one of them first";
 
 /// True if a rate of this recording does not fit its position and its clock.
-fn contradicts_its_clock(recording: &Recording) -> bool {
+pub fn contradicts_its_clock(recording: &Recording) -> bool {
     let is_rate = |column: &str| column.starts_with("dq_");
     recording.warnings.iter().any(|w| w.kind == "unit" && w.column.as_deref().is_some_and(is_rate))
 }

@@ -20,6 +20,7 @@ mod resampling;
 mod signals;
 mod surface;
 mod swing;
+pub use driven::contradicts_its_clock;
 mod transmission;
 mod world;
 

@@ -57,6 +57,10 @@ const OFFSET_ROUNDS: usize = 2;
 /// Choice: halved, 1 of 2 answers change; doubled, 1 of 2 answers change.
 const OF_SKEW: f64 = 0.7;
 
+/// Doubt about a recording whose clock or rate is wrong.
+const CONTRADICTED: &str =
+    "a recorded rate contradicts the position and the clock, so no cause is certain; correct one of them first";
+
 /// Recordings of one mechanism, compared with all causes.
 struct Studied {
     track: Track,
@@ -110,7 +114,9 @@ impl Studied {
             faults.extend(found.causes);
         }
         let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
-        let doubt = driving_force::swing(&track, recordings, &paths);
+        let contradicted = recordings.iter().any(estimation::identify::mechanism::contradicts_its_clock);
+        let doubt =
+            contradicted.then(|| CONTRADICTED.to_owned()).or_else(|| driving_force::swing(&track, recordings, &paths));
         let mut model: Model = match (&options.world, options.baseline.as_deref()) {
             (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
             (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
