@@ -8,7 +8,7 @@
 //! `cargo run --release -p blind --example blind -- --only ID [SEED]` asks the cases of a whole battery in which one effect is hidden alone.
 //! `cargo run --release -p blind --example blind -- --list SEED…` asks whole batteries and prints every case in a line.
 //! `cargo run --release -p blind --example blind -- --structured SEED…` asks about recordings with structured model error and counts certain names; `--list-structured` has a line for each.
-//! `cargo run --release -p blind --example blind -- --again DIR SEED…` writes cases of whole batteries that a report names by their seeds.
+//! `cargo run --release -p blind --example blind -- --again DIR SEED…` (or `--again-structured`) writes cases of batteries that a report names by their seeds.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
 use blind::{
@@ -40,14 +40,17 @@ fn main() -> ExitCode {
         ["--list", seeds @ ..] => seeds.iter().for_each(|seed| list(number(Some(seed), 1))),
         ["--structured", seeds @ ..] => with_structure(seeds, false),
         ["--list-structured", seeds @ ..] => with_structure(seeds, true),
-        ["--again", folder, seeds @ ..] => again(Path::new(folder), seeds),
+        ["--again", folder, seeds @ ..] => again(&|seed| battery(Counts::WHOLE, seed), Path::new(folder), seeds),
+        ["--again-structured", folder, seeds @ ..] => {
+            again(&|seed| structured(StructureCounts::USUAL, seed), Path::new(folder), seeds);
+        }
         ["--table", rest @ ..] => {
             table(number(rest.first(), 7));
             table_of_structures(number(rest.first(), 7));
         }
         _ => {
             eprintln!(
-                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --list SEED… | --structured SEED… | --list-structured SEED… | --again DIR SEED… | --table [SEED]"
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --list SEED… | --structured SEED… | --list-structured SEED… | --again DIR SEED… | --again-structured DIR SEED… | --table [SEED]"
             );
             return ExitCode::from(2);
         }
@@ -174,12 +177,12 @@ fn with_structure(seeds: &[&str], listed: bool) {
     println!("{:.0} s in all, generator included", start.elapsed().as_secs_f64());
 }
 
-/// Writes cases of whole batteries by the seeds that a report names them by.
-fn again(folder: &Path, seeds: &[&str]) {
+/// Writes cases of batteries by the seeds that a report names them by.
+fn again(jobs_of: &dyn Fn(u64) -> Vec<Job>, folder: &Path, seeds: &[&str]) {
     for seed in seeds.iter().filter_map(|text| text.parse::<u64>().ok()) {
-        let jobs = battery(Counts::WHOLE, seed / BATTERY);
+        let jobs = jobs_of(seed / BATTERY);
         let Some(job) = jobs.iter().find(|job| job.seed == seed) else {
-            eprintln!("{seed} is no case of a whole battery");
+            eprintln!("{seed} is no case of this battery");
             continue;
         };
         let (case, truth) = job.make();

@@ -1,6 +1,7 @@
 //! Carried blocks and needles with structured model error from the command line.
 //!
 //! `cargo run -p tests --bin structured -- SEED…` asks about them and counts certain names; `--list SEED…` has a line for each.
+//! `--show CASE…` prints the whole answers to single cases by the seeds in that list.
 //! `cargo run -p tests --bin structured -- --sizes SEED…` makes them and prints how large they came out.
 
 use blind::{Share, certain};
@@ -9,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use tests::tasks::structured::family::Group;
 use tests::tasks::structured::score::{Row, ask, line};
-use tests::tasks::structured::sets::{Counts, Job, structured};
+use tests::tasks::structured::sets::{BATTERY, Counts, Job, structured};
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -17,8 +18,9 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["--list", seeds @ ..] if !seeds.is_empty() => rows(seeds).iter().for_each(|row| println!("{}", line(row))),
         ["--sizes", seeds @ ..] if !seeds.is_empty() => sizes(seeds),
-        [] | ["--list" | "--sizes"] => {
-            eprintln!("structured SEED… | --list SEED… | --sizes SEED…");
+        ["--show", cases @ ..] if !cases.is_empty() => cases.iter().filter_map(|c| c.parse().ok()).for_each(show),
+        [] | ["--list" | "--sizes" | "--show"] => {
+            eprintln!("structured SEED… | --list SEED… | --show CASE… | --sizes SEED…");
             return ExitCode::from(2);
         }
         seeds => report(seeds),
@@ -33,6 +35,21 @@ fn jobs(seeds: &[&str]) -> Vec<Job> {
 
 fn rows(seeds: &[&str]) -> Vec<Row> {
     ask(&jobs(seeds), &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()))
+}
+
+fn show(seed: u64) {
+    let Some(job) = structured(Counts::USUAL, seed / BATTERY).into_iter().find(|job| job.seed == seed) else {
+        eprintln!("{seed} is no case of this battery");
+        return;
+    };
+    let made = job.make();
+    let case = made.case;
+    let answer = diagnose(&case.recordings, &case.options).map_err(|e| e.to_string());
+    let sizes = made.scaled.sizes;
+    println!("{} {} {:?} {sizes:?} noise {} N", job.group.name(), job.family.name(), job.hidden(), made.noise_n);
+    println!("{answer:#?}");
+    let clean = diagnose(&made.clean.recordings, &made.clean.options).map_err(|e| e.to_string());
+    println!("without the structure: {clean:#?}");
 }
 
 fn report(seeds: &[&str]) {

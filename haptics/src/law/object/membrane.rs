@@ -130,12 +130,18 @@ impl MembraneLaw {
     }
 
     fn elastic_n(&self, insertion_m: f64, deepest_m: f64) -> f64 {
-        if insertion_m >= deepest_m {
-            return self.loading_n(insertion_m);
-        }
-        let dent_m = self.give.clamp(0.0, 0.9) * deepest_m;
-        self.loading_n(deepest_m) * ((insertion_m - dent_m) / (deepest_m - dent_m)).max(0.0)
+        unloading_n(insertion_m, deepest_m, self.give, |x| self.loading_n(x))
     }
+}
+
+/// Force of a sheet that was pushed in to `deepest_m`, N: that of the first push beyond it, and a straight line to the
+/// dent above it, a share `give` of the deepest insertion. `loading_n`: force of the first push at an insertion, m.
+pub fn unloading_n(insertion_m: f64, deepest_m: f64, give: f64, loading_n: impl Fn(f64) -> f64) -> f64 {
+    if insertion_m >= deepest_m {
+        return loading_n(insertion_m);
+    }
+    let dent_m = give.clamp(0.0, 0.9) * deepest_m;
+    loading_n(deepest_m) * ((insertion_m - dent_m) / (deepest_m - dent_m)).max(0.0)
 }
 
 #[cfg(test)]

@@ -5,6 +5,6 @@ mod membrane;
 mod toggle;
 mod two_link;
 
-pub use membrane::{MembraneHistory, MembraneLaw, MembranePhase};
+pub use membrane::{MembraneHistory, MembraneLaw, MembranePhase, unloading_n};
 pub use toggle::{CurvePoint, ToggleCurve};
 pub use two_link::{TWO_LINK, TwoLinkMotion, TwoLinkParameter, TwoLinkRows};

@@ -19,7 +19,7 @@ const BESIDE: f64 = 2.0;
 /// A battery counts its cases on from its seed times this.
 ///
 /// Choice: far more than a battery has cases.
-const BATTERY: u64 = 1_000_003;
+pub const BATTERY: u64 = 1_000_003;
 
 /// A case that can be made at any time.
 #[derive(Clone, Debug)]

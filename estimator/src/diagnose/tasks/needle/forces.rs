@@ -3,7 +3,7 @@
 use super::rows::{Phase, Row};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::{hysteresis, stiffness_hardening, viscous_friction};
-use haptics::law::object::MembraneLaw;
+use haptics::law::object::{MembraneLaw, unloading_n};
 
 /// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
 /// Choice: halved or doubled, none of 2 answers changes.
@@ -16,7 +16,7 @@ pub const HERTZ: &str = "hertz";
 /// Force of a sheet beside its linear spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// A power of the depth.
+    /// A power of the depth of the first push.
     Power(f64),
     /// In proportion to the rate.
     Drag,
@@ -36,11 +36,12 @@ impl Law {
         }
     }
 
-    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth.
-    pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
+    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth; `give`: share
+    /// of the deepest indentation that the model keeps as a dent.
+    pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64, give: f64) -> f64 {
         match self {
             _ if !touches(r) => 0.0,
-            Self::Power(power) => r.depth_m.powf(power),
+            Self::Power(power) => with_dent(give, r, &|x| x.powf(power)),
             Self::Drag => r.rate_m_s,
             Self::Dent(share) => with_dent(share, r, elastic) - elastic(r.depth_m),
         }
@@ -68,15 +69,62 @@ pub fn touches(r: &Row) -> bool {
 
 /// Force of a sheet that keeps a share of its deepest indentation as a dent: above that depth it is steeper and lower.
 pub fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
-    let (x, deepest) = (row.depth_m, row.deepest_m);
-    if row.phase == Phase::Loading || x >= deepest {
-        return elastic(x);
+    if row.phase == Phase::Loading {
+        return elastic(row.depth_m);
     }
-    let dent = share * deepest;
-    elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
+    unloading_n(row.depth_m, row.deepest_m, share, elastic)
 }
 
 /// A world's hole in a pierced sheet, without drag.
 pub fn rim(law: &MembraneLaw) -> MembraneLaw {
     MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::data::regression_data::Span;
+    use haptics::law::object::MembraneHistory;
+
+    /// A row at a place that was pushed in by 3 mm.
+    fn pressed(depth_m: f64, phase: Phase) -> Row {
+        Row {
+            recording: 0,
+            start_s: 0.0,
+            time_s: 0.0,
+            depth_m,
+            rate_m_s: 0.0,
+            acceleration_m_s2: 0.0,
+            side_m: 0.0,
+            force_n: 0.0,
+            phase,
+            hold: 0,
+            push: 0,
+            deepest_m: 3e-3,
+            stretch: 0,
+            span: Span::default(),
+        }
+    }
+
+    #[test]
+    fn a_sheet_that_hardens_is_drawn_back_as_its_law_is() {
+        let linear = MembraneLaw {
+            stiffness_n_m: 300.0,
+            cubic_n_m3: 0.0,
+            give: 0.2,
+            puncture_n: 9.0,
+            friction_n: 0.0,
+            drag_n_s_m: 0.0,
+        };
+        let hard = MembraneLaw { cubic_n_m3: 2e7, ..linear };
+        let mut history = MembraneHistory::default();
+        for (depth_m, phase) in
+            [(1e-3, Phase::Loading), (3e-3, Phase::Loading), (2e-3, Phase::Unloading), (1e-3, Phase::Unloading)]
+        {
+            let row = pressed(depth_m, phase);
+            let regressor = Law::Power(3.0).unit_n(&row, &|x| x, linear.give);
+            let expected = hard.force_n(depth_m, 0.0, &mut history);
+            assert!((own_n(Some(&linear), &row) + 2e7 * regressor - expected).abs() < 1e-9, "{depth_m} {phase:?}");
+        }
+    }
 }

@@ -57,6 +57,7 @@ impl Forward for Pressed<'_> {
         let Self { needle, law, .. } = *self;
         let holds = needle.holds;
         let elastic = |x: f64| first_push_n(needle.stiffness_n_m, law, x);
+        let give = law.map_or(0.0, |l| l.give);
         let laws: Vec<(Law, f64)> = fit.causes().filter_map(|(c, own)| Some((Law::of(c)?, own[0]))).collect();
         let of_motion = [Some(holds), needle.two_fingered.then_some(holds + 1)];
         let of_model = fit.columns().take(fit.study.baseline.len()).enumerate();
@@ -79,7 +80,7 @@ impl Forward for Pressed<'_> {
             let phase = if depth_m >= deepest_m { Phase::Loading } else { Phase::Unloading };
             deepest_m = deepest_m.max(depth_m);
             let row = Row { depth_m, rate_m_s, phase, deepest_m, ..first };
-            let more = laws.iter().map(|(law, value)| value * law.unit_n(&row, &elastic)).sum::<f64>();
+            let more = laws.iter().map(|(law, value)| value * law.unit_n(&row, &elastic, give)).sum::<f64>();
             fit.values[holds] * own_n(law, &row) + more
         };
         let effects = if is_held { inertia(needle, holds + 1, fit.values) } else { Vec::new() };

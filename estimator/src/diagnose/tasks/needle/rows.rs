@@ -3,6 +3,7 @@
 //!
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
+use super::forces::Law;
 use super::interpolation::Between;
 use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::{FILTER_REACH_S, PAUSE_S, SETTLING_S, SURE};
@@ -338,7 +339,7 @@ fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     let touched: &'static [Phase] = &[Phase::Loading, Phase::Unloading];
     columns.push(when(touched, &|_| 1.0));
     columns.push(when(touched, &|r| r.depth_m));
-    columns.push(when(touched, &|r| r.depth_m.powi(3)));
+    columns.push(of(&|r| Law::Power(3.0).unit_n(r, &|x| x, 0.0)));
     // Above its deepest indentation, a sheet has another law.
     columns.push(when(&[Phase::Unloading], &|_| 1.0));
     columns.push(when(&[Phase::Unloading], &|r| r.depth_m));

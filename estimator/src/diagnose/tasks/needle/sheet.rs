@@ -71,7 +71,7 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     let mut columns = vec![of(&|r| pressed(&|r| -k * (r.side_m - middle_m), r))];
     columns.push(of(&|r| pressed(&|_| 1.0, r)));
     columns.push(of(&|r| pressed(&|r| r.depth_m, r)));
-    columns.push(of(&|r| pressed(&|r| r.depth_m.powi(3), r)));
+    columns.push(of(&|r| Law::Power(3.0).unit_n(r, &|x| x, 0.0)));
     columns.push(of(&|r| r.time_s - r.start_s));
     columns.extend((0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.phase != Phase::Empty && r.hold == h)))));
     let fit = least_squares(&columns, &of(&|r| r.force_n), None).ok()?;
@@ -110,8 +110,9 @@ fn candidates(
 ) -> Vec<Candidate> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
+    let give = law.map_or(0.0, |l| l.give);
     let acts = |law: Law, id, name, unit| {
-        Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic))).positive()
+        Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic, give))).positive()
     };
     let mut candidates = vec![
         acts(Law::Power(3.0), stiffness_hardening::ID, CUBIC, "N/m³"),
