@@ -68,7 +68,7 @@ impl Diagnose {
         })?;
         for log in &self.validate {
             let more = validate(&self.source.load(log)?, &options, &diagnosis)?;
-            diagnosis.validation.extend(more);
+            diagnosis.judge_by(more);
         }
         if let Some(runs) = self.twin {
             super::progress::during(&format!("diagnosing {runs} replays"), |share| {

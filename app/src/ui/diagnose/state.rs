@@ -49,7 +49,7 @@ impl StartFrom {
 }
 
 /// A diagnosis, ready to be shown.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Answer {
     /// Findings of the diagnosis.
     pub diagnosis: Findings,

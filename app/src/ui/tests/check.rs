@@ -15,8 +15,7 @@ use blind::{Bench, Effect};
 use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use estimator::diagnose::Variable;
-use estimator::diagnose::{Options, validate};
+use estimator::diagnose::{Options, Variable, Verdict, validate};
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -68,6 +67,9 @@ fn what_was_found_is_checked_on_files_with_an_interval_and_a_verdict() {
     let [low, high] = expected[0].interval;
     assert!(low < expected[0].share && expected[0].share < high && low > 0.3, "{expected:?}");
     assert_eq!(other_found.found.as_ref().map(holds), Ok(Holds::No));
+    // The answer itself says so.
+    assert_eq!(answer.diagnosis.verdict, Verdict::Unexplained, "{:?}", answer.diagnosis.causes);
+    assert!(answer.diagnosis.certain().is_empty(), "{:?}", answer.diagnosis.causes);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 pub mod atlas;
 pub(crate) mod build;
 pub(crate) mod cause;
+pub(crate) mod judged;
 pub(crate) mod named;
 pub(crate) mod part;
 pub(crate) mod put_back;
