@@ -31,19 +31,27 @@ pub fn check(
     let (recordings, choice) = (document.recordings.clone(), calibration.choice.clone());
     jobs.start(ctx, CHECK, "Checking on other recordings", move |ticket| {
         match check_now(&recordings, &choice, &answer, &on, &|share| ticket.goes_on(share)) {
-            Some(checked) => change(move |session, _| take_checked(&mut session.diagnosing, checked, &on)),
+            Some(checked) => change(move |session, _| {
+                if matches!(on, On::Files(_)) {
+                    judge(&mut session.diagnosing, &answer, &checked);
+                }
+                take_checked(&mut session.diagnosing, checked);
+            }),
             None => no_change(),
         }
     });
 }
 
-/// A check has ended: what is newer takes the place of what was there of the same name. Other files judge the answer; a
-/// recording that was left out judges another diagnosis, that of the rest.
-pub(crate) fn take_checked(diagnosing: &mut Diagnosing, checked: Vec<Checked>, on: &On) {
-    if let (On::Files(_), Some(answer)) = (on, &mut diagnosing.answer) {
-        let figures = checked.iter().filter_map(|c| c.found.clone().ok()).collect();
-        Arc::make_mut(answer).diagnosis.judge_by(figures);
-    }
+/// Other files judge the answer that was asked about, if it is still there. A recording that was left out judges
+/// another diagnosis, that of the rest.
+fn judge(diagnosing: &mut Diagnosing, asked: &Arc<Answer>, checked: &[Checked]) {
+    let Some(answer) = diagnosing.answer.as_mut().filter(|answer| Arc::ptr_eq(answer, asked)) else { return };
+    let figures = checked.iter().filter_map(|c| c.found.clone().ok()).collect();
+    Arc::make_mut(answer).diagnosis.judge_by(figures);
+}
+
+/// A check has ended: what is newer takes the place of what was there of the same name.
+pub(crate) fn take_checked(diagnosing: &mut Diagnosing, checked: Vec<Checked>) {
     let all = &mut diagnosing.checked;
     all.retain(|old| checked.iter().all(|new| new.name != old.name));
     all.extend(checked);

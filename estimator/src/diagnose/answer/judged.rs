@@ -6,9 +6,12 @@ use crate::diagnose::findings::Findings;
 
 impl Findings {
     /// Adds the figures of other recordings of the same object. A cause with which such a recording is certainly
-    /// predicted worse is not certain any more, whatever its standing in the first ones.
+    /// predicted worse is not certain any more, whatever its standing in the first ones. A figure counts once.
     pub fn judge_by(&mut self, figures: Vec<Validation>) {
         for figure in figures {
+            if self.validation.contains(&figure) {
+                continue;
+            }
             // The upper end of the 95 % interval.
             if figure.interval[1] < 0.0 {
                 self.doubt_causes_of(&figure);
@@ -32,16 +35,18 @@ impl Findings {
             return;
         }
         let Diagnosis { causes, alternatives, verdict, warnings, .. } = &mut self.diagnosis;
+        let is_any_certain = |causes: &[Cause], all: &[Alternative]| causes.iter().any(|cause| is_certain(cause, all));
+        let was_certain = is_any_certain(causes, alternatives);
         causes.iter_mut().filter(|cause| ids.contains(&cause.id)).for_each(|cause| doubt(cause, alternatives));
         causes.sort_by_key(|cause| !is_certain(cause, alternatives));
-        if !causes.first().is_some_and(|cause| is_certain(cause, alternatives)) {
+        if was_certain && !is_any_certain(causes, alternatives) {
             *verdict = Verdict::Unexplained;
         }
         let rise = -100.0 * figure.share;
         let named = ids.join(", ");
         warnings.insert(
             0,
-            format!("{named} raises the residual power of another recording by {rise:.0} %, so it is not certain"),
+            format!("doubtful, because the residual power of another recording rises by {rise:.0} %: {named}"),
         );
     }
 }
@@ -94,8 +99,8 @@ mod tests {
         let [kept, doubted] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
         assert_eq!((kept.id.as_str(), kept.posterior), ("mass-change", 0.97));
         assert!(doubted.id == "viscous-friction" && (doubted.posterior - 0.5).abs() < 1e-12, "{doubted:?}");
-        assert_eq!((found.verdict, found.validation.len()), (Verdict::Causes, 2));
-        assert!(found.warnings[0].contains("40 %"), "{:?}", found.warnings);
+        assert_eq!((found.verdict, found.validation.len()), (Verdict::Causes, 1));
+        assert!(found.warnings.len() == 1 && found.warnings[0].contains("40 %"), "{:?}", found.warnings);
         found.judge_by(vec![Validation { share: -0.1, interval: [-0.2, -0.05], ..Validation::default() }]);
         assert_eq!(found.verdict, Verdict::Unexplained);
     }

@@ -40,8 +40,9 @@ pub fn discrepancies(track: &Track, time_s: &[f64], predicted: &[f64]) -> Vec<Di
     let angle = of(&|r| r.angle_rad);
     let turns = track.radius_m.is_some();
     let place = if turns { periodic(&angle, TERMS as u32) } else { over_range(&angle, &along, 0.06, 2 * TERMS) };
-    // Nothing centres an unknown force over the position: its mean looks like friction by direction.
-    let with_mean: Vec<Vec<f64>> = place.iter().cloned().chain([vec![1.0; rows.len()]]).collect();
+    // Nothing centres an unknown force over the position: its mean looks like friction by direction. With means over speed
+    // and load as well, one more of 99 right names beside structure is lost.
+    let with_mean = [place.as_slice(), &[vec![1.0; rows.len()]]].concat();
     let acts: Vec<f64> = along.iter().map(|a| f64::from(u8::from(*a))).collect();
     let fast: Vec<f64> = speed.iter().map(|v| v.abs()).collect();
     let over_speed = over_range(&fast, &along, 0.15, TERMS);

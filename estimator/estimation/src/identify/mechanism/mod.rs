@@ -20,9 +20,10 @@ mod resampling;
 mod signals;
 mod surface;
 mod swing;
-pub use driven::contradicts_its_clock;
 mod transmission;
 mod world;
+
+pub use driven::contradicts_its_clock;
 
 use crate::constraint;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};

@@ -3,7 +3,6 @@
 //!
 //! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
-use super::forces::Law;
 use super::interpolation::Between;
 use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::{FILTER_REACH_S, PAUSE_S, SETTLING_S, SURE};
@@ -18,6 +17,7 @@ use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, times};
 use foundation::tasks::SystemState;
+use haptics::law::object::unloading_n;
 use haptics::recording::Recording;
 use std::ops::Range;
 
@@ -339,7 +339,7 @@ fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     let touched: &'static [Phase] = &[Phase::Loading, Phase::Unloading];
     columns.push(when(touched, &|_| 1.0));
     columns.push(when(touched, &|r| r.depth_m));
-    columns.push(of(&|r| Law::Power(3.0).unit_n(r, &|x| x, 0.0)));
+    columns.push(when(touched, &|r| unloading_n(r.depth_m, r.deepest_m, 0.0, |x| x.powi(3))));
     // Above its deepest indentation, a sheet has another law.
     columns.push(when(&[Phase::Unloading], &|_| 1.0));
     columns.push(when(&[Phase::Unloading], &|r| r.depth_m));
