@@ -42,6 +42,16 @@ fn names(recordings: &[Recording], options: &Options, axis: &str) -> Result<bool
 fn a_mirrored_axis_is_named() {
     let first = seed();
     println!("TOUCHSTONE_SEED={first}");
+    mirrored_axes_are_named(first);
+}
+
+/// Grips that weaken on the way, and a block that turns between the fingers.
+#[test]
+fn a_mirrored_axis_is_named_in_grips_that_do_not_hold() {
+    mirrored_axes_are_named(20_785);
+}
+
+fn mirrored_axes_are_named(first: u64) {
     let (mut right, mut all) = (0, 0);
     for k in 0..3 {
         for (task, Case { recordings, options }) in cases(1_000 * first + k) {
@@ -74,6 +84,16 @@ fn shown(task: &str) -> Vec<Vec<&'static str>> {
         "barrel" => each(&["fx1_N", "fx2_N"]).into_iter().chain(up).chain(both).collect(),
         "needle" => along.into_iter().chain(each(&["y1_m", "y2_m"])).collect(),
         _ => along.into_iter().chain(up).chain(both).collect(),
+    }
+}
+
+/// A sensor that drifts at a finger without touch shows a force that looks like a pull.
+#[test]
+fn a_drifting_finger_is_not_mirrored() {
+    for number in 0..12 {
+        let Case { recordings, options } = switch::make(switch::Kind::Drift, 20_972_065 + number).0;
+        let found = diagnose(&recordings, &options).expect("answers");
+        assert!(found.causes.iter().all(|c| c.id != "axis-sign"), "case {number}: {:?}", found.causes);
     }
 }
 

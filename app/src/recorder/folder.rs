@@ -5,7 +5,7 @@
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 /// File extension of recordings.
 const ENDING: &str = "mcap";
@@ -13,6 +13,8 @@ const ENDING: &str = "mcap";
 const MARKER: &str = "recording";
 /// Maximum number of recordings of one world per day.
 const MOST_A_DAY: u32 = 9_999;
+/// Time in which a recording follows its marker. Choice: a thousand times the time between both on an idle disk.
+const BEGINS: Duration = Duration::from_secs(1);
 
 /// The user's folder for recordings; `None` if the system defines no data folder.
 pub fn of_user() -> Option<PathBuf> {
@@ -52,7 +54,8 @@ pub fn reserve(folder: &Path, world: &str) -> Result<(PathBuf, Marker), String> 
             Err(error) => return Err(refused(error)),
         };
         // Without file locks, another window offers this file as unfinished: untidy, but nothing is lost.
-        let _ = locked.try_lock();
+        // A window that looks for unfinished recordings holds the lock for a moment.
+        let _ = locked.lock();
         let marker = Marker { path: marker, _locked: locked };
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Ok(_) => return Ok((path, marker)),
@@ -86,10 +89,22 @@ fn left_behind(marker: &Path) -> Option<PathBuf> {
     if has_end(&recording) {
         // Killed before the first byte, or between the end of the file and the removal of the marker; or the recording
         // was deleted.
-        let _ = std::fs::remove_file(marker);
+        if has_bytes(&recording) || !is_new(&file) {
+            let _ = std::fs::remove_file(marker);
+        }
         return None;
     }
     Some(recording)
+}
+
+fn has_bytes(recording: &Path) -> bool {
+    recording.metadata().is_ok_and(|facts| facts.len() > 0)
+}
+
+/// True for a marker whose recording another window may be about to create: without it, that recording lost its marker.
+fn is_new(marker: &File) -> bool {
+    let age = marker.metadata().and_then(|facts| facts.modified()).ok().and_then(|made| made.elapsed().ok());
+    age.is_some_and(|age| age < BEGINS)
 }
 
 /// True for a file with MCAP's end magic, and for an empty or missing one.
@@ -157,7 +172,7 @@ mod tests {
         ] {
             assert_eq!(civil(days), expected, "{days}");
         }
-        assert_eq!(date(SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_000_000_000)), "2001-09-09");
+        assert_eq!(date(SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000)), "2001-09-09");
     }
 
     #[test]
@@ -192,6 +207,11 @@ mod tests {
         std::fs::write(&whole, b"\x89MCAP0\r\n and all the rest \x89MCAP0\r\n").expect("writes");
         assert_eq!(unfinished(folder.path()), Vec::<PathBuf>::new(), "it has its end");
         assert!(!whole.with_extension(MARKER).exists());
+        let (begun, marker) = reserve(folder.path(), "crank").expect("reserves");
+        drop(marker);
+        assert_eq!(unfinished(folder.path()), Vec::<PathBuf>::new(), "it has no byte yet");
+        std::fs::write(&begun, b"\x89MCAP0\r\n and no end").expect("writes");
+        assert_eq!(unfinished(folder.path()), std::slice::from_ref(&begun), "its marker stayed");
         assert_eq!(unfinished(Path::new("/nowhere/at/all")), Vec::<PathBuf>::new());
     }
 }
