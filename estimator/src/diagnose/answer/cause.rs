@@ -62,18 +62,24 @@ impl Part<'_> {
     /// Evidence sentence from the catalogue's entry of a law.
     fn by_law(&self, gain: &Gain, chosen: &SelectedTerm) -> String {
         let candidate = &self.study.candidates[chosen.candidate];
-        let entry = entries().find(|e| e.id == candidate.id);
-        let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
-        let goes_with = candidate.channel.as_ref().map_or_else(String::new, |(name, _)| format!(" with {name}"));
+        let channel = candidate.channel.as_ref().map_or("", |(name, _)| name);
+        let model = match entries().find(|e| e.id == candidate.id) {
+            Some(e) if channel.is_empty() => {
+                format!("{}: what the model leaves of the {} follows {}", e.title, self.channel, e.equation)
+            }
+            Some(e) => format!(
+                "{}: what the model leaves of the {} follows {} with {channel}",
+                e.title, self.channel, e.equation
+            ),
+            None => format!("what the model leaves of the {} goes with {channel}", self.channel),
+        };
         let stands = if shows_beside(self.study, &[chosen.candidate]) {
             " (and, in newtons, of how far it gives where it stands)"
         } else {
             ""
         };
         format!(
-            "{title}: what the model leaves of the {} follows {equation}{goes_with}; on data held out it{stands} goes from {} to {} RMS (score \
-             {:.0}, {:.0} would do){}",
-            self.channel,
+            "{model}; on data held out it{stands} goes from {} to {} RMS (score {:.0}, {:.0} would do){}",
             amount(gain.heldout_rms_before, self.unit),
             amount(gain.heldout_rms_after, self.unit),
             chosen.score,

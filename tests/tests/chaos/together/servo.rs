@@ -164,7 +164,8 @@ impl Training {
             self.hand.move_on(&mut self.rng);
             self.look();
         }
-        let least = ((self.now_s() - first_s) / DT_S).round() as u64;
+        // The tick that was under way at the start may have passed the closed tap before it was published.
+        let least = (((self.now_s() - first_s) / DT_S).round() as u64).saturating_sub(1);
         self.check(recorder.stop(), least);
     }
 

@@ -6,7 +6,7 @@ use crate::text::sentence::sentence;
 use crate::ui::kit::theme;
 use crate::ui::kit::theme::{palette, space};
 use crate::ui::kit::widgets::{bar, card, compact};
-use egui::{Align, Color32, FontId, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
+use egui::{Align, Color32, FontId, Label, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 use estimator::diagnose::{Alternative, Cause, CauseParameter, Findings, Rollout, RolloutOf};
 use estimator::words::amount;
 use haptics::law::{self, Kind};
@@ -66,9 +66,9 @@ pub(crate) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Finding
         if let Some(rollout) = &cause.gain.rollout {
             forward(ui, rollout);
         } else if let Some(why) = &cause.gain.no_rollout {
-            ui.add(egui::Label::new(theme::caption(ui, format!("{}: {why}", words::NOT_RUN))).wrap());
+            ui.add(Label::new(theme::caption(ui, format!("{}: {why}", words::NOT_RUN))).wrap());
         }
-        ui.add(egui::Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
+        ui.add(Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
         for other in diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id) {
             alternative(ui, other);
         }
@@ -90,7 +90,7 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
     );
     let [low, high] = rollout.interval.map(|share| format::number(100.0 * share, 0));
     let held_out = if rollout.in_turn { words::OUT_OF_THE_FIT } else { words::OUT_OF_ALL };
-    ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(format!(
+    ui.add(Label::new(theme::caption(ui, text)).wrap()).on_hover_text(format!(
         "Root mean square over {} windows {held_out}, each from its measured start; {how}. {low} to {high}\u{a0}% of the error's power go \
          with this cause.",
         rollout.windows
@@ -104,14 +104,19 @@ fn line(ui: &mut Ui, parameter: &CauseParameter) {
         return;
     }
     compact(ui, |ui| {
-        ui.label(RichText::new(symbol(&parameter.name)).color(palette(ui).secondary));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (value, error) = format::with_error(parameter.value, Some(parameter.std_error));
             let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
             ui.label(RichText::new(shown_unit(&parameter.unit)).size(12.0).color(palette(ui).secondary));
             ui.label(RichText::new(error).color(palette(ui).secondary));
-            ui.spacing_mut().item_spacing.x = 0.0;
-            ui.label(theme::strong(value));
+            ui.scope(|ui| {
+                ui.spacing_mut().item_spacing.x = 0.0;
+                ui.label(theme::strong(value));
+            });
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let name = RichText::new(symbol(&parameter.name)).color(palette(ui).secondary);
+                ui.add(Label::new(name).truncate());
+            });
         });
     });
 }
@@ -150,7 +155,7 @@ fn alternative(ui: &mut Ui, other: &Alternative) {
         });
     });
     bar(ui, other.posterior, 1.0, None, palette(ui).faint);
-    ui.add(egui::Label::new(theme::caption(ui, sentence(&other.why))).wrap());
+    ui.add(Label::new(theme::caption(ui, sentence(&other.why))).wrap());
 }
 
 /// Corners of a chip, points.
