@@ -5,7 +5,7 @@
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
 use super::assumptions::Assumptions;
-use crate::identify::limits::{CERTAIN, SETTLED_M, TOUCH_SHARE};
+use crate::identify::limits::{CERTAIN, SETTLED, TOUCH_SHARE};
 use crate::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::savitzky_golay;
@@ -171,7 +171,7 @@ impl Signals {
         let mut seen = Seen { rate_noise: finger.rate_noise, ..Seen::default() };
         for (_, stroke) in self.strokes.iter().filter(|(d, _)| *d == direction) {
             let Some(push) = self.push(side, stroke) else { continue };
-            let settled_m = sample(push.start).at_m + SETTLED_M;
+            let settled_m = sample(push.start).at_m + SETTLED * self.range_m;
             seen.throws += 1;
             // Samples of a rate's window beyond the moment in which the knob leaves the finger are not the knob's.
             let in_touch = push.start..push.end.saturating_sub(finger.reach).max(push.start);
@@ -197,7 +197,7 @@ impl Signals {
             match (touches, start) {
                 (true, None) => start = Some(i),
                 (false, Some(first)) => {
-                    if direction * (finger.x_m[i] - finger.x_m[first]) > 2.0 * SETTLED_M {
+                    if direction * (finger.x_m[i] - finger.x_m[first]) > 2.0 * SETTLED * self.range_m {
                         return Some(first..i);
                     }
                     start = None;

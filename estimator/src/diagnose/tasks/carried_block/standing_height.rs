@@ -19,7 +19,7 @@ use crate::diagnose::selection::normal_equations::{LEAST_BLOCK, MOST_BLOCKS};
 use crate::diagnose::selection::rules::Rules;
 use estimation::identify::block::rests::{Rest, rests};
 use estimation::identify::block::signals::object;
-use estimation::identify::block::slip_detection::{LEAST_M, may_stand};
+use estimation::identify::block::slip_detection::may_stand;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::half_width;
@@ -123,7 +123,9 @@ fn add(
         (begins_s.unwrap_or(0.0), rest.samples.clone())
     };
     let picked = one.every(samples.into_iter());
-    if picked.len() < LEAST_PIECES || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
+    let object_m = one.blocks.signals.object_m();
+    rows.object_m = rows.object_m.max(object_m);
+    if picked.len() < LEAST_PIECES || !may_stand(picked.iter().map(|i| one.blocks.height[*i]), object_m) {
         return;
     }
     let half = half_width(&one.blocks.signals.time_s);
@@ -240,13 +242,11 @@ impl Told for Ground {
         )
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         match candidate.id {
-            fingertip_slip::ID => {
-                Some((LEAST_M, "blocks were not held on the ground for long enough to see the fingers move on"))
-            }
+            fingertip_slip::ID => Some("blocks were not held on the ground for long enough to see the fingers move on"),
             pad_compliance::ID => {
-                Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))
+                Some("the load hardly varied while a held block stood; press and lift while it stands")
             }
             _ => None,
         }

@@ -109,7 +109,7 @@ impl Refinement for Circling<'_> {
         self.step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(self.step_s)).collect();
-        let is_settled = self.moved_m < 1e-8 && finer.is_empty() && round > 1;
+        let is_settled = self.moved_m < 1e-6 * self.radius_m && finer.is_empty() && round > 1;
         self.courses = [self.coarse.as_slice(), &finer].concat();
         !is_settled
     }

@@ -12,7 +12,7 @@ use crate::diagnose::selection::layout::segments;
 use estimation::identify::limits::LEAST_FREE_S;
 use estimation::identify::needle::sheet::Sheet;
 use estimation::identify::needle::signals::{Along, along};
-use estimation::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use estimation::identify::needle::strokes::{Push, pushes};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, times};
@@ -21,12 +21,13 @@ use haptics::law::object::unloading_n;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, m.
+/// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, as a
+/// share of the dent.
 /// Choice: halved, 2 of 15 answers change; doubled, 2 of 15 answers change.
-pub(crate) const AT_SURFACE_M: f64 = 5e-4;
-/// Distance from the surface, m, within which a row belongs to both sides.
+const AT_SURFACE: f64 = 0.14;
+/// Distance from the surface, as a share of the dent, within which a row belongs to both sides.
 /// Choice: halved, 1 of 15 answers change; doubled, 0 of 15 answers change.
-const EDGE_M: f64 = 1e-4;
+const EDGE: f64 = 0.03;
 
 /// Contact phase of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,6 +107,8 @@ pub struct Needle {
     pub two_fingered: bool,
     /// Initial stiffness of the sheet, N/m.
     pub stiffness_n_m: f64,
+    /// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, m.
+    pub at_surface_m: f64,
     /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
     /// Part of that noise due to the measured path alone, whatever the motion.
@@ -165,7 +168,8 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
     let acceleration = smooth(&time, &depth.slope).slope;
     let surface_m = sheet.loading.surface_m;
-    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
+    let dent_m = pushes.iter().map(|p| p.dent_m).fold(0.0, f64::max);
+    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), (surface_m, dent_m));
     let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
     let between = Between::new(&time, &depth, surface_m, &in_hole, half);
     let row = |(i, of): (usize, &Of)| {
@@ -208,6 +212,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         holds: along.holds.len(),
         two_fingered: along.two_fingered,
         stiffness_n_m: sheet.loading.stiffness_n_m,
+        at_surface_m: AT_SURFACE * dent_m,
         slope_noise_m_s: slope_noise(&own, half, step_s),
         punctures: pushes.iter().filter_map(puncture).collect(),
         late: None,
@@ -242,8 +247,9 @@ fn phases(
     (along, pushes): (&Along, &[Push]),
     time: &[f64],
     (depth_m, rate_m_s): (&[f64], &[f64]),
-    surface_m: f64,
+    (surface_m, dent_m): (f64, f64),
 ) -> Vec<Of> {
+    let at_surface_m = AT_SURFACE * dent_m;
     let mut found: Vec<Of> = vec![None; time.len()];
     let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > LEAST_FREE_S;
     let mut empty = |range: Range<usize>| {
@@ -265,7 +271,7 @@ fn phases(
         for i in hold.clone() {
             let inner = whole || (far(i, hold.start) && far(i, hold.end));
             let now = of.iter().rev().find(|(_, p)| p.samples.start <= i);
-            if depth_m[i] < surface_m - AT_SURFACE_M {
+            if depth_m[i] < surface_m - at_surface_m {
                 if inner {
                     found[i] = Some((Phase::Outside, h, now.map_or(0, |n| n.0), f64::MIN));
                 }
@@ -273,7 +279,7 @@ fn phases(
             }
             let Some((k, push)) = now else { continue };
             // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
-            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + FILTER_REACH_S * rate_m_s[i].abs();
+            let meets = (depth_m[i] - surface_m).abs() < EDGE * dent_m + FILTER_REACH_S * rate_m_s[i].abs();
             let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < FILTER_REACH_S);
             if meets || falls {
                 continue;
@@ -282,13 +288,13 @@ fn phases(
             let phase = match push.puncture {
                 Some(at) if i > at => {
                     let settled = time[i] - time[at] > SETTLING_S;
-                    (settled && depth_m[i] > surface_m + AT_SURFACE_M).then_some(Phase::Hole)
+                    (settled && depth_m[i] > surface_m + at_surface_m).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
                 // Pushed in again above the dent, or drawn back.
                 _ => Some(Phase::Unloading),
             };
-            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));
+            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.dented_to_m)));
         }
     }
     found

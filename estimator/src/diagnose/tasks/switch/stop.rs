@@ -43,7 +43,7 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
     let y = of(&|r| direction(side(r)) * r.tip.x - expected(r));
     // Damping of the pads is part of the base model.
     let mut base = vec![of(&|r| direction(side(r)) * r.velocity.x)];
-    let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(1e-9);
+    let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let bend = of(&|r| -usual * (pressed(r) / usual).powi(3));
     let force = of(&pressed);
     let on = |wanted: usize| rows.iter().map(|r| f64::from(u8::from(side(r) == wanted))).collect::<Vec<f64>>();
@@ -95,7 +95,7 @@ fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<
     let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     // However stiff other pads are, their compliance is not negative.
     let shape = Shape::Share {
-        least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
+        least: -MOST_STIFFER / known.pad.spring.k1.max(f64::MIN_POSITIVE),
         whole: f64::NEG_INFINITY,
         most: f64::INFINITY,
     };
