@@ -8,7 +8,9 @@ use haptics::recording::{HandMeta, Prior, Recording};
 /// Numbers by which lengths and forces are multiplied; masses follow as force × time² / length.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
+    /// Of lengths.
     pub length: f64,
+    /// Of forces.
     pub force: f64,
 }
 

@@ -9,12 +9,9 @@ use tests::rescaled::Scale;
 use tests::tasks::{Case, barrel, blocks, needle, slide, switch, throw};
 
 const SEED: u64 = 20_261_127;
-/// Micrometres and nanonewtons, with times of everyday; kilonewtons, with everyday lengths; both larger.
-const SCALES: [Scale; 3] = [
-    Scale { length: 1.0 / 1024.0, force: 1.0 / 1_048_576.0 },
-    Scale { length: 1.0, force: 1024.0 },
-    Scale { length: 32.0, force: 1024.0 },
-];
+/// Micrometres with nanonewtons, and a machine of tonnes.
+const SCALES: [Scale; 2] =
+    [Scale { length: 1.0 / 1024.0, force: 1.0 / 1_048_576.0 }, Scale { length: 32.0, force: 1024.0 }];
 
 struct Asked {
     name: String,
@@ -63,7 +60,7 @@ fn the_answer_does_not_depend_on_the_units() {
     add!(needle);
     add!(switch);
     add!(throw);
-    for job in battery(Counts::FAST, SEED).into_iter().step_by(4) {
+    for job in battery(Counts::FAST, SEED).into_iter().step_by(8) {
         let (case, _) = job.make();
         let options = blind::score::options(&case);
         all.push(Asked { name: format!("{} {}", job.set.name(), job.seed), recordings: case.recordings, options });
@@ -72,8 +69,5 @@ fn the_answer_does_not_depend_on_the_units() {
     let asked = all.len() * SCALES.len();
     let differing: Vec<String> = found.into_iter().flatten().collect();
     println!("{} of {asked} answers differ", differing.len());
-    for d in &differing {
-        println!("{d}");
-    }
     assert!(differing.is_empty(), "{} of {asked} answers differ:\n{}", differing.len(), differing.join("\n"));
 }

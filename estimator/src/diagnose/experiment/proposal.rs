@@ -14,6 +14,7 @@ use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{eccentric_mass, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::law::Motion;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -158,14 +159,14 @@ fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) ->
 }
 
 fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &str) -> NextExperiment {
-    let weight = asked.added_weight_n;
+    let weight = amount(asked.added_weight_n, "N");
     let note = if on == "the handle" {
         format!(
-            "hang a known weight of about {weight:.2} N on the handle and state it in the sidecar (known: added_weight_N)"
+            "hang a known weight of about {weight} on the handle and state it in the sidecar (known: added_weight_N)"
         )
     } else {
         format!(
-            "hang a known weight of about {weight:.2} N on a lever of {:.2} m and state both in the sidecar (known: added_weight_N, \
+            "hang a known weight of about {weight} on a lever of {:.2} m and state both in the sidecar (known: added_weight_N, \
              added_lever_m, and added_level_rad, the coordinate at which the lever is level)",
             asked.added_lever_m
         )

@@ -10,6 +10,7 @@ use crate::diagnose::data::limits::{CERTAIN, LEAST_PHASE_SAMPLES};
 use estimation::segment::threshold::percentile;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{Tip, is_two_fingered};
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -25,7 +26,7 @@ const TRAVEL: f64 = 0.03;
 const STAYS: f64 = 0.1;
 /// Rise up to which an object still stands, as a share of the least travel.
 /// Choice: halved or doubled, none of 3 answers changes.
-const STANDS: f64 = 0.25;
+const STANDING: f64 = 0.25;
 /// Share of its rise from which an object is lifted.
 /// Choice: halved or doubled, none of 3 answers changes.
 const LIFTED: f64 = 0.6;
@@ -144,9 +145,9 @@ impl Grips {
             if 0.5 * apart > self.travel_m && sum < STAYS * apart {
                 let finger = if axis == "x" { self.crossed() } else { self.sinking() };
                 let why = format!(
-                    "while both fingers press, tip {} moves along {axis} as the mirror image of the other one: what they hold would change its size by {:.0} mm",
+                    "while both fingers press, tip {} moves along {axis} as the mirror image of the other one: what they hold would change its size by {}",
                     finger + 1,
-                    2e3 * apart
+                    amount(2.0 * apart, "m")
                 );
                 return Some(Found { axes: vec![format!("{axis}{}_m", finger + 1)], why });
             }
@@ -263,7 +264,7 @@ impl Grips {
         let downwards = first < start;
         let rise = |i: usize| if downwards { start - height(i) } else { height(i) - start };
         let top = span.clone().map(rise).fold(0.0, f64::max);
-        let stands: Vec<usize> = span.clone().take_while(|i| rise(*i).abs() < STANDS * self.travel_m).collect();
+        let stands: Vec<usize> = span.clone().take_while(|i| rise(*i).abs() < STANDING * self.travel_m).collect();
         let lifted: Vec<usize> = span.clone().filter(|i| rise(*i) > LIFTED * top).collect();
         let mean = |rows: &[usize], f: &[f64]| rows.iter().map(|i| f[*i]).sum::<f64>() / rows.len().max(1) as f64;
         let gained_n = [0, 1].map(|k| mean(&lifted, &self.fy[k]) - mean(&stands, &self.fy[k]));

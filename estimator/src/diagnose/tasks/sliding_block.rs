@@ -36,6 +36,7 @@ use estimation::segment::slid::{LIFTED, LIFTED_S};
 use estimation::segment::threshold::{Levels, percentile};
 use foundation::estimate::EstimateError;
 use foundation::signal::task::{TaskSignals, smooth, task_signals};
+use foundation::words::amount;
 use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, Law as _, LoadFriction};
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
@@ -294,8 +295,8 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
             cause.parameters.push(parameter("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
         }
         cause.evidence = format!(
-            "the sliding block is drawn to one side by {:.3} N, and empty fingers feel none of it",
-            tilt_n.abs()
+            "the sliding block is drawn to one side by {}, and empty fingers feel none of it",
+            amount(tilt_n.abs(), "N")
         );
         (
             &[friction_asymmetry::ID],

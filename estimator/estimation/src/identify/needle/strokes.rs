@@ -32,9 +32,9 @@ pub struct Push {
     pub hold: usize,
     /// Samples from the turning point outside up to the puncture or the deepest point.
     pub samples: Range<usize>,
-    /// Depth of the earlier pushes at the same place, m, and depth from which the sheet is untouched; everything is for
-    /// the first push.
+    /// Depth of the earlier pushes at the same place, m; minus infinity for the first one.
     pub dented_to_m: f64,
+    /// Depth from which the sheet is untouched, m: everything for the first push at a place.
     pub untouched_from_m: f64,
     /// Depth of the dent: from the first touch to the puncture or to the largest force, m.
     pub dent_m: f64,

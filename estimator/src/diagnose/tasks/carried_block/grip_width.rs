@@ -19,6 +19,7 @@ use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
@@ -212,8 +213,9 @@ impl Told for Grasp {
                     })
                     .collect();
                 format!(
-                    "the distance of the tips falls with the grip force, {value:.0} N/m each pad: plain means come out short of the \
+                    "the distance of the tips falls with the grip force, {} each pad: plain means come out short of the \
                      width at no force ({})",
+                    amount(value, "N/m"),
                     short.join(", ")
                 )
             }

@@ -31,6 +31,7 @@ use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::world::{Cable, World};
 use std::collections::BTreeSet;
 
@@ -236,7 +237,7 @@ impl Told for Carry<'_> {
                     .parameters
                     .iter()
                     .enumerate()
-                    .map(|(k, p)| format!("{} {:.1} g", object(k + 1), 1e3 * p.value))
+                    .map(|(k, p)| format!("{} {}", object(k + 1), amount(1e3 * p.value, "g")))
                     .collect();
                 format!(
                     "the force follows the acceleration of carried blocks more than the mass of their weight does (by {})",

@@ -11,6 +11,7 @@ use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use estimation::identify::block::signals::object;
 use estimation::identify::block::slip_detection::LEAST;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::world::World;
 
@@ -63,10 +64,10 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             ..Gain::default()
         },
         evidence: format!(
-            "{} was put down {:.2} mm ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \
+            "{} was put down {} ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \
              it was carried",
             object(stand.number),
-            1e3 * way,
+            amount(way, "m"),
             (way / error).abs()
         ),
     })

@@ -24,6 +24,7 @@ use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::half_width;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::world::World;
 
@@ -223,7 +224,7 @@ impl Told for Ground {
         }
         let at = found.value_of("t0");
         let Some(stand) = self.stand_at(at) else {
-            return format!("the fingers go on by {:.2} mm although the block stands", 1e3 * value);
+            return format!("the fingers go on by {} although the block stands", amount(value, "m"));
         };
         let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
         let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
@@ -234,11 +235,11 @@ impl Told for Ground {
         let wrong: Vec<String> = stand.below.iter().map(|b| object(*b)).collect();
         let wrong = if wrong.is_empty() { "what it was taken from".to_owned() } else { wrong.join(" and ") };
         format!(
-            "at {at:.2} s the fingers go on by {:.2} mm although {} stands and the load does not ask for it (shear was {ratio:.2} of the \
-             grip): heights from plain means there (of {wrong}) are {:.2} mm off",
-            1e3 * value,
+            "at {at:.2} s the fingers go on by {} although {} stands and the load does not ask for it (shear was {ratio:.2} of the \
+             grip): heights from plain means there (of {wrong}) are {} off",
+            amount(value, "m"),
             object(stand.number),
-            1e3 * mean_off
+            amount(mean_off, "m")
         )
     }
 

@@ -34,6 +34,7 @@ use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::selection::rules::{Rules, THRESHOLD_SLOW};
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::law::Kind;
 use haptics::recording::Recording;
@@ -141,7 +142,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
     let (first, last) = (all.first()?, all.last()?);
     let told = |p: &Puncture| {
         let within = names.get(p.recording).filter(|_| names.len() > 1).map_or(String::new(), |n| format!(" of {n}"));
-        format!("{:.2} N at {:.1} s{within}", p.force_n, p.time_s)
+        format!("{} at {:.1} s{within}", amount(p.force_n, "N"), p.time_s)
     };
     Some(Cause {
         id: "other:puncture force over time".to_owned(),

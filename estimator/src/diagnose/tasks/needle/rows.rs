@@ -196,12 +196,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         phases.iter().enumerate().step_by(2 * half).filter_map(row).unzip();
     let period_s = (2 * half) as f64 * step_s;
     number_segments(&mut rows, period_s);
-    let puncture = |push: &Push| {
-        let i = push.puncture?;
-        let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
-        let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
-        Some(Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold })
-    };
+    let step_n = |i: usize| sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
     let mut seen = Needle {
         rate_noise_m_s: white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>()),
         rows,
@@ -214,11 +209,18 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         stiffness_n_m: sheet.loading.stiffness_n_m,
         at_surface_m: AT_SURFACE * dent_m,
         slope_noise_m_s: slope_noise(&own, half, step_s),
-        punctures: pushes.iter().filter_map(puncture).collect(),
+        punctures: pushes.iter().filter_map(|push| puncture(push, &along, (&time, &step_n))).collect(),
         late: None,
     };
     seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
     Ok(seen)
+}
+
+/// The puncture of a push. `step_n`: change of the force from a sample to the next.
+fn puncture(push: &Push, along: &Along, (time, step_n): (&[f64], &dyn Fn(usize) -> f64)) -> Option<Puncture> {
+    let i = push.puncture?;
+    let error_n = step_n(i).hypot(along.noise_n);
+    Some(Puncture { recording: 0, time_s: time[i] - time[0], force_n: along.force_n[i], error_n, hold: push.hold })
 }
 
 /// # Errors

@@ -25,6 +25,7 @@ use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 
 /// Tried widths of a local resistance, as shares of the travel.
@@ -97,16 +98,19 @@ impl Told for Beside {
     fn shows(&self, found: &Found<'_>) -> String {
         let value = found.value();
         match found.candidate.id {
-            coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+            coulomb_friction::ID => {
+                format!("the knob asks for {} more than the world's in both directions", amount(value, "N"))
+            }
             friction_asymmetry::ID => {
-                format!("the knob asks for {value:+.2} N more than the world's in one direction alone")
+                format!("the knob asks for {} more than the world's in one direction alone", amount(value, "N"))
             }
             viscous_friction::ID => "what the knob asks for beyond the world's goes with its speed".to_owned(),
             return_spring::ID => "the knob is drawn to one place, the same in both directions".to_owned(),
             local_resistance::ID => {
                 format!(
-                    "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
-                    1e3 * found.value_of("place")
+                    "the knob binds at {} of its way: it asks for {} more there in both directions",
+                    amount(found.value_of("place"), "m"),
+                    amount(value, "N")
                 )
             }
             force_gain::ID => format!(

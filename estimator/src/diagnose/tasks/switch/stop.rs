@@ -16,6 +16,7 @@ use crate::diagnose::selection::rules::Rules;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 
 /// Largest missing share of the world's pad compliance: ten times as stiff.
@@ -78,12 +79,12 @@ impl Told for Pressed {
         match found.candidate.id {
             pad_compliance::ID => {
                 format!(
-                    "pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give",
-                    1e3 * value
+                    "pressed against a stop, the tip goes {} farther than the world's pads give",
+                    amount(value, "m/N")
                 )
             }
             stiffness_hardening::ID => "pressed harder against a stop, the pads give less and less".to_owned(),
-            added_constraint::ID => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
+            added_constraint::ID => format!("a stop comes {} before the world's", amount(value, "m")),
             other => format!("{other} shows on the stops"),
         }
     }

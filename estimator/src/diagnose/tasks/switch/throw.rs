@@ -21,6 +21,7 @@ use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::law::Kind;
 
 /// Distance from the top of the curve within which rows are left out, as a share of the fingers' range: fast throws
@@ -225,7 +226,7 @@ impl Told for Push {
         let value = found.value();
         match found.candidate.id {
             viscous_friction::ID => {
-                format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
+                format!("fast throws ask for more force than slow ones at the same place ({})", amount(value, "N s/m"))
             }
             friction_change::ID => {
                 "at the same place the knob asks for another force, the same way in both directions, as time goes on"

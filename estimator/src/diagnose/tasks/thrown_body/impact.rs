@@ -30,7 +30,7 @@ const BESIDE_S: f64 = 0.054;
 const REACH_S: f64 = 0.0068;
 /// Least speed of a blow, as the time in which free fall makes it, s: the scatter of a slower one is as large as its restitution.
 /// Choice: halved or doubled, none of 6 answers changes.
-const SLOW_S: f64 = 0.04;
+const LEAST_BLOW_S: f64 = 0.04;
 /// Change of the velocity up to which a blow is over, and up to which two velocities are equal, as the
 /// time in which free fall makes it, s.
 /// Choice: halved or doubled, none of 6 answers changes.
@@ -149,7 +149,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     }
     let up = |of: &Free, spin: Vector3<f64>| of.rise_m_s(at_s, fall_m_s2) + spin.cross(&arm).z;
     let (down, rebound) = (up(&falls, spin_before), up(&rises, spin_after));
-    (down < -SLOW_S * fall_m_s2).then_some((down, rebound))
+    (down < -LEAST_BLOW_S * fall_m_s2).then_some((down, rebound))
 }
 
 /// A first blow, and the free flight on either side of it.
