@@ -3,7 +3,7 @@
 
 use super::loading_curve::Loading;
 use super::signals::Along;
-use super::strokes::{DRAWN_BACK, Push, quiet_force};
+use super::strokes::{Push, quiet_force};
 use crate::constraint::existence::FALSE_ALARMS;
 use crate::identify::limits::MOST_FIT_ROWS;
 use crate::regression::linear::least_squares;
@@ -17,6 +17,9 @@ use std::ops::Range;
 /// Least depth at which force over depth has a meaning, as a share of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
 const LEAST_DEPTH: f64 = 0.06;
+/// Way back of a needle from which it is drawn out, as a share of the dent.
+/// Choice: halved or doubled, none of 15 answers changes.
+const BACK: f64 = 0.06;
 
 /// Phases of every push, in order of time.
 pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Recording) -> Vec<StrokePhase> {
@@ -53,7 +56,7 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         // A hand at rest trembles about the deepest point: the needle counts as drawn out after it has come back by
         // more. This is the needle's own way: the pads yield when the friction of the hole reverses.
         let depth_m = |i: usize| calm_m[i] - along.give_m_n.0 * calm_n[i];
-        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - DRAWN_BACK * push.dent_m;
+        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK * push.dent_m;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);
         let pressing = if push.puncture.is_some() { Phase::Penetration } else { Phase::Insertion };
         add(pressing, push.samples.end..turned, push.dent_m);

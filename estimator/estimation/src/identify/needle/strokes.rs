@@ -17,10 +17,10 @@ const BEYOND_DENT: f64 = 0.03;
 /// Share of its peak below which the force of a needle that is through falls.
 /// Choice: halved, 0 of 15 answers change; doubled, 9 of 9 answers change (9 to wrong).
 const FALLEN: f64 = 0.6;
-/// Way back from which a needle is drawn out, as a share of its depth in the sheet: the force of a released press falls
+/// Largest return of the needle meanwhile, as a share of its depth in the sheet: the force of a released press falls
 /// with its depth.
 /// Choice: halved or doubled, none of 15 answers changes.
-pub(super) const DRAWN_BACK: f64 = 0.1;
+const DRAWN_BACK: f64 = 0.1;
 /// Number of parts of the way to the sheet, of which the last one shows the holding force of the needle.
 /// Choice: halved or doubled, none of 12 answers changes.
 const LAST_PART: usize = 4;

@@ -110,5 +110,6 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
             span: Span::default(),
         });
     }
-    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, ..*needle }
+    let directions = needle.directions.clone();
+    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, directions, ..*needle }
 }

@@ -27,6 +27,7 @@ use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, friction_change, hysteresis, stiffness_hardening, viscous_friction,
 };
+use crate::diagnose::model_error::twin::{Twin, is_upright};
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -89,7 +90,13 @@ pub fn needle(
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
         beside.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
-    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
+    let is_replayed = options.twins && names.len() == recordings.len() && is_upright(faults);
+    let sliding = shaft.as_ref().map(|s| (&s.compared.study, seen.placed(&s.sliding.rows)));
+    let forces = std::iter::once((&sheet.compared.study, seen.placed(&sheet.pressed.rows))).chain(sliding);
+    let twin = is_replayed.then(|| Twin::of_channels(forces)).flatten().map(Box::new);
+    let mut draft = draft(&parts, Evidence { next: &asked, ..beside });
+    draft.findings.twin = twin;
+    Ok(draft.finish(put_back))
 }
 
 /// The channels of other recordings of the same needle and sheet.

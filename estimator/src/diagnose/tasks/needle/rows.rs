@@ -7,6 +7,7 @@ use super::interpolation::Between;
 use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::{FILTER_REACH_S, PAUSE_S, SETTLING_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
+use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
 use estimation::identify::limits::LEAST_FREE_S;
@@ -17,6 +18,7 @@ use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, times};
 use foundation::tasks::SystemState;
+use haptics::Vec2;
 use haptics::law::object::unloading_n;
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -113,6 +115,8 @@ pub struct Needle {
     pub rate_noise_m_s: f64,
     /// Part of that noise due to the measured path alone, whatever the motion.
     pub slope_noise_m_s: f64,
+    /// Unit vector of insertion in each recording.
+    pub directions: Vec<Vec2>,
     /// In order.
     pub punctures: Vec<Puncture>,
     /// Delay of its forces; of several recordings, the best determined one.
@@ -144,6 +148,7 @@ impl Needle {
         let weight = self.recordings as f64;
         self.stiffness_n_m = (weight * self.stiffness_n_m + later.stiffness_n_m) / (weight + 1.0);
         self.recordings += 1;
+        self.directions.extend(later.directions);
         self.holds += later.holds;
         self.period_s = self.period_s.max(later.period_s);
         self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
@@ -154,6 +159,18 @@ impl Needle {
             (Some(own), Some(other)) if clear(&own) >= clear(&other) => Some(own),
             (own, other) => other.or(own),
         };
+    }
+}
+
+impl Needle {
+    /// Places of rows in their recordings.
+    pub fn placed(&self, rows: &[Row]) -> Vec<Placed> {
+        let placed = |row: &Row| Placed {
+            recording: row.recording,
+            time_s: row.time_s - row.start_s,
+            force: Force::Plane(self.directions[row.recording]),
+        };
+        rows.iter().map(placed).collect()
     }
 }
 
@@ -209,6 +226,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         stiffness_n_m: sheet.loading.stiffness_n_m,
         at_surface_m: AT_SURFACE * dent_m,
         slope_noise_m_s: slope_noise(&own, half, step_s),
+        directions: vec![along.direction],
         punctures: pushes.iter().filter_map(|push| puncture(push, &along, (&time, &step_n))).collect(),
         late: None,
     };

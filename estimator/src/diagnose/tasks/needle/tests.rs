@@ -65,6 +65,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
         at_surface_m: 5e-4,
         rate_noise_m_s: 1e-5,
         slope_noise_m_s: 1e-5,
+        directions: vec![haptics::Vec2::y()],
         punctures: Vec::new(),
         late: None,
     }
