@@ -19,7 +19,7 @@ use haptics::law::object::MembraneLaw;
 const INSERTIONS: [usize; 3] = [1, 2, 4];
 /// Half of a stroke in the hole, in depths of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
-const HALF_STROKE: f64 = 0.7;
+const HALF_STROKE: f64 = 0.85;
 /// Lowest and highest speed of a proposed motion, in depths of the dent per second.
 /// Choice: not varied. They change the words of a proposal and no diagnosis.
 const SPEEDS_S: (f64, f64) = (9.0, 43.0);
