@@ -141,6 +141,7 @@ fn a_force_that_follows_another_channel_is_named_by_it() {
     assert!(cause.standing.is_some() && cause.posterior > 0.95, "{cause:?}");
     let amplitude = &cause.parameters[0];
     assert!((amplitude.value - 0.2 * size).abs() < 5.0 * amplitude.std_error, "{size}: {amplitude:?}");
+    assert_eq!(amplitude.unit, "N/degC");
 }
 
 #[test]

@@ -5,6 +5,7 @@ pub mod correlate;
 pub mod derive;
 pub mod filter;
 pub mod gaps;
+pub mod interpolation;
 pub mod lag;
 pub mod noise;
 pub mod pieces;

@@ -2,6 +2,7 @@
 
 use crate::raw::{Cells, MISSING, is_missing};
 use foundation::signal::filter;
+use foundation::signal::interpolation::{before, cubic};
 use haptics::recording::Labels;
 
 /// A channel that is this much faster than the clock is low-passed first.
@@ -58,9 +59,8 @@ pub fn gaps(name: &str, from: &[f64], to: &[f64]) -> Option<String> {
 
 /// Puts a channel with samples at `from` onto the times `to`, which lie within `from`.
 ///
-/// Numbers: low-passed forward and backward if they are faster than the clock, then a cubic through four neighbours
-/// (Hermite with the slopes of the parabolas through three, so that uneven steps keep their place). A sample at the
-/// very time is taken as it is if nothing is filtered. Text: the last one before.
+/// Numbers: low-passed forward and backward if they are faster than the clock, then [`cubic`]. Text: the last one
+/// before.
 pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
     if to == from {
         return cells.clone();
@@ -75,44 +75,17 @@ pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
         }
         Cells::Numbers(values) if goes_down(from, to) && values.iter().all(|v| v.is_finite()) => {
             let smooth = filter::low_pass(values, 1.0 / period(from), CUTOFF_SHARE / period(to));
-            Cells::Numbers(to.iter().map(|&t| cubic(from, &smooth, t)).collect())
+            Cells::Numbers(to.iter().map(|&t| value_at(from, &smooth, t)).collect())
         }
-        Cells::Numbers(values) => Cells::Numbers(to.iter().map(|&t| cubic(from, values, t)).collect()),
+        Cells::Numbers(values) => Cells::Numbers(to.iter().map(|&t| value_at(from, values, t)).collect()),
     }
 }
 
-/// Index of the last sample at or before `t`.
-fn before(time: &[f64], t: f64) -> usize {
-    time.partition_point(|&s| s <= t).saturating_sub(1)
-}
-
-fn cubic(time: &[f64], values: &[f64], t: f64) -> f64 {
+/// Value at `t`, or missing beside a missing sample.
+fn value_at(time: &[f64], values: &[f64], t: f64) -> f64 {
     let i = before(time, t);
-    if time[i] == t || i + 1 == time.len() {
-        return values[i];
-    }
-    let (left, right) = (values[i], values[i + 1]);
-    if is_missing(left) || is_missing(right) {
-        return MISSING;
-    }
-    let step = time[i + 1] - time[i];
-    let chord = (right - left) / step;
-    let slope_left = if i == 0 { chord } else { slope(time, values, i).unwrap_or(chord) };
-    let slope_right = if i + 2 == time.len() { chord } else { slope(time, values, i + 1).unwrap_or(chord) };
-    let u = (t - time[i]) / step;
-    let (u2, u3) = (u * u, u * u * u);
-    (2.0 * u3 - 3.0 * u2 + 1.0) * left
-        + (u3 - 2.0 * u2 + u) * step * slope_left
-        + (3.0 * u2 - 2.0 * u3) * right
-        + (u3 - u2) * step * slope_right
-}
-
-/// Slope at sample `i` of the parabola through it and its neighbours.
-fn slope(time: &[f64], values: &[f64], i: usize) -> Option<f64> {
-    let (h0, h1) = (time[i] - time[i - 1], time[i + 1] - time[i]);
-    let (d0, d1) = ((values[i] - values[i - 1]) / h0, (values[i + 1] - values[i]) / h1);
-    let slope = (h1 * d0 + h0 * d1) / (h0 + h1);
-    slope.is_finite().then_some(slope)
+    let is_between = time[i] != t && i + 1 < time.len();
+    if is_between && (is_missing(values[i]) || is_missing(values[i + 1])) { MISSING } else { cubic(time, values, t) }
 }
 
 #[cfg(test)]

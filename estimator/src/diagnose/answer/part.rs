@@ -262,8 +262,8 @@ impl<'a> Part<'a> {
         found.into_iter().map(one).collect()
     }
 
-    /// Causes as large as the noise whose effect this recording would hide behind the base model. A cause that is hidden behind a
-    /// chosen one is not meant: the motion excites it.
+    /// Causes as large as the noise whose effect this recording would hide behind the base model. A cause that is hidden
+    /// behind a chosen one is not meant: the motion excites it.
     pub fn not_excited(&self) -> Vec<NotExcited> {
         let ChannelFit { system, candidates, rules, .. } = self.study;
         let mut best: Vec<(&str, f64, String)> = Vec::new();

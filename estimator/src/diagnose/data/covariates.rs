@@ -1,6 +1,7 @@
 //! Covariates: slowly changing channels beside motion and force (a temperature, a voltage) that may affect friction or
 //! the force sensor.
 
+use foundation::signal::interpolation::cubic;
 use haptics::recording::Recording;
 use logs::units::{is_program_name, split};
 
@@ -31,11 +32,8 @@ pub struct Extra {
 impl Extra {
     /// Value at this time after the recording's start, s.
     pub fn at(&self, time_s: f64) -> f64 {
-        let after = self.time_s.partition_point(|t| *t < time_s).min(self.time_s.len() - 1);
-        let before = after.saturating_sub(1);
-        let (t0, t1) = (self.time_s[before], self.time_s[after]);
-        let share = if t1 > t0 { ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 0.0 };
-        self.values[before] + share * (self.values[after] - self.values[before])
+        let last_s = self.time_s[self.time_s.len() - 1];
+        cubic(&self.time_s, &self.values, time_s.clamp(self.time_s[0], last_s))
     }
 }
 
@@ -69,9 +67,24 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
         let seen: Vec<usize> = (0..bins).filter(|b| counts[*b] > 0.0).collect();
         let values: Vec<f64> = seen.iter().map(|b| sums[*b] / counts[*b]).collect();
         let time_s: Vec<f64> = seen.iter().map(|b| (*b as f64 + 0.5) * bin_s).collect();
-        is_slow(&values).then(|| Extra { name: channel.name.clone(), unit, time_s, values })
+        is_slow(&values).then(|| {
+            let values = at_centres(&time_s, &values, bin_s);
+            Extra { name: channel.name.clone(), unit, time_s, values }
+        })
     };
     recording.channels.iter().filter_map(extra).collect()
+}
+
+/// Values at the centres of bins from the means over bins of `bin_s`: a mean lies above its centre by `f″ bin_s²/24`.
+/// Without it, a wave of 6 s lost 1.3 % of its amplitude, and the force that follows it came out as much too large.
+fn at_centres(time_s: &[f64], means: &[f64], bin_s: f64) -> Vec<f64> {
+    let mut values = means.to_vec();
+    for k in 1..means.len().saturating_sub(1) {
+        if time_s[k + 1] - time_s[k - 1] < 2.5 * bin_s {
+            values[k] -= (means[k + 1] - 2.0 * means[k] + means[k - 1]) / 24.0;
+        }
+    }
+    values
 }
 
 /// True if the RMS change between neighbours is small relative to the spread.
@@ -99,6 +112,16 @@ mod tests {
             values: time_s.iter().map(|t| of(*t)).collect(),
         };
         Recording { channels: channels.iter().map(channel).collect(), time_s: Some(time_s), ..Recording::default() }
+    }
+
+    #[test]
+    fn a_slow_wave_keeps_its_amplitude() {
+        let wave = |t: f64| 24.0 + 2.0 * (1.1 * t).sin();
+        let found = of(&recording(&[("temperature_degC", &wave)]));
+        for t in [3.0, 11.3, 29.9] {
+            let error = found[0].at(t) - wave(100.0 + t);
+            assert!(error.abs() < 0.01, "{error} at {t} s");
+        }
     }
 
     #[test]

@@ -15,7 +15,8 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least force of a press, as a share of the usual grip, or of the strongest press against a stop.
+/// Least force of a press, as a share of the strongest force of either finger. Against the usual force of the weaker
+/// finger, a sensor that drifts "pressed": 10 of 20 drifts of a switch had a wrong sign.
 /// Choice: halved, 3 of 24 answers change; doubled, 4 of 24 answers change (1 to wrong).
 pub(crate) const PRESSING: f64 = 0.4;
 /// Least travel in a grip, as a share of the largest range of a tip.
@@ -92,15 +93,12 @@ impl Grips {
         };
         let [fx, fy] = [force("x")?, force("y")?];
         let weaker = |i: usize| fx[0][i].hypot(fy[0][i]).min(fx[1][i].hypot(fy[1][i]));
-        let mut press: Vec<f64> = (0..recording.len()).map(weaker).collect();
         let mut any: Vec<f64> =
             (0..recording.len()).map(|i| fx[0][i].hypot(fy[0][i]).max(fx[1][i].hypot(fy[1][i]))).collect();
         let noise = [&fx[0], &fx[1], &fy[0], &fy[1]].map(|f| white_noise(f)).into_iter().fold(0.0, f64::max);
-        let floor = CERTAIN * noise;
-        let least = (PRESSING * percentile(&mut press, 0.95)).max(floor);
-        let least_n = (PRESSING * percentile(&mut any, 0.95)).max(floor);
+        let least_n = (PRESSING * percentile(&mut any, 0.95)).max(CERTAIN * noise);
         let mut spans: Vec<Range<usize>> = Vec::new();
-        for i in (0..recording.len()).filter(|i| weaker(*i) > least && least > 0.0) {
+        for i in (0..recording.len()).filter(|i| weaker(*i) > least_n) {
             match spans.last_mut() {
                 Some(last) if last.end == i => last.end = i + 1,
                 _ => spans.push(i..i + 1),

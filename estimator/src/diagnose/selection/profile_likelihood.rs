@@ -225,7 +225,7 @@ pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
             let (value, error) = (settled.values[first + i], settled.std_errors[first + i]);
             match own.id {
                 // The answer states the stiffness, while the estimate is a compliance.
-                _ if own.channel.is_some() => of_channel(own, name, value, error),
+                _ if own.channel.is_some() => of_channel(own, (name, unit), value, error),
                 pad_compliance::ID => parameter(
                     "k",
                     1.0 / value.max(f64::MIN_POSITIVE),
@@ -242,9 +242,10 @@ pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
 }
 
 /// Parameter of an effect in proportion to a recorded channel, per unit of that channel.
-pub(crate) fn of_channel(candidate: &Candidate, name: &str, value: f64, std_error: f64) -> CauseParameter {
+pub(crate) fn of_channel(candidate: &Candidate, own: (&str, &str), value: f64, std_error: f64) -> CauseParameter {
     let (channel, unit) = candidate.channel.clone().unwrap_or_default();
-    parameter(&format!("{name} with {channel}"), value, std_error, &format!("1/{unit}"))
+    let per = if unit.is_empty() { String::new() } else { format!("/{unit}") };
+    parameter(&format!("{} with {channel}", own.0), value, std_error, &format!("{}{per}", own.1))
 }
 
 /// Parameters of a hardening spring: stiffness, force, hardening and rest position, from the coefficients of two

@@ -81,8 +81,8 @@ pub fn blocks(
         beside.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
     let is_replayed = options.twins && is_upright(faults);
-    let forces = [(&carry.compared.study, carry.airborne.rows.placed())];
-    let twin = is_replayed.then(|| Twin::of_channels(forces)).flatten().map(Box::new);
+    let replayed = || Twin::of_channels([(&carry.compared.study, carry.airborne.rows.placed())]);
+    let twin = is_replayed.then(replayed).flatten().map(Box::new);
     let mut draft = draft(&parts, Evidence { next: &asked, ..beside });
     draft.findings.twin = twin;
     Ok(draft.finish(put_back))

@@ -91,9 +91,12 @@ pub fn needle(
         beside.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
     let is_replayed = options.twins && names.len() == recordings.len() && is_upright(faults);
-    let sliding = shaft.as_ref().map(|s| (&s.compared.study, seen.placed(&s.sliding.rows)));
-    let forces = std::iter::once((&sheet.compared.study, seen.placed(&sheet.pressed.rows))).chain(sliding);
-    let twin = is_replayed.then(|| Twin::of_channels(forces)).flatten().map(Box::new);
+    let replayed = || {
+        let sliding = shaft.as_ref().map(|s| (&s.compared.study, seen.placed(&s.sliding.rows)));
+        let pressed = (&sheet.compared.study, seen.placed(&sheet.pressed.rows));
+        Twin::of_channels(std::iter::once(pressed).chain(sliding))
+    };
+    let twin = is_replayed.then(replayed).flatten().map(Box::new);
     let mut draft = draft(&parts, Evidence { next: &asked, ..beside });
     draft.findings.twin = twin;
     Ok(draft.finish(put_back))
