@@ -6,7 +6,7 @@
 use super::rate_signs::{CORRELATED, mirrored, with_rates_of_motion};
 use super::sample_faults;
 use crate::diagnose::contract::Cause;
-use crate::diagnose::data::limits::{CERTAIN, LEAST_PHASE_SAMPLES};
+use crate::diagnose::data::limits::{CERTAIN, HALF, LEAST_PHASE_SAMPLES};
 use estimation::segment::threshold::percentile;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{Tip, is_two_fingered};
@@ -15,8 +15,8 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Least force of a press, as a share of the strongest force of either finger. Against the usual force of the weaker
-/// finger, a sensor that drifts "pressed": 10 of 20 drifts of a switch had a wrong sign.
+/// Least force of a press, as a share of the usual grip, or of the strongest press against a stop; and of the usual grip,
+/// as a share of the usual push: without it, 10 of 20 drifts of a free finger "pressed" with a wrong sign.
 /// Choice: halved, 3 of 24 answers change; doubled, 4 of 24 answers change (1 to wrong).
 pub(crate) const PRESSING: f64 = 0.4;
 /// Least travel in a grip, as a share of the largest range of a tip.
@@ -92,16 +92,26 @@ impl Grips {
             Some([of(1)?, of(2)?])
         };
         let [fx, fy] = [force("x")?, force("y")?];
-        let weaker = |i: usize| fx[0][i].hypot(fy[0][i]).min(fx[1][i].hypot(fy[1][i]));
-        let mut any: Vec<f64> =
-            (0..recording.len()).map(|i| fx[0][i].hypot(fy[0][i]).max(fx[1][i].hypot(fy[1][i]))).collect();
+        let size = |k: usize, i: usize| fx[k][i].hypot(fy[k][i]);
+        let weaker = |i: usize| size(0, i).min(size(1, i));
+        let stronger = |i: usize| size(0, i).max(size(1, i));
         let noise = [&fx[0], &fx[1], &fy[0], &fy[1]].map(|f| white_noise(f)).into_iter().fold(0.0, f64::max);
-        let least_n = (PRESSING * percentile(&mut any, 0.95)).max(CERTAIN * noise);
+        let usual = |force: &dyn Fn(usize) -> f64| {
+            let mut all: Vec<f64> = (0..recording.len()).map(force).collect();
+            percentile(&mut all, 0.95)
+        };
+        let [grip, push] = [usual(&weaker), usual(&stronger)];
+        let [least, least_n] = [grip, push].map(|force| (PRESSING * force).max(CERTAIN * noise));
         let mut spans: Vec<Range<usize>> = Vec::new();
-        for i in (0..recording.len()).filter(|i| weaker(*i) > least_n) {
+        let mut is_held = false;
+        for i in 0..recording.len() {
+            // A grip that becomes weaker while it carries is no second one: that would begin in the air.
+            let share = if is_held { HALF } else { 1.0 };
+            is_held = grip > PRESSING * push && weaker(i) > share * least;
             match spans.last_mut() {
-                Some(last) if last.end == i => last.end = i + 1,
-                _ => spans.push(i..i + 1),
+                Some(last) if is_held && last.end == i => last.end = i + 1,
+                _ if is_held => spans.push(i..i + 1),
+                _ => {}
             }
         }
         spans.retain(|s| s.len() >= LEAST_PHASE_SAMPLES);
@@ -111,6 +121,13 @@ impl Grips {
             high - low
         };
         let travel_m = TRAVEL * x.iter().chain(&y).map(range_m).fold(0.0, f64::max);
+        // The tips of a grip move together, or as mirror images. Otherwise the object turned in it, or slipped out.
+        spans.retain(|span| {
+            [&x, &y].iter().all(|[one, two]| {
+                let [apart, sum] = [-1.0, 1.0].map(|side| spread(span, &|i| two[i] + side * one[i]));
+                apart.min(sum) < travel_m.max(STAYS * apart.max(sum))
+            })
+        });
         (least_n > 0.0).then_some(Self { spans, least_n, travel_m, x, y, fx, fy })
     }
 
@@ -127,8 +144,7 @@ impl Grips {
     fn moves(&self, of: impl Fn(usize) -> f64) -> f64 {
         let (mut power, mut n) = (0.0, 0);
         for span in &self.spans {
-            let mean = span.clone().map(&of).sum::<f64>() / span.len() as f64;
-            power += span.clone().map(|i| (of(i) - mean).powi(2)).sum::<f64>();
+            power += spread(span, &of).powi(2) * span.len() as f64;
             n += span.len();
         }
         (power / n.max(1) as f64).sqrt()
@@ -268,6 +284,13 @@ impl Grips {
         let gained_n = [0, 1].map(|k| mean(&lifted, &self.fy[k]) - mean(&stands, &self.fy[k]));
         Some(Lift { gained_n, downwards })
     }
+}
+
+/// RMS variation of `of` about its mean in a segment.
+fn spread(span: &Range<usize>, of: &dyn Fn(usize) -> f64) -> f64 {
+    let mean_of = |of: &dyn Fn(usize) -> f64| span.clone().map(of).sum::<f64>() / span.len().max(1) as f64;
+    let mean = mean_of(of);
+    mean_of(&|i| (of(i) - mean).powi(2)).sqrt()
 }
 
 struct Lift {
