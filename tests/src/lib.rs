@@ -14,6 +14,7 @@ pub mod mechanisms;
 pub mod python;
 pub mod reaching;
 pub mod real;
+pub mod rescaled;
 pub mod schema;
 pub mod spoiled;
 pub mod tasks;

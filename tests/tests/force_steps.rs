@@ -2,10 +2,11 @@
 
 use blind::{Bench, Chance, Counts, Job, Set, battery};
 use estimator::diagnose::{Diagnosis, Options, diagnose};
+use estimator::pipeline;
 use haptics::recording::Recording;
 
-/// Seeds on which nothing was chosen: for recordings with a step, and for those that stay as they are.
-const SEEDS: [u64; 2] = [7_370_001, 7_370_002];
+/// Seeds on which nothing was chosen: for recordings with a step, for those that stay as they are, and for fits.
+const SEEDS: [u64; 3] = [7_370_001, 7_370_002, 7_370_003];
 /// Sizes of a step over the noise of the force.
 const SIZES: [f64; 3] = [4.0, 10.0, 40.0];
 
@@ -80,4 +81,32 @@ fn nothing_steps_where_no_zero_jumped() {
         let answer = asked(&case.recordings, case.baseline);
         assert!(answer.causes.iter().all(|c| c.id != "force-step"), "{}: {:?}", job.seed, answer.causes);
     }
+}
+
+/// Warnings of a fit about a jump of the force.
+fn warned(recording: &Recording) -> Vec<String> {
+    let fit = pipeline::analyse(std::slice::from_ref(recording), &pipeline::Options::default()).expect("a fit").fit;
+    fit.warnings.into_iter().filter(|w| w.contains("jumps by")).collect()
+}
+
+/// The fit of a mechanism warns of a large step, and of none where nothing jumped.
+#[test]
+fn a_fit_warns_of_a_step() {
+    let (mut told, mut all) = (0, 0);
+    for (k, job) in nulls(SEEDS[2]).iter().enumerate() {
+        let (mut case, truth) = job.make();
+        if !matches!(case.bench, Bench::Linear | Bench::Angular) {
+            continue;
+        }
+        let recording = &mut case.recordings[0];
+        assert!(warned(recording).is_empty(), "{}: {:?}", job.seed, warned(recording));
+        let times = recording.time_s.clone().expect("a clock");
+        let at_s = (0.3 + 0.1 * (k % 5) as f64) * (times[times.len() - 1] - times[0]);
+        step(recording, at_s, [20.0 * truth.noise_n, 0.0]);
+        let found = warned(recording);
+        println!("{} {:?} {at_s:.2} {:.4} {found:?}", job.seed, case.bench, 20.0 * truth.noise_n);
+        all += 1;
+        told += usize::from(found.len() == 1 && found[0].contains(" s and stays"));
+    }
+    assert!(all >= 4 && 4 * told >= 3 * all, "{told} of {all}");
 }

@@ -245,7 +245,8 @@ fn twins_line(twins: &Twins, baseline: &Baseline) -> String {
     let [low, high] = twins.interval.map(|share| 100.0 * share);
     let which: Vec<String> = twins.by_cause.iter().map(|named| format!("{} {}", named.id, named.runs)).collect();
     let which = if which.is_empty() { String::new() } else { format!(" ({})", which.join(", ")) };
-    let residual = baseline.unit.as_ref().map_or_else(String::new, |unit| {
+    let same = baseline.unit.as_ref().filter(|_| twins.heldout_rms_n > 0.0);
+    let residual = same.map_or_else(String::new, |unit| {
         let [replays, measured] = [twins.heldout_rms_n, baseline.heldout_rms_n].map(|rms| amount(rms, unit));
         format!("; the model's residual is {replays} in them, {measured} as measured")
     });

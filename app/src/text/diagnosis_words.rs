@@ -4,7 +4,7 @@ use crate::text::format::capitalised;
 use crate::text::states::state_name;
 use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Findings, ModelError, Residual, Verdict};
 use estimator::segment::SystemState;
-use estimator::words::amount;
+use estimator::words::{self, amount};
 use haptics::law;
 
 /// What a cause is called.
@@ -143,15 +143,14 @@ pub fn state_in_words(state: SystemState) -> String {
 
 /// Shown unit of what is left of one channel in its states, and its factor from SI.
 pub fn residual_unit(left: &[&Residual]) -> (String, f64) {
-    /// Less than this in all states is told in thousandths.
-    const SMALL: f64 = 0.1;
     let most = left.iter().flat_map(|l| [l.rms_before, l.noise_floor.unwrap_or(0.0)]).fold(0.0, f64::max);
-    match left.first().map_or("", |l| l.unit.as_str()) {
-        "m" if most < 1e-3 * SMALL => ("µm".to_owned(), 1e6),
-        "m" => ("mm".to_owned(), 1e3),
-        unit if unit.starts_with('N') && most < SMALL => (format!("m{}", shown_unit(unit)), 1e3),
-        unit => (shown_unit(unit), 1.0),
-    }
+    prefixed(left.first().map_or("", |l| l.unit.as_str()), most)
+}
+
+/// Shown unit of a number of this size, with its prefix, and its factor from SI.
+fn prefixed(unit: &str, size: f64) -> (String, f64) {
+    let (scale, prefix) = words::prefix(size, unit);
+    (format!("{prefix}{}", shown_unit(unit)), scale.recip())
 }
 
 /// Shown unit of the forces.
@@ -167,9 +166,8 @@ pub fn shown_unit(unit: &str) -> String {
 /// Shown unit of what a cause's gain is counted in, and its factor from SI.
 pub fn gain_unit(cause: &Cause, diagnosis: &Findings) -> (String, f64) {
     match cause.gain.unit.as_deref() {
-        Some("m") => ("mm".to_owned(), 1e3),
-        Some(unit) => (shown_unit(unit), 1.0),
-        None => (force_unit(diagnosis).to_owned(), 1.0),
+        Some(unit) => prefixed(unit, cause.gain.heldout_rms_before),
+        None => prefixed(force_unit(diagnosis), cause.gain.heldout_rms_before),
     }
 }
 

@@ -44,11 +44,31 @@ pub fn parameter(name: &str, value: Option<f64>) -> Quantity {
     let (unit, factor) = match unit {
         "g" if size >= 1.0 => ("kg", 1.0),
         "g·cm²" if size >= 1e-2 => ("kg·m²", 1.0),
-        other => (other, factor),
+        other => extreme(other, size).unwrap_or((other, factor)),
     };
     // A force, and no coefficient that a slip shows.
     let label = if name == "friction_N" { "Friction".to_owned() } else { words(stem) };
     Quantity { label, unit, factor }
+}
+
+/// Unit of numbers that would have four zeros behind the point, or six digits before it, with its factor from SI.
+fn extreme(unit: &str, size: f64) -> Option<(&'static str, f64)> {
+    let of = |[micro, nano, kilo]: [&'static str; 3]| match size {
+        s if s > 0.0 && s < 1e-7 => Some((nano, 1e9)),
+        s if s > 0.0 && s < 1e-4 => Some((micro, 1e6)),
+        s if s >= 1e5 => Some((kilo, 1e-3)),
+        _ => None,
+    };
+    match unit {
+        "N" => of(["µN", "nN", "kN"]),
+        "N/m" => of(["µN/m", "nN/m", "kN/m"]),
+        "N·m" => of(["µN·m", "nN·m", "kN·m"]),
+        "N·s/m" => of(["µN·s/m", "nN·s/m", "kN·s/m"]),
+        "mm" if size > 0.0 && size < 1e-7 => Some(("nm", 1e9)),
+        "mm" if size > 0.0 && size < 1e-5 => Some(("µm", 1e6)),
+        "mm" if size >= 10.0 => Some(("m", 1.0)),
+        _ => None,
+    }
 }
 
 /// How the samples of a channel with an SI unit are shown.
@@ -192,6 +212,11 @@ mod tests {
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
         let resistance = parameter("friction_N", Some(0.1));
         assert_eq!((resistance.label.as_str(), resistance.unit), ("Friction", "N"));
+        let unit = |name: &str, value: f64| parameter(name, Some(value)).unit;
+        assert_eq!(
+            (unit("stiffness_N_m", 3e-6), unit("surface_m", -2e-8), unit("friction_N", 3.5e5)),
+            ("µN/m", "nm", "kN")
+        );
         assert_eq!((parameter("leak_kg_s", None).unit, parameter("free_fall_m_s2", None).unit), ("g/s", "m/s²"));
     }
 

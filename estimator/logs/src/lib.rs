@@ -29,7 +29,7 @@ mod write;
 
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
-pub use checks::{UNIT, warnings as quality};
+pub use checks::{UNIT, repaired, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
 pub use plan::PAIRS;

@@ -48,7 +48,10 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
     let task = task_of(first, options.task)?;
+    let (repaired, spikes) = without_spikes(recordings);
+    let recordings = repaired.as_deref().unwrap_or(recordings);
     let mut found = of_task(task, recordings, options)?;
+    found.warnings.extend(spikes);
     found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
     let doubtful =
         recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| [NO_CLOCK, UNIT].contains(&w.kind.as_str())));
@@ -56,6 +59,19 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
     found.warnings.dedup();
     found.name_by_unit();
     Ok(found)
+}
+
+/// The recordings without spikes of single samples, if any has some, and a sentence for each channel that had. A spike
+/// is no bias, no drift and no catch.
+fn without_spikes(recordings: &[Recording]) -> (Option<Vec<Recording>>, Vec<String>) {
+    let each: Vec<_> = recordings.iter().map(logs::repaired).collect();
+    if each.iter().all(Option::is_none) {
+        return (None, Vec::new());
+    }
+    let pairs = each.into_iter().zip(recordings);
+    let (all, said): (Vec<Recording>, Vec<Vec<String>>) =
+        pairs.map(|(other, recording)| other.unwrap_or_else(|| (recording.clone(), Vec::new()))).unzip();
+    (Some(all), said.concat())
 }
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {

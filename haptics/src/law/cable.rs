@@ -38,7 +38,8 @@ fn length_m(motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> [f64; 3] {
     }
     let (sin, cos) = (motion.position / radius - direction).sin_cos();
     // No direction to pull in exists at the point where handle and anchor meet.
-    let length = (radius * radius + distance * distance - 2.0 * radius * distance * cos).max(0.0).sqrt().max(1e-12);
+    let length =
+        (radius * radius + distance * distance - 2.0 * radius * distance * cos).max(0.0).sqrt().max(f64::MIN_POSITIVE);
     let slope = distance * sin / length;
     [length, slope, (distance * cos / radius - slope * slope) / length]
 }

@@ -77,7 +77,8 @@ impl Effect {
                     tame(self.law.force_with(motion, &unit, memory))
                 }
                 Enters::Nonlinear => {
-                    let step = 1e-6 * self.values[index].abs().max(1e-3);
+                    let at_zero = if self.values[index] == 0.0 { 1e-3 } else { 0.0 };
+                    let step = 1e-6 * self.values[index].abs().max(at_zero);
                     (at(self.values[index] + step) - at(self.values[index] - step)) / (2.0 * step)
                 }
                 Enters::Fixed => 0.0,

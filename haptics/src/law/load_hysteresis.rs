@@ -29,7 +29,7 @@ static ENTRY: Entry = Entry {
 
 /// The same law of a friction of one.
 fn unit(parameters: &[f64; MAX_PARAMETERS]) -> [f64; MAX_PARAMETERS] {
-    [1.0, 1.0 / parameters[1].max(1e-12), parameters[2], 0.0, 0.0]
+    [1.0, 1.0 / parameters[1].max(f64::MIN_POSITIVE), parameters[2], 0.0, 0.0]
 }
 
 /// The friction when it slides, N.

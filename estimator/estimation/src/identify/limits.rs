@@ -40,9 +40,10 @@ pub const FREE_ENDS_S: f64 = 0.05;
 /// Least force of a finger that touches a switch, as a share of its strongest force.
 /// Choice: halved, 16 of 21 answers change; doubled, 19 of 21 answers change.
 pub const TOUCH_SHARE: f64 = 0.03;
-/// Way of a switch after a turn within which the force goes over from one curve to the other, m.
+/// Way of a switch after a turn within which the force goes over from one curve to the other, as a share of the longest
+/// push.
 /// Choice: halved, 9 of 21 answers change; doubled, 17 of 19 answers change (2 to wrong).
-pub const SETTLED_M: f64 = 0.8e-3;
+pub const SETTLED: f64 = 0.1;
 /// Share of each recording's end that the quality figures hold out.
 /// Choice: halved or doubled, none of 48 answers changes.
 pub(super) const HELD_OUT: f64 = 0.3;

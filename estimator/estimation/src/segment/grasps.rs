@@ -33,22 +33,23 @@ pub(super) enum Next {
 const PUT_DOWN_S: f64 = 0.35;
 /// The same time if the block did not fall afterwards; shorter is the passage of the forces when something is lost.
 const JUST_PUT_DOWN_S: f64 = 0.12;
-/// A block that was gripped but not lifted stays within this, m.
-const STAYS_M: f64 = 8e-3;
-/// Largest sideways distance at which a block lost in the air comes to rest, m.
-const FALLS_WITHIN_M: f64 = 20e-3;
-/// The same distance for a block with the same width within [`ALIKE_M`].
-const ROLLS_WITHIN_M: f64 = 40e-3;
-/// Widths of one block in two grasps differ by less, m: pads give with the pinch. A block that tumbled is held by another side.
-const ALIKE_M: f64 = 1.6e-3;
+/// A block that was gripped but not lifted stays within this share of its width.
+const STAYS: f64 = 0.4;
+/// Largest sideways distance at which a block lost in the air comes to rest, in widths.
+const FALLS_WITHIN: f64 = 1.0;
+/// The same distance for a block with the same width within [`ALIKE`].
+const ROLLS_WITHIN: f64 = 2.0;
+/// Widths of one block in two grasps differ by less than this share: pads give with the pinch. A block that tumbled is
+/// held by another side.
+const ALIKE: f64 = 0.08;
 /// Relative difference of weights below which they are those of one block; `OTHER_WEIGHT`: above which they are those
 /// of two.
 const SAME_WEIGHT: f64 = 0.12;
 const OTHER_WEIGHT: f64 = 0.3;
 /// Least time in the air for a weight, s.
 const WEIGHED_S: f64 = 0.3;
-/// A grasp that is lower by this is at another height, m.
-const LOWER_M: f64 = 3e-3;
+/// A grasp that is lower by this share of the block's width is at another height.
+const LOWER: f64 = 0.15;
 /// Time over which the place of a grasp is averaged, s.
 const PLACE_S: f64 = 0.1;
 
@@ -122,23 +123,24 @@ impl Grasp {
         let beside_m = (next.from_m.x - self.to_m.x).abs();
         let below_m = self.to_m.y - next.from_m.y;
         if !self.lifted {
-            let stayed = (next.from_m - self.to_m).norm() < STAYS_M;
+            let stayed = (next.from_m - self.to_m).norm() < STAYS * self.width_m;
             return if stayed { Next::Again } else { Next::Unknown };
         }
         let alike = self.is_as_wide_as(next);
+        let lower_m = LOWER * self.width_m;
         let same = alike && self.weighs_like(next) == Some(true);
-        let fell = below_m > LOWER_M && (same || beside_m < FALLS_WITHIN_M);
-        if self.was_put_down() && !(fell && self.rested_s < PUT_DOWN_S) || below_m < -LOWER_M {
+        let fell = below_m > lower_m && (same || beside_m < FALLS_WITHIN * self.width_m);
+        if self.was_put_down() && !(fell && self.rested_s < PUT_DOWN_S) || below_m < -lower_m {
             return Next::Other;
         }
         // True for an object that lay under it before it was taken.
-        let uncovered = (next.from_m.x - self.from_m.x).abs() < STAYS_M
-            && next.from_m.y < self.from_m.y - LOWER_M
-            && beside_m > STAYS_M;
+        let uncovered = (next.from_m.x - self.from_m.x).abs() < STAYS * self.width_m
+            && next.from_m.y < self.from_m.y - lower_m
+            && beside_m > STAYS * self.width_m;
         let again = match self.weighs_like(next) {
             Some(same) => same && !uncovered,
-            None if alike => beside_m < ROLLS_WITHIN_M && !uncovered,
-            None => beside_m < FALLS_WITHIN_M && !uncovered,
+            None if alike => beside_m < ROLLS_WITHIN * self.width_m && !uncovered,
+            None => beside_m < FALLS_WITHIN * self.width_m && !uncovered,
         };
         if again { Next::Again } else { Next::Other }
     }
@@ -148,7 +150,7 @@ impl Grasp {
     }
 
     fn is_as_wide_as(&self, other: &Self) -> bool {
-        (other.width_m - self.width_m).abs() < ALIKE_M
+        (other.width_m - self.width_m).abs() < ALIKE * self.width_m
     }
 
     /// True if both have the same weight; `None` if that is not clear.
@@ -165,7 +167,7 @@ impl Grasp {
 
     /// True if a later grasp takes the object that this one put down.
     pub(super) fn is_where_it_was_put(&self, later: &Self) -> bool {
-        self.lifted && self.was_put_down() && later.lifted && (later.from_m - self.to_m).norm() < LOWER_M
+        self.lifted && self.was_put_down() && later.lifted && (later.from_m - self.to_m).norm() < LOWER * self.width_m
     }
 }
 

@@ -5,12 +5,12 @@ use super::threshold::percentile;
 use foundation::signal::task::TaskSignals;
 use foundation::tasks::{SystemState, Thresholds};
 
-/// Tips so far above the lowest ones have lifted the block, m.
-pub const LIFTED_M: f64 = 2e-3;
+/// Tips so far above the lowest ones have lifted the block, as a share of its size.
+pub const LIFTED: f64 = 0.1;
 /// Time of a lift from which it is a carry, s.
 pub const LIFTED_S: f64 = 0.3;
-/// Least travel of the tips back and forth, while they hold a block, for it to be slid, m.
-const SLID_M: f64 = 5e-3;
+/// Least travel of the tips back and forth, while they hold a block, for it to be slid, as a share of its size.
+const SLID: f64 = 0.25;
 /// Least share of the time for which it stands on the ground at that very height.
 const GROUNDED_SHARE: f64 = 0.2;
 
@@ -29,12 +29,14 @@ pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [Sy
     let ground_m = percentile(&mut heights, 0.05);
     let mut places: Vec<f64> = held.iter().map(|i| signals.position[*i].x).collect();
     let way_m = percentile(&mut places, 0.95) - percentile(&mut places, 0.05);
-    let lifted = held.iter().filter(|i| signals.position[**i].y > ground_m + LIFTED_M).count();
+    let object_m = signals.object_m();
+    let above_m = ground_m + LIFTED * object_m;
+    let lifted = held.iter().filter(|i| signals.position[**i].y > above_m).count();
     let stays = (lifted as f64) * step_s < LIFTED_S && grounded as f64 > GROUNDED_SHARE * held.len() as f64;
-    if !stays || way_m < SLID_M {
+    if !stays || way_m < SLID * object_m {
         return;
     }
-    for i in held.into_iter().filter(|i| signals.position[*i].y <= ground_m + LIFTED_M) {
+    for i in held.into_iter().filter(|i| signals.position[*i].y <= above_m) {
         if states[i] == HoldAboveGround {
             let slides = signals.velocity[i].x.abs() > thresholds.velocity_m_s;
             states[i] = if slides { SlidingOnGround } else { HoldOnGround };

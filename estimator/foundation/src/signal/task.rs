@@ -50,6 +50,17 @@ impl TaskSignals {
     pub fn is_empty(&self) -> bool {
         self.time_s.is_empty()
     }
+
+    /// Median distance of the tips over the quarter of samples with the hardest grip, m: the size of the object. Limits
+    /// of lengths are multiples of it, so that they hold for objects of any size.
+    pub fn object_m(&self) -> f64 {
+        let mut hardest: Vec<usize> = (0..self.len()).collect();
+        hardest.sort_unstable_by(|a, b| self.grip_force_n[*b].total_cmp(&self.grip_force_n[*a]));
+        hardest.truncate(self.len().div_ceil(4));
+        let mut widths: Vec<f64> = hardest.iter().map(|i| self.grip_width_m[*i].abs()).collect();
+        widths.sort_unstable_by(f64::total_cmp);
+        widths.get(widths.len() / 2).copied().unwrap_or(0.0)
+    }
 }
 
 /// Least samples on each side of a cubic fit.

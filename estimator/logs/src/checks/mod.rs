@@ -15,6 +15,7 @@ mod spikes;
 
 pub use repeats::copied;
 pub use scale::UNIT;
+pub use spikes::repaired;
 
 use super::units;
 use haptics::recording::{Channel, Recording, Warning};

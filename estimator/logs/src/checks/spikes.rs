@@ -54,13 +54,9 @@ pub fn warning(
     profile: &Profile,
     impossible: Option<&Warning>,
 ) -> Option<Warning> {
-    let least = SPIKE_SHARE * profile.spread();
-    let mut found = spikes(&channel.values, is_position(channel), least);
-    // Impossible values have been reported already; a leap that other channels feel too is a blow, and no fault of a
-    // sensor.
-    found.retain(|&i| {
-        impossible.is_none_or(|w| w.spans.iter().all(|s| s.first != i)) && !felt_elsewhere(recording, channel, i)
-    });
+    let mut found = places(recording, channel, profile);
+    // Impossible values have been reported already.
+    found.retain(|&i| impossible.is_none_or(|w| w.spans.iter().all(|s| s.first != i)));
     let &first = found.first()?;
     let leap = |i: usize| {
         let (before, after) = (channel.values[i - 1], channel.values[i + 1]);
@@ -76,6 +72,43 @@ pub fn warning(
     );
     let spans = found.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
     Some(about("outlier", channel, limited(spans), text))
+}
+
+/// The recording with the mean of its neighbours in the place of every spike of one sample, and a sentence for each
+/// channel that had one. `None` if none had.
+pub fn repaired(recording: &Recording) -> Option<(Recording, Vec<String>)> {
+    let known = |channel: &&Channel| units::is_program_name(&channel.name);
+    let all: Vec<(&Channel, Vec<usize>)> = (recording.channels.iter().filter(known))
+        .map(|channel| (channel, places(recording, channel, &Profile::of(&channel.values))))
+        .filter(|(_, found)| !found.is_empty())
+        .collect();
+    let said = all.iter().map(|(channel, found)| {
+        format!(
+            "{} has {} spike(s) of one sample, the first at {}: the mean of its neighbours takes the place of each",
+            channel.name,
+            found.len(),
+            place(recording, found[0])
+        )
+    });
+    let said: Vec<String> = said.collect();
+    if said.is_empty() {
+        return None;
+    }
+    let mut other = recording.clone();
+    for (channel, found) in all {
+        let Some(own) = other.channels.iter_mut().find(|c| c.name == channel.name) else { continue };
+        for i in found {
+            own.values[i] = 0.5 * (channel.values[i - 1] + channel.values[i + 1]);
+        }
+    }
+    Some((other, said))
+}
+
+/// Samples of the spikes of a channel. A leap that other channels feel too is a blow, and no fault of a sensor.
+fn places(recording: &Recording, channel: &Channel, profile: &Profile) -> Vec<usize> {
+    let mut found = spikes(&channel.values, is_position(channel), SPIKE_SHARE * profile.spread());
+    found.retain(|&i| !felt_elsewhere(recording, channel, i));
+    found
 }
 
 /// Indices of spikes of at least `least`.

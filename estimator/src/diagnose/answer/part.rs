@@ -67,9 +67,9 @@ pub trait Told {
     fn states(&self, _k: usize, _candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         found
     }
-    /// Smallest size of a cause that matters, and the experiment that would show it. `None` if the cause does not belong
-    /// to the channel. Along a coordinate, causes are as large as the noise, and the reasons are those of the catalogue.
-    fn usual(&self, _candidate: &Candidate) -> Option<(f64, &'static str)> {
+    /// Reason why a recording hides a cause, and the experiment that would show it. `None` if the cause does not belong
+    /// to the channel. Along a coordinate the reasons are those of the catalogue.
+    fn hidden_by(&self, _candidate: &Candidate) -> Option<&'static str> {
         None
     }
 }
@@ -262,24 +262,19 @@ impl<'a> Part<'a> {
         found.into_iter().map(one).collect()
     }
 
-    /// Causes of usual size whose effect this recording would hide behind the base model. A cause that is hidden behind a
-    /// chosen one is not meant: the motion excites it.
+    /// Causes as large as the noise whose effect this recording would hide behind the base model. A cause that is hidden
+    /// behind a chosen one is not meant: the motion excites it.
     pub fn not_excited(&self) -> Vec<NotExcited> {
-        let ChannelFit { system, candidates, solved, rules, .. } = self.study;
+        let ChannelFit { system, candidates, rules, .. } = self.study;
         let mut best: Vec<(&str, f64, String)> = Vec::new();
         for (k, candidate) in candidates.iter().enumerate().filter(|(_, c)| !self.study.has(c.id)) {
-            let seen = if self.role == Role::Channel {
-                self.told.usual(candidate).zip(solved.as_ref()).map(|((size, why), solved)| {
-                    let first = system.places[k].start;
-                    let power = system.distinct(k, &[]) * system.train[(first, first)] * size * size;
-                    (power / solved.variance(system.rows), why.to_owned())
-                })
+            let why = if self.role == Role::Channel {
+                self.told.hidden_by(candidate).map(str::to_owned)
             } else {
-                // A cause as large as the noise.
                 hidden_by_law(candidate.id)
-                    .map(|why| (system.distinct(k, &[]) * system.rows - candidate.cost * system.rows.ln(), why))
             };
-            let Some((evidence, why)) = seen else { continue };
+            let Some(why) = why else { continue };
+            let evidence = system.distinct(k, &[]) * system.rows - candidate.cost * system.rows.ln();
             match best.iter_mut().find(|b| b.0 == candidate.id) {
                 Some(held) => held.1 = held.1.max(evidence),
                 None => best.push((candidate.id, evidence, why)),

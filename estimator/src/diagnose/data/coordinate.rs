@@ -4,6 +4,7 @@
 use super::regression_data::Track;
 use estimation::identify::mechanism::path::{keeps_to, spare_m};
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
@@ -45,8 +46,8 @@ impl Along {
             )),
             (Some((path, spare_m)), None) if keeps_to(recording, path, *spare_m) => Ok(Some(*path)),
             (Some((_, spare_m)), None) => refused(format!(
-                "{name} does not keep to the path of what was diagnosed, within {:.1} mm: it is another object, or the frame was moved; validate on a recording of the same object in the same frame",
-                1e3 * spare_m
+                "{name} does not keep to the path of what was diagnosed, within {}: it is another object, or the frame was moved; validate on a recording of the same object in the same frame",
+                amount(*spare_m, "m")
             )),
         }
     }

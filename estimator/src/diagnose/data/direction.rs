@@ -38,7 +38,7 @@ pub fn blur(track: &mut Track) {
         (None, true) => (BLUR, CLOCKS_S),
         (None, false) => (BLUR_OF_MASS, CLOCKS_S),
     };
-    let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
+    let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(f64::MIN_POSITIVE);
     for k in 0..track.fine.len() {
         let next =
             if k + 1 < track.fine.len() && track.fine[k + 1].segment == track.fine[k].segment { k + 1 } else { k };

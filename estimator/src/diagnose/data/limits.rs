@@ -66,6 +66,6 @@ pub(crate) const SETTLING_S: f64 = 0.1;
 /// Pause, s: between joined recordings, over a change of place, and least duration of empty fingers.
 /// Choice: halved or doubled, none of 15 answers changes.
 pub(crate) const PAUSE_S: f64 = 1.0;
-/// Speed of a resting hand, m/s: a block that a finger pushes faster slides.
+/// Speed of a resting hand, in sizes of the object per second: a block that a finger pushes faster slides.
 /// Choice: no case of the ablation reads it.
-pub(crate) const HAND_REST_M_S: f64 = 5e-3;
+pub(crate) const HAND_REST_HZ: f64 = 0.25;

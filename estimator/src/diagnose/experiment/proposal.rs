@@ -14,6 +14,7 @@ use crate::diagnose::data::row_means::column;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::{eccentric_mass, friction_asymmetry, gravity_tilt};
 use crate::diagnose::selection::comparison::ChannelFit;
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::law::Motion;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -152,20 +153,20 @@ fn hang(track: &Track, model: &Model, study: &ChannelFit, pair: (&str, &str)) ->
     asked.added_weight_n = in_steps(HUNG_MULTIPLE * moment / LEVER_M);
     let hung = asked.added_weight_n * LEVER_M;
     // Either all of it acts, or the sine of a small tilt; nothing in between is considered.
-    let noise = track.force_noise.max(1e-12);
+    let noise = track.force_noise.max(f64::MIN_POSITIVE);
     let lambda = asked.seconds / track.period_s * 0.5 * (0.4 * hung / noise).powi(2);
     Some(hung_proposal(&asked, &[pair], power(lambda), "a lever"))
 }
 
 fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &str) -> NextExperiment {
-    let weight = asked.added_weight_n;
+    let weight = amount(asked.added_weight_n, "N");
     let note = if on == "the handle" {
         format!(
-            "hang a known weight of about {weight:.2} N on the handle and state it in the sidecar (known: added_weight_N)"
+            "hang a known weight of about {weight} on the handle and state it in the sidecar (known: added_weight_N)"
         )
     } else {
         format!(
-            "hang a known weight of about {weight:.2} N on a lever of {:.2} m and state both in the sidecar (known: added_weight_N, \
+            "hang a known weight of about {weight} on a lever of {:.2} m and state both in the sidecar (known: added_weight_N, \
              added_lever_m, and added_level_rad, the coordinate at which the lever is level)",
             asked.added_lever_m
         )
@@ -194,7 +195,7 @@ pub(crate) fn turned_track(open: &[Alternative]) -> Option<NextExperiment> {
 pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excitation, asked: &Experiment) -> Track {
     let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
     let step = track.period_s;
-    let course = Course::of(excitation, asked.fast / asked.half_range.max(1e-12), asked.seconds);
+    let course = Course::of(excitation, asked.fast / asked.half_range.max(f64::MIN_POSITIVE), asked.seconds);
     let place = |t: f64| scale * (asked.middle + asked.half_range * course.at(t.max(0.0)).0);
     let count = (asked.seconds / step) as usize;
     let rows = (0..count).map(|i| {

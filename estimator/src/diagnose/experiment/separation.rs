@@ -45,7 +45,7 @@ impl Imagined {
 /// Mean residual power of a row in a study.
 fn variance(study: &ChannelFit) -> Option<f64> {
     let solved = study.solved.as_ref()?;
-    Some(solved.variance(study.system.rows).max(1e-24))
+    Some(solved.variance(study.system.rows).max(f64::MIN_POSITIVE))
 }
 
 /// Expected evidence λ in the worse of two cases: the found cause is true, or its rival is. In each, the model and the
@@ -105,7 +105,11 @@ impl<'a> Eye<'a> {
 /// The candidate of the same cause with the nearest searched values.
 fn nearest<'a>(candidates: &'a [Candidate], own: &Candidate) -> Option<&'a Candidate> {
     let apart = |c: &Candidate| -> f64 {
-        c.searched.iter().zip(&own.searched).map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).powi(2)).sum()
+        c.searched
+            .iter()
+            .zip(&own.searched)
+            .map(|(a, b)| ((a.value - b.value) / b.value.abs().max(f64::MIN_POSITIVE)).powi(2))
+            .sum()
     };
     let same = |c: &&Candidate| c.id == own.id && c.linear == own.linear && c.searched.len() == own.searched.len();
     candidates.iter().filter(same).min_by(|a, b| apart(a).total_cmp(&apart(b)))

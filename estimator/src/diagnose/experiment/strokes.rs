@@ -34,7 +34,8 @@ impl Course {
         let mut k = 0;
         while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
             let step = (excitation.step)(k);
-            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_STROKE_S);
+            let takes_s =
+                (PEAK * (step.to - place).abs() / (step.pace * speed).max(f64::MIN_POSITIVE)).max(SHORTEST_STROKE_S);
             knots.push((time_s + takes_s, step.to, step.across));
             if step.rest_s > 0.0 {
                 knots.push((time_s + takes_s + step.rest_s, step.to, step.across));

@@ -44,13 +44,14 @@ pub fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
             world.tilt_rad -= value("angle").unwrap_or(0.0);
         }
         "weight" => {
-            let gravity = world.gravity_m_s2.max(1e-9);
+            let gravity = world.gravity_m_s2.max(f64::MIN_POSITIVE);
             if let (Some(weight), Some(block)) = (value("weight").filter(|w| *w > 0.0), world.blocks.get_mut(number)) {
                 block.mass_kg = weight / gravity;
             }
         }
         mass_change::ID => {
-            let leak_kg_s = value("rate").map(|rate| -rate / world.gravity_m_s2.max(1e-9)).filter(|leak| *leak > 0.0);
+            let leak_kg_s =
+                value("rate").map(|rate| -rate / world.gravity_m_s2.max(f64::MIN_POSITIVE)).filter(|leak| *leak > 0.0);
             let leaks_from_s = value("t0").or(Some(0.0));
             let of_all = value("block").is_none();
             let leaking = world.blocks.iter_mut().enumerate().filter(|(k, _)| of_all || *k == number);

@@ -29,7 +29,7 @@ pub fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
     let value = |name: &str| parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
     match id {
         pad_compliance::ID => {
-            let softer = 1.0 / world.pad.stiffness_n_m.max(1e-9) + value("give");
+            let softer = 1.0 / world.pad.stiffness_n_m.max(f64::MIN_POSITIVE) + value("give");
             if softer > 0.0 {
                 world.pad.stiffness_n_m = 1.0 / softer;
             }

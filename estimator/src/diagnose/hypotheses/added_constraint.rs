@@ -95,7 +95,7 @@ impl Hypothesis for AddedConstraint {
 /// Cables around one that was found.
 fn cables_around(near: &Near<'_>, (direction, rest): (f64, f64), distance: Option<f64>) -> Vec<Point> {
     let radius = near.ranges.track.radius_m.unwrap_or(0.0);
-    let found = distance.map_or(REACH, |d| d / radius.max(1e-12));
+    let found = distance.map_or(REACH, |d| d / radius.max(f64::MIN_POSITIVE));
     let mut all = Vec::new();
     for direction in DIRECTIONS.around(direction, TAU, near.step) {
         // A share of slack is a share of both ways across the circle.

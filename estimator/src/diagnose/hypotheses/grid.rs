@@ -106,7 +106,7 @@ pub(crate) struct Ranges<'a> {
 impl<'a> Ranges<'a> {
     pub(crate) fn of(track: &'a Track) -> Self {
         let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
-        let range = (high - low).max(1e-12);
+        let range = (high - low).max(f64::MIN_POSITIVE);
         let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
         let circumference = track.radius_m.map(|r| TAU * r);
         // On a crank, positions repeat every turn.

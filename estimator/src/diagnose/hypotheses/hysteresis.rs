@@ -57,7 +57,7 @@ impl Hypothesis for Hysteresis {
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
-        let (share, way) = (found.value(0), found.searched(0).max(1e-12));
+        let (share, way) = (found.value(0), found.searched(0).max(f64::MIN_POSITIVE));
         let level = share * found.dry.level_n;
         let everywhere = Effect::new(&Hysteresis, &[level, level / way, found.searched(1)]);
         found.dry.parts(everywhere, Effect::new(&LoadHysteresis, &[share * found.dry.mu, way, found.searched(1)]))

@@ -94,7 +94,7 @@ pub(crate) fn about_its_rest(values: &[f64], track: &Track) -> [f64; 4] {
 /// Middle of the positions, and half their range.
 fn middle_and_half(track: &Track) -> [f64; 2] {
     let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
-    [0.5 * (low + high), 0.5 * (high - low).max(1e-12)]
+    [0.5 * (low + high), 0.5 * (high - low).max(f64::MIN_POSITIVE)]
 }
 
 /// Rest positions of a spring.

@@ -10,6 +10,7 @@ use crate::diagnose::data::limits::{CERTAIN, HALF, LEAST_PHASE_SAMPLES};
 use estimation::segment::threshold::percentile;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{Tip, is_two_fingered};
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -18,15 +19,15 @@ use std::ops::Range;
 /// as a share of the usual push: without it, 10 of 20 drifts of a free finger "pressed" with a wrong sign.
 /// Choice: halved, 3 of 24 answers change; doubled, 4 of 24 answers change (1 to wrong).
 pub(crate) const PRESSING: f64 = 0.4;
-/// Least travel in a grip, m.
+/// Least travel in a grip, as a share of the largest range of a tip.
 /// Choice: halved or doubled, none of 24 answers changes.
-pub(crate) const TRAVEL_M: f64 = 2e-3;
+const TRAVEL: f64 = 0.03;
 /// Largest motion of a constant dimension, as a share of the travel of either finger.
 /// Choice: no case of the ablation reads it.
 const STAYS: f64 = 0.1;
-/// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
+/// Rise up to which an object still stands, as a share of the least travel.
 /// Choice: halved or doubled, none of 3 answers changes.
-const STANDS_M: f64 = 5e-4;
+const STANDING: f64 = 0.25;
 /// Share of its rise from which an object is lifted.
 /// Choice: halved or doubled, none of 3 answers changes.
 const LIFTED: f64 = 0.6;
@@ -68,8 +69,9 @@ struct Found {
 /// Segments in which both fingers press, and the signals of the fingers.
 struct Grips {
     spans: Vec<Range<usize>>,
-    /// Threshold of pressing, N.
+    /// Threshold of pressing, N, and least travel, m.
     least_n: f64,
+    travel_m: f64,
     x: Pair,
     y: Pair,
     fx: Pair,
@@ -114,14 +116,19 @@ impl Grips {
         }
         spans.retain(|s| s.len() >= LEAST_PHASE_SAMPLES);
         let [x, y] = [place(|p| p.x), place(|p| p.y)];
+        let range_m = |of: &Vec<f64>| {
+            let (low, high) = of.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+            high - low
+        };
+        let travel_m = TRAVEL * x.iter().chain(&y).map(range_m).fold(0.0, f64::max);
         // The tips of a grip move together, or as mirror images. Otherwise the object turned in it, or slipped out.
         spans.retain(|span| {
             [&x, &y].iter().all(|[one, two]| {
                 let [apart, sum] = [-1.0, 1.0].map(|side| spread(span, &|i| two[i] + side * one[i]));
-                apart.min(sum) < TRAVEL_M.max(STAYS * apart.max(sum))
+                apart.min(sum) < travel_m.max(STAYS * apart.max(sum))
             })
         });
-        (least_n > 0.0).then_some(Self { spans, least_n, x, y, fx, fy })
+        (least_n > 0.0).then_some(Self { spans, least_n, travel_m, x, y, fx, fy })
     }
 
     fn samples(&self) -> impl Iterator<Item = usize> + '_ {
@@ -149,12 +156,12 @@ impl Grips {
         for (axis, at) in [("x", &self.x), ("y", &self.y)] {
             let apart = self.moves(|i| at[1][i] - at[0][i]);
             let sum = self.moves(|i| at[1][i] + at[0][i]);
-            if 0.5 * apart > TRAVEL_M && sum < STAYS * apart {
+            if 0.5 * apart > self.travel_m && sum < STAYS * apart {
                 let finger = if axis == "x" { self.crossed() } else { self.sinking() };
                 let why = format!(
-                    "while both fingers press, tip {} moves along {axis} as the mirror image of the other one: what they hold would change its size by {:.0} mm",
+                    "while both fingers press, tip {} moves along {axis} as the mirror image of the other one: what they hold would change its size by {}",
                     finger + 1,
-                    2e3 * apart
+                    amount(2.0 * apart, "m")
                 );
                 return Some(Found { axes: vec![format!("{axis}{}_m", finger + 1)], why });
             }
@@ -170,7 +177,7 @@ impl Grips {
     /// The finger that moves down first in a grip: a standing object can only be lifted.
     fn sinking(&self) -> usize {
         let first = self.spans.iter().find_map(|span| {
-            let moved = |i: &usize| (self.y[0][*i] - self.y[0][span.start]).abs() > TRAVEL_M;
+            let moved = |i: &usize| (self.y[0][*i] - self.y[0][span.start]).abs() > self.travel_m;
             span.clone().find(moved).map(|i| self.y[0][i] - self.y[0][span.start])
         });
         usize::from(first.is_some_and(|rise| rise > 0.0))
@@ -194,7 +201,7 @@ impl Grips {
                 return Some(Found { axes: vec![format!("fx{name}_N")], why });
             }
             let step = |i: usize| if i == 0 { 0.0 } else { self.x[k][i] - self.x[k][i - 1] };
-            let [work, all] = [sum(&|i| self.fx[k][i] * step(i)), along / samples.len() as f64 * TRAVEL_M];
+            let [work, all] = [sum(&|i| self.fx[k][i] * step(i)), along / samples.len() as f64 * self.travel_m];
             if work < -all && recording.channel("x1_m").is_some() {
                 let why = format!(
                     "what finger {name} pushes alone comes towards it all the way: it would be drawn, not pushed"
@@ -267,11 +274,11 @@ impl Grips {
     fn lift(&self, span: &Range<usize>) -> Option<Lift> {
         let height = |i: usize| 0.5 * (self.y[0][i] + self.y[1][i]);
         let start = height(span.start);
-        let first = span.clone().map(height).find(|h| (h - start).abs() > TRAVEL_M)?;
+        let first = span.clone().map(height).find(|h| (h - start).abs() > self.travel_m)?;
         let downwards = first < start;
         let rise = |i: usize| if downwards { start - height(i) } else { height(i) - start };
         let top = span.clone().map(rise).fold(0.0, f64::max);
-        let stands: Vec<usize> = span.clone().take_while(|i| rise(*i).abs() < STANDS_M).collect();
+        let stands: Vec<usize> = span.clone().take_while(|i| rise(*i).abs() < STANDING * self.travel_m).collect();
         let lifted: Vec<usize> = span.clone().filter(|i| rise(*i) > LIFTED * top).collect();
         let mean = |rows: &[usize], f: &[f64]| rows.iter().map(|i| f[*i]).sum::<f64>() / rows.len().max(1) as f64;
         let gained_n = [0, 1].map(|k| mean(&lifted, &self.fy[k]) - mean(&stands, &self.fy[k]));

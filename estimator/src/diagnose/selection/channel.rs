@@ -43,9 +43,8 @@ impl Channel {
 
     /// Selects among the candidates that differ from zero, and removes what the held-out rows do not confirm.
     pub fn fit(mut self) -> Result<ChannelFit, EstimateError> {
-        let seen = |c: &Candidate| {
-            c.regressors.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
-        };
+        let seen =
+            |c: &Candidate| c.regressors.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0));
         self.candidates.retain(seen);
         if self.baseline.is_empty() {
             // A model that predicts nothing.

@@ -226,7 +226,12 @@ pub(crate) fn parameters(study: &ChannelFit, k: usize) -> Vec<CauseParameter> {
             match own.id {
                 // The answer states the stiffness, while the estimate is a compliance.
                 _ if own.channel.is_some() => of_channel(own, (name, unit), value, error),
-                pad_compliance::ID => parameter("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
+                pad_compliance::ID => parameter(
+                    "k",
+                    1.0 / value.max(f64::MIN_POSITIVE),
+                    error / (value * value).max(f64::MIN_POSITIVE),
+                    "N/m",
+                ),
                 _ => parameter(name, value, error, unit),
             }
         })
@@ -259,7 +264,7 @@ pub(crate) fn of_hardening_spring(track: &Track, study: &ChannelFit, k: usize) -
     let slopes: Vec<[f64; 4]> = (0..4)
         .map(|j| {
             let error = solved.std_error(first + j, study.system.rows);
-            let step = 1e-4 * values[j].abs().max(error).max(1e-12);
+            let step = 1e-4 * values[j].abs().max(error).max(f64::MIN_POSITIVE);
             let mut moved = [values[0], values[1], values[2], values[3]];
             moved[j] += step;
             let after = about_its_rest(&moved, track);

@@ -15,8 +15,8 @@ use crate::diagnose::findings::Findings;
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::{axis_sign, backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
-use crate::diagnose::model_error::twin::Twin;
+use crate::diagnose::hypotheses::{backlash, force_gain, friction_asymmetry, hysteresis, length_scale};
+use crate::diagnose::model_error::twin::{Twin, is_upright};
 use crate::diagnose::recording::time_delay::{apart, rest_s, skew};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::rms;
@@ -61,8 +61,7 @@ pub fn explain(
     evidence.delay.rest_s = rest_s(study, &picks);
     let atlas = if evidence.atlas { atlas::atlas(track, study) } else { Atlas::default() };
     // The force of a replay is written in the axes of the recording.
-    let is_upright = evidence.causes.iter().all(|c| c.id != axis_sign::ID);
-    let twin = (evidence.twins && is_upright).then(|| Twin::of(track, study)).flatten().map(Box::new);
+    let twin = (evidence.twins && is_upright(&evidence.causes)).then(|| Twin::of(track, study)).flatten().map(Box::new);
     let mut draft = draft(&parts, evidence);
     draft.findings = Findings {
         twin,

@@ -15,7 +15,7 @@ use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{CERTAIN, HAND_REST_M_S, PAUSE_S};
+use crate::diagnose::data::limits::{CERTAIN, HAND_REST_HZ, PAUSE_S};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::mean_and_error;
@@ -32,10 +32,11 @@ use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain;
 use crate::diagnose::validation::on_other_recordings;
 use estimation::identify::limits::LEAST_FREE_S;
-use estimation::segment::slid::{LIFTED_M, LIFTED_S};
+use estimation::segment::slid::{LIFTED, LIFTED_S};
 use estimation::segment::threshold::{Levels, percentile};
 use foundation::estimate::EstimateError;
 use foundation::signal::task::{TaskSignals, smooth, task_signals};
+use foundation::words::amount;
 use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, Law as _, LoadFriction};
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
@@ -173,8 +174,10 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
         return Err(EstimateError::Other(format!("{} touches nothing: there is nothing to diagnose", recording.name)));
     }
     let ground_m = percentile(&mut heights, 0.05);
-    let lifted = (0..n).filter(|i| any(*i) && height(*i) > ground_m + LIFTED_M).count();
-    let mut bad: Vec<bool> = (0..n).map(|i| !any(i) || height(i) > ground_m + LIFTED_M).collect();
+    let object_m = signals.object_m();
+    let above_m = ground_m + LIFTED * object_m;
+    let lifted = (0..n).filter(|i| any(*i) && height(*i) > above_m).count();
+    let mut bad: Vec<bool> = (0..n).map(|i| !any(i) || height(i) > above_m).collect();
     widen(&mut bad, time);
     let of_touching = |pick: &dyn Fn(usize, usize) -> f64, mean: bool| -> Vec<f64> {
         let at = |i: usize| {
@@ -193,7 +196,7 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
     let lift_n = smooth(time, &net).value.iter().map(|f| f - bias_y).collect();
     let step_s = mean_step_s(time);
     let calm = smooth(time, &rate).value;
-    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > HAND_REST_M_S).count() as f64 * step_s;
+    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > HAND_REST_HZ * object_m).count() as f64 * step_s;
     let channel = |name: &str, unit: &str, values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
     let along = Recording {
         name: recording.name.clone(),
@@ -292,8 +295,8 @@ fn constants(found: &mut Named, read: &[Slid], weight_n: Option<f64>) {
             cause.parameters.push(parameter("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
         }
         cause.evidence = format!(
-            "the sliding block is drawn to one side by {:.3} N, and empty fingers feel none of it",
-            tilt_n.abs()
+            "the sliding block is drawn to one side by {}, and empty fingers feel none of it",
+            amount(tilt_n.abs(), "N")
         );
         (
             &[friction_asymmetry::ID],
@@ -334,7 +337,7 @@ fn let_go(found: &mut Named, track: &Track) {
     let at = |share: f64| track.quantile(share, |r| r.motion.position);
     // Rows of empty fingers, before and after, with a row's noise each.
     let rows = 2.0 * FREE_S / track.period_s;
-    let lambda = rows * (size / track.force_noise.max(1e-9)).powi(2);
+    let lambda = rows * (size / track.force_noise.max(f64::MIN_POSITIVE)).powi(2);
     next.expected_power = proposal::SURE_HUNG * proposal::power(lambda);
     next.experiment = Some(Experiment {
         id: "slide-let-go".to_owned(),

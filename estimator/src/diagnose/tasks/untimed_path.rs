@@ -226,7 +226,7 @@ fn along(rows: &[Row], units: &Units) -> Result<AlongPath, EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let (low, high) =
         rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
-    let range = (high - low).max(1e-12);
+    let range = (high - low).max(f64::MIN_POSITIVE);
     let mut base = vec![of(&|r| r.direction)];
     if rows.iter().any(|r| r.direction != rows[0].direction) {
         base.push(vec![1.0; rows.len()]);

@@ -131,7 +131,7 @@ impl Kept {
         }
         let apart = |c: &Candidate| -> f64 {
             let pairs = c.searched.iter().zip(&self.searched);
-            pairs.map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).abs()).fold(0.0, f64::max)
+            pairs.map(|(a, b)| ((a.value - b.value) / b.value.abs().max(f64::MIN_POSITIVE)).abs()).fold(0.0, f64::max)
         };
         let same = |c: &&Candidate| {
             let names = |c: &Candidate| c.linear.iter().map(|l| l.0).collect::<Vec<_>>();

@@ -1,6 +1,6 @@
 //! False alarms of this site: how often a diagnosis names a cause in replays that have none.
 
-use crate::diagnose::contract::{NamedInTwins, Twins};
+use crate::diagnose::contract::{Baseline, NamedInTwins, Twins};
 use crate::diagnose::diagnose;
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::axis_sign;
@@ -35,7 +35,9 @@ pub fn count(recordings: &[Recording], options: &Options, found: &Findings, runs
         })
         .collect::<Result<_, _>>()?;
     let remains: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).filter(|id| !twin.lacks(id)).collect();
-    Ok(counted(&answers, &remains))
+    let mut twins = counted(&answers, &remains);
+    twins.heldout_rms_n = residual(&answers, &found.baseline);
+    Ok(twins)
 }
 
 /// `remains`: causes of the recordings that are in the replays, too.
@@ -56,16 +58,22 @@ fn counted(answers: &[Findings], remains: &[&str]) -> Twins {
     }
     by_cause.sort_by(|a, b| b.runs.cmp(&a.runs).then_with(|| a.id.cmp(&b.id)));
     let named = names.iter().filter(|own| !own.is_empty()).count();
-    let mut residuals: Vec<f64> = answers.iter().map(|answer| answer.baseline.heldout_rms_n).collect();
-    residuals.sort_by(f64::total_cmp);
     Twins {
         runs: answers.len(),
         named,
         interval: interval(named, answers.len()),
         by_cause,
-        heldout_rms_n: residuals.get(residuals.len() / 2).copied().unwrap_or(0.0),
+        heldout_rms_n: 0.0,
         heldout_rms_nm: None,
     }
+}
+
+/// Median residual of the base model in the replays whose answer is about the same channel.
+fn residual(answers: &[Findings], measured: &Baseline) -> f64 {
+    let same = answers.iter().map(|a| &a.baseline).filter(|b| (&b.of, &b.unit) == (&measured.of, &measured.unit));
+    let mut residuals: Vec<f64> = same.map(|b| b.heldout_rms_n).collect();
+    residuals.sort_by(f64::total_cmp);
+    residuals.get(residuals.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// 95 % interval of a share (Clopper & Pearson 1934).
@@ -84,7 +92,7 @@ fn no_replays(found: &Findings) -> EstimateError {
             "--twin needs a recording with true axes, and this one has a fault: {}; correct it in the sidecar and repeat",
             cause.evidence
         ),
-        None => "--twin replays cranks and driven mechanisms; of other tasks, and of motions without a force, there are no replays yet".to_owned(),
+        None => "--twin replays cranks, driven mechanisms, carried blocks and needles; of other tasks, and of motions without a force, there are no replays yet".to_owned(),
     })
 }
 

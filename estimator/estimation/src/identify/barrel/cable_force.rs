@@ -27,9 +27,6 @@ const LEAST_PULL: f64 = 0.03;
 /// Relative error of the fingers' acceleration as that of the barrel.
 /// Choice: no case of the ablation reads it.
 const ACCELERATION_SHARE: f64 = 0.05;
-/// Least noise of a force, N.
-/// Choice: no case of the ablation reads it.
-const LEAST_NOISE_N: f64 = 1e-4;
 /// Bend in standard errors above zero from which the pull turns, so that the anchor shows.
 /// Choice: no case of the ablation reads it.
 const TURNS: f64 = 6.0;
@@ -75,7 +72,7 @@ impl Rows {
     /// Weight of every component: pads give while the force changes, so that the barrel's acceleration is not quite the fingers'.
     fn weights(&self) -> Vec<f64> {
         let mean_kg = self.force_n.iter().map(|f| f.y).sum::<f64>() / (self.gravity * self.force_n.len() as f64);
-        let missed = |a: &Vec2| ACCELERATION_SHARE * mean_kg * a.norm() / self.noise_n.max(LEAST_NOISE_N);
+        let missed = |a: &Vec2| ACCELERATION_SHARE * mean_kg * a.norm() / self.noise_n.max(f64::MIN_POSITIVE);
         let weight = |a: &Vec2| 1.0 / (1.0 + missed(a).powi(2));
         self.acceleration.iter().flat_map(|a| [weight(a); 2]).collect()
     }

@@ -14,12 +14,12 @@ use nalgebra::DMatrix;
 /// turns in the grip.
 /// Choice: no case of the ablation reads it.
 const GRIP_TURN_SHARE: f64 = 0.25;
-/// Uncertainty of that shift, m.
+/// Uncertainty of that shift, as a share of the barrel's size.
 /// Choice: no case of the ablation reads it.
-const SWINGS_M: f64 = 4e-5;
-/// Uncertainty of the shift while the pull grows, m.
+const SWINGS: f64 = 0.0016;
+/// The same while the pull grows.
 /// Choice: no case of the ablation reads it.
-const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
+const SWINGS_AS_PULLED: f64 = 5.6e-4;
 /// Parameters that are identifiable only if the pull turns.
 const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
 
@@ -94,7 +94,7 @@ impl Seen<'_> {
         let (u, far) = (cable.away(), 1.0 / cable.bend_1_m);
         // Along the pull the distance is uncertain, across it the direction.
         let across = Vec2::new(-u.y, u.x);
-        let model_m = SWINGS_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m);
+        let model_m = (SWINGS * self.signals.task.object_m()).hypot(GRIP_TURN_SHARE * self.taken.turned_m);
         let anchor_error = |k: usize, c: &DMatrix<f64>| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
             let square = (by_angle * error_of(c, Column::Geometry as usize)).powi(2)
@@ -128,7 +128,9 @@ impl Seen<'_> {
     fn stiffness_by(&self, covariance: &DMatrix<f64>) -> Option<Value> {
         let stiffness = self.taken.pull.values.get(Column::Stiffness as usize)?;
         let stretch_m = self.strongest_n() / stiffness;
-        let model = stiffness * SWINGS_AS_PULLED_M.hypot(GRIP_TURN_SHARE * self.taken.turned_m) / stretch_m;
+        let model = stiffness
+            * (SWINGS_AS_PULLED * self.signals.task.object_m()).hypot(GRIP_TURN_SHARE * self.taken.turned_m)
+            / stretch_m;
         let own = error_of(covariance, Column::Stiffness as usize).hypot(model);
         self.of_cable(own, |p, _| Some(p.values[Column::Stiffness as usize]))
     }

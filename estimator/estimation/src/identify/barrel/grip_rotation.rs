@@ -12,9 +12,9 @@ use crate::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use haptics::Vec2;
 
-/// Largest distance of the grip from the barrel's middle, m: a larger estimate is no balance of a stiff barrel.
+/// Largest distance of the grip from the barrel's middle, as a share of its size: a larger estimate is no balance of a stiff barrel.
 /// Choice: no case of the ablation reads it.
-const FARTHEST_M: f64 = 5e-3;
+const FARTHEST: f64 = 0.2;
 
 /// The turning of one recording.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +43,7 @@ impl GripRotation {
         };
         let level = standing.iter().map(|i| apart(*i).y).sum::<f64>() / standing.len() as f64;
         let angle_rad: Vec<f64> =
-            (0..signals.time_s.len()).map(|i| (apart(i).y - level) / apart(i).x.max(1e-3)).collect();
+            (0..signals.time_s.len()).map(|i| (apart(i).y - level) / apart(i).x.max(f64::MIN_POSITIVE)).collect();
         let couple: Vec<f64> = hanging.iter().map(|&i| 0.5 * apart(i).perp(&force(i))).collect();
         let pull = |i: &usize| {
             let (sin, cos) = angle_rad[*i].sin_cos();
@@ -51,7 +51,8 @@ impl GripRotation {
         };
         let fit = least_squares(&[hanging.iter().map(pull).collect(), vec![1.0; hanging.len()]], &couple, None)?;
         let above_m = (fit.values[0], fit.std_errors[0]);
-        let seen = fit.identified[0] && above_m.0.abs() < FARTHEST_M && above_m.1 < FARTHEST_M;
+        let farthest_m = FARTHEST * signals.task.object_m();
+        let seen = fit.identified[0] && above_m.0.abs() < farthest_m && above_m.1 < farthest_m;
         Ok(if seen { Self { angle_rad, above_m } } else { Self::default() })
     }
 

@@ -2,7 +2,7 @@
 //! in which it was held.
 
 use crate::identify::limits::LEAST_FIT_ROWS;
-use crate::identify::pads::SOFTEST_N_M;
+use crate::identify::pads::SOFTEST;
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, by_hand, segment_signals_by};
 use foundation::estimate::EstimateError;
@@ -149,7 +149,9 @@ impl Signals {
             let low = samples.iter().map(height).fold(f64::INFINITY, f64::min);
             let high = samples.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
             let mut lift: Vec<f64> = samples.iter().map(|i| self.net_n[*i].y).collect();
-            let stretched = percentile(&mut lift, 0.5) / (2.0 * SOFTEST_N_M);
+            let mut grip: Vec<f64> = samples.iter().map(|i| self.grip_n[*i]).collect();
+            let grip_n = percentile(&mut grip, 0.5).max(f64::MIN_POSITIVE);
+            let stretched = 0.5 * SOFTEST * self.task.object_m() * percentile(&mut lift, 0.5) / grip_n;
             let clear = |i: &usize| self.position[*i].y > low + stretched.min(CLEAR_OF_FLOOR * (high - low));
             let first = samples.iter().position(&clear).unwrap_or(0);
             let end = samples.iter().rposition(clear).map_or(0, |k| k + 1);

@@ -9,9 +9,9 @@ use super::signals::Signals;
 use super::wall_stiffness::weight_n;
 use crate::identify::limits::CLEARLY_SIGNIFICANT;
 
-/// Least way of a slip, m: pads creep, and a floor is not quite even.
+/// Least way of a slip, as a share of the barrel's size: pads creep, and a floor is not quite even.
 /// Choice: no case of the ablation reads it.
-const CREEP_M: f64 = 4e-5;
+const CREEP: f64 = 0.0016;
 /// Share of the weight at which heights are compared.
 /// Choice: no case of the ablation reads it.
 const COMPARED_LOAD: f64 = 0.5;
@@ -28,7 +28,8 @@ pub fn slipped_m(signals: &Signals) -> Option<f64> {
         Some(height_m(signals, down, half_n) - height_m(signals, up, half_n))
     });
     let noise_m = CLEARLY_SIGNIFICANT * signals.resolution_m.hypot(signals.place_noise_m());
-    ways.max_by(|a, b| a.abs().total_cmp(&b.abs())).filter(|way| way.abs() > CREEP_M.max(noise_m))
+    ways.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .filter(|way| way.abs() > (CREEP * signals.task.object_m()).max(noise_m))
 }
 
 /// Height of the fingers' middle where the lift passes `lift_n` between sample `i − 1` and `i`, m.

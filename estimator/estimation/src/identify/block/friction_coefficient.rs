@@ -11,7 +11,7 @@
 
 use super::signals::{Blocks, MAIN, mean_and_spread, object};
 use crate::identify::limits::CONTACT_NOISES;
-use crate::identify::pads::SOFTEST_N_M;
+use crate::identify::pads::SOFTEST;
 use crate::regression::bootstrap::block_bootstrap;
 use crate::regression::linear::least_squares;
 use crate::segment::threshold::percentile;
@@ -30,9 +30,10 @@ const MISSING: f64 = 0.06;
 /// Least change of the pinch within a window, as a share of it.
 /// Choice: no case of the ablation reads it.
 const PINCH_CHANGES: f64 = 0.08;
-/// Least motion of the tips in a window beyond the give of the softest pads, m.
+/// Least motion of the tips in a window beyond the give of the softest pads, as a share of
+/// the object's size.
 /// Choice: no case of the ablation reads it.
-const SLIDES_M: f64 = 0.3e-3;
+const SLIDES: f64 = 0.015;
 /// Least ratio of a slip, as a share of the largest ratio that was certainly held.
 /// Choice: no case of the ablation reads it.
 const OF_THE_BOUND: f64 = 0.9;
@@ -252,8 +253,10 @@ fn slides(blocks: &Blocks<'_>, (from, to): (usize, usize), held: Held) -> bool {
     let (before, after) = (grip(from, middle), grip(middle, to));
     let pinch = (before - after).abs() / before.max(after);
     let way = (blocks.height[to - 1] - blocks.height[from]).abs();
-    let elastic = (blocks.lift[to - 1] - blocks.lift[from]).abs() / SOFTEST_N_M;
-    pinch > PINCH_CHANGES && change < KEEPS.min(OF_THE_PINCH * pinch) || way > SLIDES_M + elastic && change < KEEPS
+    let object_m = blocks.signals.object_m();
+    let elastic = SOFTEST * object_m * (blocks.lift[to - 1] - blocks.lift[from]).abs() / before.max(after);
+    pinch > PINCH_CHANGES && change < KEEPS.min(OF_THE_PINCH * pinch)
+        || way > SLIDES * object_m + elastic && change < KEEPS
 }
 
 /// By how much the ratio of both fingers' shear to their pinch may have changed from the first half of a window to the second, at most.

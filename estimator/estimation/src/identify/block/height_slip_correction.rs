@@ -3,7 +3,7 @@
 use super::placement_time::stands_from;
 use super::rests::Rest;
 use super::signals::{Blocks, MAIN, object};
-use super::slip_detection::{Heights, LEAST_M, Slip, Stretch, may_stand};
+use super::slip_detection::{Heights, LEAST, Slip, Stretch, may_stand};
 use crate::identify::limits::{CERTAIN, LEAST_LINE_ROWS};
 use crate::regression::linear::least_squares;
 use foundation::signal::task::half_width;
@@ -63,7 +63,8 @@ struct Rows {
 
 /// Slips at the ends of carries, one an end at most.
 pub(super) fn height_slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<HeightSlip> {
-    let rows = rows(blocks, rests);
+    let object_m = blocks.signals.object_m();
+    let rows = rows(blocks, rests, object_m);
     let half_s = half_window_s(blocks);
     let heights = Heights { time_s: &rows.time_s, height_m: &rows.height_m, half_s, rests: &rows.stretches };
     let n = rows.time_s.len();
@@ -83,7 +84,7 @@ pub(super) fn height_slips(blocks: &Blocks<'_>, rests: &[Rest]) -> Vec<HeightSli
         let own = fit.std_errors[model.len() - 1];
         let (way_m, open_m) = heights.way_m(&left, best, variance_m2);
         let score = n as f64 * (squares / after).ln();
-        if score < SURE_SLIP || best.way_m.abs() < LEAST_M.max(CERTAIN * own) {
+        if score < SURE_SLIP || best.way_m.abs() < (LEAST * object_m).max(CERTAIN * own) {
             break;
         }
         let (rest, slip) = (rows.numbers[best.slip.rest], best.slip);
@@ -114,7 +115,7 @@ fn model(rows: &Rows) -> Vec<Vec<f64>> {
     model
 }
 
-fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
+fn rows(blocks: &Blocks<'_>, rests: &[Rest], object_m: f64) -> Rows {
     let time_s = &blocks.signals.time_s;
     let half = half_width(time_s);
     let lift_rate = |i: usize| {
@@ -125,7 +126,7 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest]) -> Rows {
     for (number, rest) in rests.iter().enumerate() {
         let (from_s, samples) = standing(blocks, rest, number % 2 == 1);
         let picked: Vec<usize> = samples.into_iter().step_by(2 * half).collect();
-        if picked.len() < LEAST_LINE_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i])) {
+        if picked.len() < LEAST_LINE_ROWS || !may_stand(picked.iter().map(|i| blocks.height[*i]), object_m) {
             continue;
         }
         let first = rows.time_s.len();

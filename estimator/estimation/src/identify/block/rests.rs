@@ -2,9 +2,9 @@
 
 use super::signals::{Blocks, MAIN};
 
-/// Least height of a block above another one, m, by the grip's place.
+/// Least height of a block above another one, as a share of its size, by the grip's place.
 /// Choice: no case of the ablation reads it.
-const LEAST_STEP_M: f64 = 3e-3;
+const LEAST_STEP: f64 = 0.15;
 
 /// One end of a carry: where the block rested in the grip.
 pub struct Rest {
@@ -38,6 +38,7 @@ pub fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
         let carried = blocks.shown(MAIN, k + 1);
         carried.iter().map(|i| blocks.width[*i]).sum::<f64>() / carried.len().max(1) as f64
     };
+    let least_step_m = LEAST_STEP * blocks.signals.object_m();
     let widths: Vec<f64> = (0..count).map(width).collect();
     let picks: Vec<Option<Place>> = (0..count).map(|k| place(&rested(k)[0])).collect();
     let places: Vec<Option<Place>> = (0..count).map(|k| place(&rested(k)[1])).collect();
@@ -49,7 +50,7 @@ pub fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
             .filter(|j| *j != k)
             .filter_map(|j| now(j).map(|at| (at, j)))
             .filter(|(at, j)| (at.x_m - here.x_m).abs() < 0.5 * (widths[*j] + widths[k]))
-            .filter(|(at, _)| at.y_m < here.y_m - LEAST_STEP_M)
+            .filter(|(at, _)| at.y_m < here.y_m - least_step_m)
             .map(|(at, j)| (at.y_m, j))
             .collect();
         tower.sort_by(|a, b| a.0.total_cmp(&b.0));

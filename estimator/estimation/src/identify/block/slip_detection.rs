@@ -29,18 +29,19 @@ const UNSEEN: f64 = 0.3;
 /// Deviation of a slip's rows from an even slip, as a share of its way.
 /// Choice: no case of the ablation reads it.
 const SHAPE: f64 = 0.05;
-/// Least way of a slip, m. Turns of blocks in the grasp and their unevenness stay below it.
+/// Least way of a slip, as a share of the object's size. Turns of blocks in the grasp and their unevenness stay below it.
 /// Choice: no case of the ablation reads it.
-pub const LEAST_M: f64 = 3e-4;
+pub const LEAST: f64 = 0.015;
 
-/// Largest range of heights, m: with more the block does not stand in the grip, whatever the states say.
+/// Largest range of heights, as a share of the object's size: with more the block does not stand in the grip, whatever
+/// the states say.
 /// Choice: no case of the ablation reads it.
-const STANDS_M: f64 = 5e-3;
+const STANDS: f64 = 0.25;
 
-/// True if heights of the grip can be those over a standing block.
-pub fn may_stand(heights_m: impl Iterator<Item = f64>) -> bool {
+/// True if heights of the grip can be those over a standing block of this size.
+pub fn may_stand(heights_m: impl Iterator<Item = f64>, object_m: f64) -> bool {
     let (low, high) = heights_m.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    high - low < STANDS_M
+    high - low < STANDS * object_m
 }
 
 /// The ramp of one slip as the rows would show it.
@@ -311,6 +312,6 @@ mod tests {
 
     #[test]
     fn what_goes_away_with_the_fingers_does_not_stand() {
-        assert!(may_stand([0.1, 0.1012].into_iter()) && !may_stand([0.1, 0.13].into_iter()));
+        assert!(may_stand([0.1, 0.1012].into_iter(), 0.02) && !may_stand([0.1, 0.13].into_iter(), 0.02));
     }
 }

@@ -22,12 +22,14 @@ mod surface;
 mod swing;
 mod transmission;
 mod world;
+mod zero_step;
 
 pub use driven::contradicts_its_clock;
 
 use crate::constraint;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};
 use foundation::signal::chain::is_chain;
+use foundation::words::amount;
 pub use free::{Stated, stated};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -85,8 +87,12 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         let text = "some recordings move along a line and others about an axis; fit each mechanism by itself";
         return Err(EstimateError::Other(text.to_owned()));
     }
-    let pieces = all_pieces(&raws, &usable)?;
+    let each = pieces_of_each(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
+    let steps =
+        each.iter().zip(&usable).filter_map(|(own, (r, _))| stepped(own, &r.name, (raws[0].coordinate, &known)));
+    let steps: Vec<String> = steps.collect();
+    let pieces = each.concat();
     let mut result = if raws.iter().all(|r| r.force.is_some()) {
         driven::fit(&raws, &pieces, &known, recordings)?
     } else if raws.iter().all(|r| r.force.is_none()) {
@@ -95,14 +101,30 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         let text = "some recordings have a force column and others do not; fit the driven and the free ones apart";
         return Err(EstimateError::Other(text.to_owned()));
     };
+    result.warnings.extend(steps);
     result.constraints = constraints;
     result.parameters.extend(transmission::parameters(recordings));
     Ok(result)
 }
 
-fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Result<Vec<Piece>, EstimateError> {
-    let each = raws.iter().zip(of).map(|(raw, (recording, _))| signals::pieces(raw, &recording.name));
-    Ok(each.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+fn pieces_of_each(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Result<Vec<Vec<Piece>>, EstimateError> {
+    raws.iter().zip(of).map(|(raw, (recording, _))| signals::pieces(raw, &recording.name)).collect()
+}
+
+/// A sentence if the force of a recording is as after a change of the sensor's zero in its middle.
+fn stepped(pieces: &[Piece], name: &str, (coordinate, known): (Coordinate, &Known)) -> Option<String> {
+    let is_linear = coordinate == Coordinate::Linear;
+    let gravity: &[Term] = if is_linear { &[] } else { &[Term::GravitySine, Term::GravityCosine] };
+    let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].into_iter().chain(gravity.iter().copied());
+    let terms: Vec<Term> = all.filter(|term| known.value(*term).is_none()).collect();
+    let step =
+        pieces.iter().all(|p| p.force.is_some()).then(|| zero_step::zero_step(pieces, &terms, known)).flatten()?;
+    Some(format!(
+        "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor: see what `diagnose` says, or fit the parts before and after apart",
+        name,
+        amount(step.size, if is_linear { "N" } else { "N m" }),
+        step.time_s
+    ))
 }
 
 /// Motion that nothing drives: without its standstills, if enough motion remains.
@@ -196,7 +218,7 @@ pub fn swing(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Resul
     let each = recordings.iter().zip(paths);
     let raws = each.clone().map(|(r, path)| signals::raw(r, path.as_ref())).collect::<Result<Vec<Raw>, _>>()?;
     let usable: Vec<_> = each.map(|(r, path)| (r, path.as_ref())).collect();
-    let pieces = all_pieces(&raws, &usable)?;
+    let pieces = pieces_of_each(&raws, &usable)?.concat();
     let known = recordings.first().map(|r| Known::from_meta(&r.meta, raws[0].coordinate)).unwrap_or_default();
     Ok(Swing::of(&raws, &pieces, &known)?.map(|swing| swing.sentence()))
 }

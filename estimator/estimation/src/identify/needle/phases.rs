@@ -14,12 +14,12 @@ use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
-/// Least depth at which force over depth has a meaning, m.
+/// Least depth at which force over depth has a meaning, as a share of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
-const LEAST_DEPTH_M: f64 = 2e-4;
-/// Way back of a needle from which it is drawn out, m.
+const LEAST_DEPTH: f64 = 0.06;
+/// Way back of a needle from which it is drawn out, as a share of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
-const BACK_M: f64 = 0.3e-3;
+const BACK: f64 = 0.06;
 
 /// Phases of every push, in order of time.
 pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Recording) -> Vec<StrokePhase> {
@@ -30,11 +30,11 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
     let calm_m = smooth(&times(recording), &along.depth_m).value;
     let calm_n = smooth(&times(recording), &along.force_n).value;
     let mut found: Vec<StrokePhase> = Vec::new();
-    let mut add = |phase: Phase, samples: Range<usize>| {
+    let mut add = |phase: Phase, samples: Range<usize>, dent_m: f64| {
         if samples.is_empty() {
             return;
         }
-        let deep: Vec<usize> = samples.clone().filter(|&i| along.depth_m[i] - surface > LEAST_DEPTH_M).collect();
+        let deep: Vec<usize> = samples.clone().filter(|&i| along.depth_m[i] - surface > LEAST_DEPTH * dent_m).collect();
         let stiffness = deep.iter().map(|&i| (along.force_n[i] - quiet) / (along.depth_m[i] - surface)).sum::<f64>()
             / deep.len().max(1) as f64;
         found.push(StrokePhase {
@@ -49,19 +49,19 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         let inside = |i: &usize| calm_m[*i] > surface;
         let start = push.samples.start;
         let met = (start..push.samples.end).find(inside).unwrap_or(push.samples.end);
-        add(Phase::Free, start..met);
-        add(Phase::Insertion, met..push.samples.end);
+        add(Phase::Free, start..met, push.dent_m);
+        add(Phase::Insertion, met..push.samples.end, push.dent_m);
         let deepest = push.end.max(push.samples.end);
         let hold_end = along.holds[push.hold].end;
         // A hand at rest trembles about the deepest point: the needle counts as drawn out after it has come back by
         // more. This is the needle's own way: the pads yield when the friction of the hole reverses.
         let depth_m = |i: usize| calm_m[i] - along.give_m_n.0 * calm_n[i];
-        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK_M;
+        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK * push.dent_m;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);
         let pressing = if push.puncture.is_some() { Phase::Penetration } else { Phase::Insertion };
-        add(pressing, push.samples.end..turned);
+        add(pressing, push.samples.end..turned, push.dent_m);
         let out = (turned..hold_end).find(|i| !inside(i)).unwrap_or(hold_end);
-        add(Phase::Extraction, turned..out);
+        add(Phase::Extraction, turned..out, push.dent_m);
     }
     found
 }

@@ -16,9 +16,9 @@ pub const OBJECT: &str = "needle";
 /// The force that a single tool is held with outside the sheet, N upwards.
 pub const HELD: &str = "held_force_N";
 
-/// Error of a place by geometry and log, m: seats, resolution.
+/// Error of a place by geometry and log (seats, resolution), as a share of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
-const PLACE_ERROR_M: f64 = 1e-5;
+const PLACE_ERROR: f64 = 0.003;
 
 /// Least number of points to which samples are averaged.
 /// Choice: halved or doubled, none of 15 answers changes.
@@ -90,7 +90,8 @@ impl Sheet {
 
     /// Along the world's axis that the needle moves along, else along the needle.
     pub(super) fn surface(&self, along: &Along, first: &Push) -> Parameter {
-        let own = self.loading.around.std_errors[self.loading.surface_at()].hypot(PLACE_ERROR_M);
+        let place_error_m = PLACE_ERROR * first.dent_m;
+        let own = self.loading.around.std_errors[self.loading.surface_at()].hypot(place_error_m);
         let error = self.error(own, |l| l.surface_m);
         let (x, y) = (along.direction.x, along.direction.y);
         let point = if along.two_fingered { "the middle of the fingertips" } else { "the tool" };
@@ -106,7 +107,7 @@ impl Sheet {
             (self.loading.surface_m, "the way along the needle")
         };
         let how = format!("{axis} of {point} where the force begins to rise");
-        let resampled = self.resampled(self.loading.surface_at(), PLACE_ERROR_M, |l| l.surface_m);
+        let resampled = self.resampled(self.loading.surface_at(), place_error_m, |l| l.surface_m);
         Parameter::identified(OBJECT, "surface_position_m", value, error, self.samples, &how).with_bootstrap(resampled)
     }
 

@@ -8,15 +8,12 @@ use std::ops::Range;
 /// Least reversal of the motion, as a share of its whole range.
 /// Choice: halved or doubled, none of 15 answers changes.
 const STROKE_TURN_SHARE: f64 = 0.05;
-/// Least reversal of the motion, m.
+/// Largest distance of two places of the same hole, as a share of the dent there.
 /// Choice: halved or doubled, none of 15 answers changes.
-const TURN_M: f64 = 2e-4;
-/// Largest distance of two places of the same hole, m.
-/// Choice: halved or doubled, none of 15 answers changes.
-const SAME_PLACE_M: f64 = 1e-3;
-/// Distance beyond an earlier dent from which the sheet is untouched again, m.
+const SAME_PLACE: f64 = 0.3;
+/// Distance beyond an earlier dent from which the sheet is untouched again, as a share of the present one.
 /// Choice: halved, 1 of 15 answers change; doubled, 1 of 15 answers change.
-pub const BEYOND_DENT_M: f64 = 1e-4;
+const BEYOND_DENT: f64 = 0.03;
 /// Share of its peak below which the force of a needle that is through falls.
 /// Choice: halved, 0 of 15 answers change; doubled, 9 of 9 answers change (9 to wrong).
 const FALLEN: f64 = 0.6;
@@ -35,8 +32,12 @@ pub struct Push {
     pub hold: usize,
     /// Samples from the turning point outside up to the puncture or the deepest point.
     pub samples: Range<usize>,
+    /// Depth of the earlier pushes at the same place, m; minus infinity for the first one.
+    pub dented_to_m: f64,
     /// Depth from which the sheet is untouched, m: everything for the first push at a place.
     pub untouched_from_m: f64,
+    /// Depth of the dent: from the first touch to the puncture or to the largest force, m.
+    pub dent_m: f64,
     /// The last sample before the force falls, when the needle goes through.
     pub puncture: Option<usize>,
     /// The first sample after it has.
@@ -54,7 +55,7 @@ struct Place {
 /// All pushes, first to last; pushes into a hole that is there already are left out.
 pub fn pushes(along: &Along) -> Vec<Push> {
     let (low, high) = extremes(&along.depth_m, &along.holds);
-    let turn_m = (STROKE_TURN_SHARE * (high - low)).max(TURN_M);
+    let turn_m = STROKE_TURN_SHARE * (high - low);
     let outside_n = quiet_force(along);
     let strongest_n =
         along.holds.iter().flat_map(Clone::clone).map(|i| along.force_n[i] - outside_n).fold(0.0, f64::max);
@@ -70,15 +71,30 @@ pub fn pushes(along: &Along) -> Vec<Push> {
                 continue;
             }
             let side_m = along.side_m[peak];
-            let known = places.iter().position(|p| (p.side_m - side_m).abs() < SAME_PLACE_M);
+            let Some(touched) = touched(along, &stroke, &force, least_n) else { continue };
+            let (puncture, fallen) = puncture(along, &stroke, &force, (least_n, touched)).unzip();
+            let end = puncture.unwrap_or(peak) + 1;
+            let dent_m = along.depth_m[end - 1] - along.depth_m[touched];
+            // A stroke in a hole makes no dent of its own.
+            let deepest_m = found.iter().map(|p: &Push| p.dent_m).fold(dent_m, f64::max);
+            let known = places.iter().position(|p| (p.side_m - side_m).abs() < SAME_PLACE * deepest_m);
             if known.is_some_and(|k| places[k].punctured) {
                 continue;
             }
-            let (puncture, fallen) = puncture(along, &stroke, &force, least_n).unzip();
-            let end = puncture.unwrap_or(peak) + 1;
-            let start = held_from(along, &stroke, &force, least_n);
-            let untouched_from_m = known.map_or(f64::NEG_INFINITY, |k| places[k].deepest_m + BEYOND_DENT_M);
-            found.push(Push { hold, samples: start..end, untouched_from_m, puncture, fallen, end: stroke.end });
+            let start = held_from(along, &stroke, &force, touched);
+            let dented_to_m = known.map_or(f64::NEG_INFINITY, |k| places[k].deepest_m);
+            let untouched_from_m = dented_to_m + BEYOND_DENT * deepest_m;
+            let samples = start..end;
+            found.push(Push {
+                hold,
+                samples,
+                dented_to_m,
+                untouched_from_m,
+                dent_m,
+                puncture,
+                fallen,
+                end: stroke.end,
+            });
             let deepest_m = along.depth_m[stroke.start..stroke.end].iter().fold(f64::MIN, |a, b| a.max(*b));
             match known {
                 Some(k) => {
@@ -145,10 +161,10 @@ fn touched(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, l
 
 /// The first sample of a stroke from which the needle is held as on its way to the sheet: a tool that is taken up bears
 /// another load before.
-fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> usize {
-    let Some(touched) = touched(along, stroke, force, least_n).filter(|_| !along.two_fingered) else {
+fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, touched: usize) -> usize {
+    if along.two_fingered {
         return stroke.start;
-    };
+    }
     let mut near: Vec<f64> = (touched - (touched - stroke.start) / LAST_PART..touched).map(force).collect();
     near.sort_by(f64::total_cmp);
     let Some(level) = near.get(near.len() / 2).copied() else { return stroke.start };
@@ -157,15 +173,14 @@ fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64,
     before.rev().find(other).map_or(stroke.start, |i| i + 1)
 }
 
-/// The last sample before the force falls although the needle moves on, and the first one after. `least_n`: a smaller
-/// force is no push.
+/// The last sample before the force falls although the needle moves on, and the first one after. A force less than
+/// `least_n` is no push.
 fn puncture(
     along: &Along,
     stroke: &Range<usize>,
     force: &dyn Fn(usize) -> f64,
-    least_n: f64,
+    (least_n, touched): (f64, usize),
 ) -> Option<(usize, usize)> {
-    let touched = touched(along, stroke, force, least_n)?;
     let surface_m = along.depth_m[touched];
     let mut peak = touched;
     for i in touched..stroke.end {

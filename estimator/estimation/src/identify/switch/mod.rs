@@ -20,6 +20,7 @@ use foundation::estimate::{EstimateError, Fit, Parameter};
 use haptics::recording::Recording;
 use nalgebra::DMatrix;
 use signals::Signals;
+pub use signals::longest_push_m;
 use throw_curve::{Stop, Throw};
 
 /// The object's name in the results.
@@ -37,12 +38,12 @@ const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
 /// Derived: the middle of the 95 % range of 1/share, 1.02 … 2.41, and its half width over 1.96, for shares as in
 /// `PAD_SHARE`.
 pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
-/// Uncertainty of the place of a touch on the knob's round side, m.
+/// Uncertainty of the place of a touch on the knob's round side, as a share of the longest push.
 /// Choice: halved or doubled, none of 21 answers changes.
-const TOUCHED_M: f64 = 3e-5;
-/// Uncertainty of the resting place of a knob held by friction, m.
+const TOUCHED: f64 = 0.004;
+/// Uncertainty of the resting place of a knob held by friction, as a share of the longest push.
 /// Choice: halved or doubled, none of 21 answers changes.
-const RESTING_M: f64 = 5e-5;
+const RESTING: f64 = 0.006;
 /// Share of the least force of a touch, over the rise, by which a finger moves the knob before the touch is seen.
 /// Choice: halved or doubled, none of 21 answers changes.
 const UNSEEN_TOUCH: f64 = 0.15;
@@ -66,6 +67,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
         others: [of(&softer)?, of(&straighter)?],
         give_m_n,
         zero_error_n: signals.zero_error_n,
+        touched_m: TOUCHED * signals.push_m,
     };
     Ok(captured.report(recording))
 }
@@ -97,6 +99,8 @@ struct Captured {
     /// Give of pad and stop together with its error, m/N.
     give_m_n: Option<(f64, f64)>,
     zero_error_n: f64,
+    /// Uncertainty of the place of a touch, m.
+    touched_m: f64,
 }
 
 impl Curves {
@@ -110,7 +114,9 @@ impl Curves {
             reading: *reading,
             top_m: signals.middle_m,
             ways,
-            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(TOUCH_STEP_SHARE * signals.step_m),
+            resting_m: (RESTING * signals.push_m)
+                .hypot(UNSEEN_TOUCH * signals.touch_n / rise)
+                .hypot(TOUCH_STEP_SHARE * signals.step_m),
             stops: [throw_curve::stop(&seen[0])?, throw_curve::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
             width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),

@@ -1,7 +1,7 @@
 //! The captured curves as parameters. Forces are those needed along the motion, the knob's own weight in them; places
 //! are the knob's middle in the world. Names of parameters of the way back (to the left) begin with `return_`.
 
-use super::{Captured, Curves, OBJECT, PADS_IN_GIVE, TOUCHED_M};
+use super::{Captured, Curves, OBJECT, PADS_IN_GIVE};
 use foundation::estimate::{Fit, Parameter};
 use haptics::recording::Recording;
 
@@ -45,7 +45,7 @@ impl Captured {
         };
         vec![
             named("peak_force_N", 0, self.zero_error_n.hypot(unmodelled_n[0]), &peak),
-            named("snap_position_m", 3, TOUCHED_M, &|c| c.snap_m(side)),
+            named("snap_position_m", 3, self.touched_m, &|c| c.snap_m(side)),
             named("rise_N_m", 1, 0.0, &|c| c.slope_n_m(side, false)),
             named("fall_N_m", 2, fall, &|c| c.slope_n_m(side, true)),
         ]
@@ -55,11 +55,11 @@ impl Captured {
         let why = "the knob was not pressed against this stop; push on for a moment when it has arrived";
         let how = "where the fingertip is without force, out of its place over force on the stop";
         let end = |side: usize, name: &str| {
-            let found = self.parameter(name, self.with_errors(TOUCHED_M, |c| c.end_m(side)), how, why);
+            let found = self.parameter(name, self.with_errors(self.touched_m, |c| c.end_m(side)), how, why);
             let drawn = |c: &Curves| Some(c.stops[side].as_ref()?.end_resampled_m?.hypot(0.5 * c.resting_m));
-            self.with_bootstrap(found, TOUCHED_M, |c| c.end_m(side), drawn)
+            self.with_bootstrap(found, self.touched_m, |c| c.end_m(side), drawn)
         };
-        let travel = self.with_errors(TOUCHED_M, Curves::travel_m);
+        let travel = self.with_errors(self.touched_m, Curves::travel_m);
         let travel =
             self.parameter("travel_m", travel, "between the stops on both sides", "both stops must be reached");
         let drawn = |c: &Curves, side: usize| c.stops[side].as_ref()?.end_resampled_m;
@@ -76,7 +76,7 @@ impl Captured {
         let width_of = |c: &Curves| Some((c.width_m?, c.resting_m));
         let width = self.parameter(
             "knob_width_m",
-            self.with_errors(TOUCHED_M, width_of),
+            self.with_errors(self.touched_m, width_of),
             "between the fingers when one leaves the knob at rest and the other meets it",
             "no finger met the knob where the other one had left it; throw it there and back",
         );
@@ -85,9 +85,9 @@ impl Captured {
         vec![
             end(0, "right_end_position_m"),
             end(1, "left_end_position_m"),
-            self.with_bootstrap(travel, TOUCHED_M, Curves::travel_m, travel_drawn),
+            self.with_bootstrap(travel, self.touched_m, Curves::travel_m, travel_drawn),
             self.with_bootstrap(friction, friction_own, Curves::friction_n, |c| Some(c.friction_resampled_n()?.1)),
-            self.with_bootstrap(width, TOUCHED_M, width_of, width_drawn),
+            self.with_bootstrap(width, self.touched_m, width_of, width_drawn),
         ]
     }
 

@@ -5,7 +5,7 @@
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
 use super::assumptions::Assumptions;
-use crate::identify::limits::{CERTAIN, SETTLED_M, TOUCH_SHARE};
+use crate::identify::limits::{CERTAIN, SETTLED, TOUCH_SHARE};
 use crate::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::savitzky_golay;
@@ -67,8 +67,10 @@ pub struct Signals {
     pub height_m: f64,
     /// Middle of the seen range, m.
     pub middle_m: f64,
-    /// Travel of the hand in touch, m: about the knob's travel.
+    /// Travel of the hand in touch, m.
     pub range_m: f64,
+    /// Longest way of one finger in one touch, m: the same if the knob is thrown in one direction only.
+    pub push_m: f64,
     /// Force from which a touch is seen, N.
     pub touch_n: f64,
     /// Way from one sample to the next where the hand is fast, m: so late may a touch be seen.
@@ -135,6 +137,7 @@ impl Signals {
         let height_m = [left_height_m, right_height_m].iter().flatten().sum::<f64>()
             / [left_height_m, right_height_m].iter().flatten().count().max(1) as f64;
         let zero_error_n = left_zero_n.max(right_zero_n);
+        let push_m = fingers.iter().map(|f| longest_push_m(&f.x_m, &f.touches)).fold(0.0, f64::max);
         let touch_n = fingers[0].touch_n.max(fingers[1].touch_n);
         let step_m = percentile(&mut mean.windows(2).map(|w| (w[1] - w[0]).abs()).collect::<Vec<_>>(), FAST_SHARE);
         Ok(Self {
@@ -144,6 +147,7 @@ impl Signals {
             height_m,
             middle_m: 0.5 * (low + high),
             range_m: high - low,
+            push_m,
             touch_n,
             step_m,
         })
@@ -171,7 +175,7 @@ impl Signals {
         let mut seen = Seen { rate_noise: finger.rate_noise, ..Seen::default() };
         for (_, stroke) in self.strokes.iter().filter(|(d, _)| *d == direction) {
             let Some(push) = self.push(side, stroke) else { continue };
-            let settled_m = sample(push.start).at_m + SETTLED_M;
+            let settled_m = sample(push.start).at_m + SETTLED * self.push_m;
             seen.throws += 1;
             // Samples of a rate's window beyond the moment in which the knob leaves the finger are not the knob's.
             let in_touch = push.start..push.end.saturating_sub(finger.reach).max(push.start);
@@ -197,7 +201,7 @@ impl Signals {
             match (touches, start) {
                 (true, None) => start = Some(i),
                 (false, Some(first)) => {
-                    if direction * (finger.x_m[i] - finger.x_m[first]) > 2.0 * SETTLED_M {
+                    if direction * (finger.x_m[i] - finger.x_m[first]) > 2.0 * SETTLED * self.push_m {
                         return Some(first..i);
                     }
                     start = None;
@@ -278,6 +282,16 @@ impl Finger {
         });
         (Self { x_m, force, rates, reach, rate_noise, touches, touch_n: least_n }, zero_error_n, height_m)
     }
+}
+
+/// Longest way of a finger between the first and the last sample of a touch, m.
+pub fn longest_push_m(x_m: &[f64], touches: &[bool]) -> f64 {
+    let (mut longest_m, mut first_m) = (0.0_f64, None);
+    for (x_m, touches) in x_m.iter().zip(touches) {
+        first_m = touches.then(|| first_m.unwrap_or(*x_m));
+        longest_m = longest_m.max(first_m.map_or(0.0, |first_m: f64| (x_m - first_m).abs()));
+    }
+    longest_m
 }
 
 /// Samples at which a finger touches nothing: the closest lying quarter of all forces, and all within its noise.

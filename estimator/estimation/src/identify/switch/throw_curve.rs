@@ -10,12 +10,14 @@ use nalgebra::{DMatrix, DVector};
 /// Largest number of samples in the fit.
 /// Choice: halved or doubled, none of 21 answers changes.
 const MOST_THROW_ROWS: usize = 6000;
-/// Force by speed and mass of a knob on its way down that is not in the curve, N (one standard deviation).
+/// Force by speed and mass of a knob on its way down that is not in the curve, as a share of the peak (one standard
+/// deviation).
 /// Choice: halved or doubled, none of 7 answers changes.
-const FALLING_N: f64 = 0.025;
-/// Force by speed and mass of a slow knob up to the peak that is not in the curve, N (one standard deviation).
+const FALLING: f64 = 0.017;
+/// Force by speed and mass of a slow knob up to the peak that is not in the curve, as a share of the peak (one standard
+/// deviation).
 /// Choice: halved, 2 of 21 answers change; doubled, 1 of 21 answers change.
-const MOVING_N: f64 = 0.02;
+const MOVING: f64 = 0.013;
 
 /// Rise and fall. Regressors of `around`: force at the peak, rise, fall, place of the peak. If they can be told from
 /// the curve there follow the terms of the knob's own motion: damping, mass.
@@ -48,7 +50,8 @@ pub struct Stop {
 impl Throw {
     /// A curve whose own damping and mass are unknown.
     fn assumed_slow(self) -> Self {
-        Self { unmodelled_n: [MOVING_N, FALLING_N], ..self }
+        let peak_n = self.values[0].abs();
+        Self { unmodelled_n: [MOVING * peak_n, FALLING * peak_n], ..self }
     }
 
     /// Force at a place on the falling side, N.
@@ -76,7 +79,8 @@ pub fn throw(seen: &Seen) -> Result<Option<Throw>, EstimateError> {
     let still = throw_with(&rows, None)?;
     let Some(moving) = throw_with(&rows, Some(seen.rate_noise))? else { return Ok(still.map(Throw::assumed_slow)) };
     // At one speed all the time, or in few samples, the force of the motion cannot be told from the curve.
-    let told = still.as_ref().is_none_or(|s| moving.around.std_errors[0] < s.around.std_errors[0].hypot(MOVING_N));
+    let told =
+        still.as_ref().is_none_or(|s| moving.around.std_errors[0] < s.around.std_errors[0].hypot(MOVING * s.values[0]));
     Ok(if told { Some(moving) } else { still.map(Throw::assumed_slow) })
 }
 
@@ -145,14 +149,11 @@ pub fn stop(seen: &Seen) -> Result<Option<Stop>, EstimateError> {
 
 /// Peak, rise and fall for a given place (and, for a knob that is `moving`, damping and mass beside them), and the sum of squares.
 fn solve(rows: &[Sample], place: f64, moving: bool) -> Option<(DVector<f64>, f64)> {
-    /// Millimetres in a metre: all columns are then of one size.
-    /// Derived: 1 m / 1 mm.
-    const MILLI: f64 = 1e3;
     let count = if moving { 5 } else { 3 };
     let (mut normal, mut right, mut power) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count), 0.0);
     for s in rows {
-        let x = MILLI * (s.at_m - place);
-        let row = [1.0, x.min(0.0), x.max(0.0), MILLI * s.rate_m_s, s.acceleration];
+        let x = s.at_m - place;
+        let row = [1.0, x.min(0.0), x.max(0.0), s.rate_m_s, s.acceleration];
         for i in 0..count {
             for j in 0..count {
                 normal[(i, j)] += row[i] * row[j];
@@ -161,9 +162,9 @@ fn solve(rows: &[Sample], place: f64, moving: bool) -> Option<(DVector<f64>, f64
         }
         power += s.force_n * s.force_n;
     }
-    let mut values = normal.cholesky()?.solve(&right);
+    // The factors do not depend on the units of the columns.
+    let values = normal.cholesky()?.solve(&right);
     let cost = power - values.dot(&right);
-    values.iter_mut().zip([1.0, MILLI, MILLI, MILLI, 1.0]).for_each(|(v, scale)| *v *= scale);
     Some((values, cost))
 }
 

@@ -10,9 +10,9 @@ const FIRST_S: f64 = 0.068;
 /// Time on either side over which second differences are taken, s: a blow shows more, noise does not.
 /// Choice: halved, 1 of 6 answers change; doubled, 3 of 6 answers change.
 const BLOW_REACH_S: f64 = 0.020;
-/// Least change of the velocity by a blow, m/s.
+/// Least change of the velocity by a blow, as the time in which free fall makes it, s.
 /// Choice: halved or doubled, none of 6 answers changes.
-pub const BLOW_M_S: f64 = 0.15;
+pub const BLOW_S: f64 = 0.015;
 /// Number of samples left out before a blow.
 /// Choice: halved, 0 of 6 answers change; doubled, 1 of 6 answers change.
 const GUARD: usize = 1;
@@ -152,7 +152,7 @@ pub fn end(track: &Track) -> usize {
     let usual = median_vector(&begin().map(bend).collect::<Vec<_>>());
     let mut scatter: Vec<f64> = begin().map(|i| (bend(i) - usual).norm()).collect();
     scatter.sort_by(f64::total_cmp);
-    let least = (CERTAIN * scatter[scatter.len() / 2]).max(BLOW_M_S * track.step_s() * reach as f64);
+    let least = (CERTAIN * scatter[scatter.len() / 2]).max(usual.norm() * BLOW_S / (track.step_s() * reach as f64));
     let blow = (reach..points.len() - reach).find(|&i| (bend(i) - usual).norm() > least);
     blow.map_or(points.len(), |i| (i + 1).saturating_sub(GUARD))
 }

@@ -59,7 +59,7 @@ pub fn tossed(recordings: &[Recording]) -> Option<Tossed> {
         return None;
     }
     let half_width_m = first.meta.known.get("half_width_m").copied().filter(|h| h.is_finite() && *h > 0.0);
-    let slides = slide::slides(&tracks, half_width_m);
+    let slides = slide::slides(&tracks, half_width_m, gravity);
     Some(Tossed { tracks, fall, slides })
 }
 

@@ -8,18 +8,18 @@ use nalgebra::Vector3;
 /// Time on either side over which velocities are taken, s.
 /// Choice: halved, 5 of 6 answers change; doubled, 5 of 6 answers change (3 to right).
 const VELOCITY_REACH_S: f64 = 0.0135;
-/// Least speed of a slide, m/s: a slower body may stick or creep.
+/// Least speed of a slide, as the time in which free fall makes it, s: a slower body may stick or creep.
 /// Choice: halved, 0 of 6 answers change; doubled, 1 of 6 answers change.
-const SLOW_M_S: f64 = 0.05;
+const SLOW_S: f64 = 0.005;
 /// Largest angular velocity of a slide, rad/s: a faster body rolls or spins.
 /// Choice: halved or doubled, none of 6 answers changes.
 const TURNING_RAD_S: f64 = 0.6;
-/// Largest speed of rising or falling in a flat slide, m/s.
+/// Largest speed of rising or falling in a flat slide, as such a time, s.
 /// Choice: halved or doubled, none of 6 answers changes.
-const RISING_M_S: f64 = 0.03;
-/// Largest range of heights in a slide, m.
+const RISING_S: f64 = 0.003;
+/// Largest range of heights in a slide, as the time in which a body falls through it, s.
 /// Choice: halved or doubled, none of 6 answers changes.
-const LEVEL_M: f64 = 2e-3;
+const LEVEL_S: f64 = 0.02;
 /// Limits of a flat slide by noise, in multiples of its effect.
 /// Choice: halved or doubled, none of 6 answers changes.
 const SLIDE_NOISES: f64 = 3.5;
@@ -33,9 +33,9 @@ const SPINNING: f64 = 0.4;
 /// Distance of the contact from a body's axis, in half widths of a cube.
 /// Derived: the middle of that of an even pressure (0.8) and four corners (1.4).
 const FOOT: f64 = 1.1;
-/// Distance of the contact from the axis of a body of unknown width, m.
+/// Distance of the contact from the axis of a body of unknown width, as the time in which a body falls through it, s.
 /// Derived: 1.1 half widths of a body about a decimetre wide, as hands throw them.
-const FOOT_M: f64 = 0.055;
+const FOOT_S: f64 = 0.106;
 /// Relative difference, between an even pressure and four corners, of the friction that does not go against the speed.
 /// Choice: halved or doubled, none of 6 answers changes.
 const FOOT_ERROR: f64 = 0.6;
@@ -78,12 +78,15 @@ pub fn unknown_of_foot(slides: &[Slide]) -> f64 {
 /// Limits of a flat slide.
 struct Flat {
     foot_m: f64,
+    slow_m_s: f64,
+    level_m: f64,
     rising_m_s: f64,
     turning_rad_s: f64,
 }
 
 /// The slides of all tracks. `half_width_m`: of a cube, where it is known.
-pub fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> {
+pub fn slides(tracks: &[Track], half_width_m: Option<f64>, gravity_m_s2: f64) -> Vec<Slide> {
+    let falls_m = |time_s: f64| 0.5 * gravity_m_s2 * time_s.powi(2);
     let noise = |which: fn((f64, f64)) -> f64| {
         let mut all: Vec<f64> = tracks.iter().map(|t| which(t.slope_noise(t.steps(VELOCITY_REACH_S)))).collect();
         all.sort_by(f64::total_cmp);
@@ -91,8 +94,10 @@ pub fn slides(tracks: &[Track], half_width_m: Option<f64>) -> Vec<Slide> {
     };
     let limit = |plain: f64, noise: f64| plain.max(SLIDE_NOISES * noise).min(LOOSER * plain);
     let flat = Flat {
-        foot_m: half_width_m.map_or(FOOT_M, |half| FOOT * half),
-        rising_m_s: limit(RISING_M_S, noise(|n| n.0)),
+        foot_m: half_width_m.map_or(falls_m(FOOT_S), |half| FOOT * half),
+        slow_m_s: gravity_m_s2 * SLOW_S,
+        level_m: falls_m(LEVEL_S),
+        rising_m_s: limit(gravity_m_s2 * RISING_S, noise(|n| n.0)),
         turning_rad_s: limit(TURNING_RAD_S, noise(|n| n.1)),
     };
     let all = tracks.iter().enumerate();
@@ -105,7 +110,7 @@ fn spinning(track: &Track, i: usize, flat: &Flat) -> Option<f64> {
     let (velocity, spin) = (track.velocity(i, reach), track.spin(i, reach));
     let speed = velocity.x.hypot(velocity.y);
     let spinning = flat.foot_m * spin.z.abs() / speed;
-    let is_flat = speed > SLOW_M_S
+    let is_flat = speed > flat.slow_m_s
         && velocity.z.abs() < flat.rising_m_s
         && spin.norm() < flat.turning_rad_s
         && spinning < SPINNING;
@@ -124,7 +129,7 @@ fn of_track(track: &Track, flat: &Flat) -> Vec<Slide> {
     let mut start = None;
     for i in 0..=n {
         let goes_on =
-            i < n && spins[i].is_some() && start.is_none_or(|s: usize| (height(i) - height(s)).abs() < LEVEL_M);
+            i < n && spins[i].is_some() && start.is_none_or(|s: usize| (height(i) - height(s)).abs() < flat.level_m);
         match (start, goes_on) {
             (None, true) => start = Some(i),
             (Some(first), false) => {

@@ -73,7 +73,7 @@ fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64])
     }
     let middle = places.iter().sum::<Vec2>() / places.len() as f64;
     let range_m = places.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
-    if range_m < 1e-3 {
+    if range_m <= 0.0 {
         return Vec::new();
     }
     let field = Field { middle, range_m };
@@ -156,7 +156,7 @@ impl Explains {
 /// it is taut.
 pub fn pull_n(cable: &Cable, place_m: Vec2, velocity_m_s: Vec2, axis: usize) -> f64 {
     let away = place_m - cable.anchor_m;
-    let length = away.norm().max(1e-9);
+    let length = away.norm().max(f64::MIN_POSITIVE);
     let damped = if length > cable.length_m { velocity_m_s.dot(&away) / length } else { 0.0 };
     let along = AddedConstraint::cable_n(cable.stiffness_n_m, cable.length_m, length) + cable.damping_n_s_m * damped;
     along * away[axis] / length

@@ -125,7 +125,7 @@ pub fn propose(open: &[Alternative], carry: &Carry<'_>, seen: &[Seen<'_>]) -> Op
                     let effect: Vec<f64> = weigh(effect).iter().map(|v| v * size).collect();
                     let mut beside: Vec<Vec<f64>> = columns(b, &rows, weight_n)?.into_iter().map(&weigh).collect();
                     beside.push(weigh(Clone::clone(&weighs)));
-                    least = least.min(unexplained(&effect, &beside) * slow * slow / variance.max(1e-24));
+                    least = least.min(unexplained(&effect, &beside) * slow * slow / variance.max(f64::MIN_POSITIVE));
                 }
             }
             let power = SURE_BY_MOTION * power(least);

@@ -6,7 +6,7 @@ use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::comparison::ChannelFit;
-use estimation::identify::block::slip_detection::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use estimation::identify::block::slip_detection::{Heights, LEAST, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 use std::iter::once;
 
@@ -40,7 +40,7 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
         let mut column = vec![0.0; rows.stand.len()];
         column[rests[slip.rest].rows.clone()].copy_from_slice(&shown);
         let cause = Candidate::one(fingertip_slip::ID, Kind::Plant, "dy", "m", column).at("t0", slip.start_s, "s");
-        found.push(cause.at("duration", slip.length_s, "s").within(slip.rest).at_least(LEAST_M));
+        found.push(cause.at("duration", slip.length_s, "s").within(slip.rest).at_least(LEAST * rows.object_m));
     }
 }
 

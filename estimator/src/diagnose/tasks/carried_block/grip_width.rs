@@ -3,7 +3,7 @@
 use super::signals::Seen;
 use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::{CauseParameter, parameter};
-use crate::diagnose::data::limits::{ASSUMED_ERROR, LEAST_ROWS_OF_A_FIT};
+use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::free_run::channel::Pads;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
@@ -19,6 +19,7 @@ use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
@@ -26,9 +27,6 @@ use haptics::world::World;
 /// Tried bends of the pads' law, from weak to strong, and tried ends of the foam.
 /// Choice: no case of the ablation reads it.
 const BENDS: Axis = Axis::cells(7);
-/// Compliance of a pad of usual size, m/N, for the test of excitation.
-/// Choice: no case of the ablation reads it.
-const USUAL_GIVE: f64 = 1.0 / 8000.0;
 
 /// The comparison with the data for its texts.
 pub struct Grasp {
@@ -183,12 +181,12 @@ impl Told for Grasp {
         match candidate.id {
             stiffness_hardening::ID => {
                 let first = self.first_give();
-                let k1 = 1.0 / first.max(1e-12);
+                let k1 = 1.0 / first.max(f64::MIN_POSITIVE);
                 let mut all = vec![parameter("k1", k1, 0.0, "N/m")];
                 match candidate.searched.first() {
                     Some(s) if s.name == "bend" => {
                         // To lowest order the regressor is bend · F³, so its coefficient is k3 give/(k1⁴ give).
-                        let k3 = |give: f64| give / first.max(1e-12) * s.value * k1.powi(3);
+                        let k3 = |give: f64| give / first.max(f64::MIN_POSITIVE) * s.value * k1.powi(3);
                         all.push(parameter("k3", k3(give.0), k3(give.1), "N/m³"));
                     }
                     Some(s) => all.push(parameter("end", s.value, 0.0, "N")),
@@ -210,13 +208,14 @@ impl Told for Grasp {
                     .enumerate()
                     .filter(|(_, (_, grip))| *grip > 0.0)
                     .map(|(k, (width, grip))| {
-                        let give = 2.0 * grip / value.max(1e-12);
+                        let give = 2.0 * grip / value.max(f64::MIN_POSITIVE);
                         format!("{} {:.1} %", object(k + 1), 100.0 * give / (width + give))
                     })
                     .collect();
                 format!(
-                    "the distance of the tips falls with the grip force, {value:.0} N/m each pad: plain means come out short of the \
+                    "the distance of the tips falls with the grip force, {} each pad: plain means come out short of the \
                      width at no force ({})",
+                    amount(value, "N/m"),
                     short.join(", ")
                 )
             }
@@ -228,18 +227,15 @@ impl Told for Grasp {
         }
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         match candidate.id {
-            pad_compliance::ID => Some((
-                USUAL_GIVE,
-                "the grip hardly varied while a block was held; squeeze softly and hard while it stands still",
-            )),
+            pad_compliance::ID => {
+                Some("the grip hardly varied while a block was held; squeeze softly and hard while it stands still")
+            }
             stiffness_hardening::ID => {
-                Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
+                Some("the grip varied too little to see a bend; squeeze from light to hard and back")
             }
-            length_scale::ID => {
-                Some((ASSUMED_ERROR, "the widths of the blocks are not known; state one in the sidecar"))
-            }
+            length_scale::ID => Some("the widths of the blocks are not known; state one in the sidecar"),
             _ => None,
         }
     }

@@ -30,6 +30,7 @@ use crate::diagnose::hypotheses::{
     added_constraint, fingertip_slip, force_bias, force_cross_axis, force_drift, force_gain, friction_change,
     gravity_tilt, length_scale, mass_change, pad_compliance,
 };
+use crate::diagnose::model_error::twin::{Twin, is_upright};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
@@ -79,7 +80,12 @@ pub fn blocks(
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
         beside.delay = DelayFindings::of_scan(late, Figures { end, ..figures });
     }
-    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
+    let is_replayed = options.twins && is_upright(faults);
+    let replayed = || Twin::of_channels([(&carry.compared.study, carry.airborne.rows.placed())]);
+    let twin = is_replayed.then(replayed).flatten().map(Box::new);
+    let mut draft = draft(&parts, Evidence { next: &asked, ..beside });
+    draft.findings.twin = twin;
+    Ok(draft.finish(put_back))
 }
 
 /// Adds a slip between pick-up and placement. `faulty`: sensor faults were found that have the same effect.

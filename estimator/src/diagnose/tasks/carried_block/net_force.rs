@@ -31,6 +31,7 @@ use estimation::identify::block::signals::object;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::world::{Cable, World};
 use std::collections::BTreeSet;
 
@@ -40,8 +41,6 @@ pub struct Carry<'a> {
     pub late: Option<Late>,
     /// Its floor is the noise of a sum of two fingers.
     pub compared: Compared,
-    /// Longest carry, s.
-    longest_s: f64,
     /// Standard errors of a cable's stiffness, anchor and length.
     cable_errors: Option<[f64; 4]>,
     /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
@@ -89,13 +88,12 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     let floor = white_noise(&carried);
     let of_carried = |c: &bool| if *c { SystemState::HoldAboveGround } else { SystemState::FreeMotion };
     let state = along.iter().map(of_carried).collect();
-    let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
     let late = late(&rows, &known);
     let compared = Compared { study, channel, unit: "N", floor, along, state, view };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     let airborne = Airborne::of(rows, world, known);
-    Ok(Carry { late, compared, longest_s, cable_errors, weighed, airborne })
+    Ok(Carry { late, compared, cable_errors, weighed, airborne })
 }
 
 /// Comparison without causes that may be misfit of a cable or wall: its law is a linear spring with a damper, but a real
@@ -139,7 +137,7 @@ fn view(rows: &Rows<'_>) -> View {
 /// Force needed to carry a weight along an axis, N, with its inertia (weight over gravity).
 fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
     let up = if axis == 1 { 1.0 } else { 0.0 };
-    let gravity = one.blocks.recording.meta.gravity().max(1e-9);
+    let gravity = one.blocks.recording.meta.gravity().max(f64::MIN_POSITIVE);
     weight_n * (up + one.acceleration[axis][row.i] / gravity)
 }
 
@@ -173,13 +171,6 @@ fn beside_swinging(channel: Channel, rows: &Rows<'_>) -> Result<ChannelFit, Esti
     let base = channel.baseline.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
     let swinging = without_remainders(Channel { baseline: base, ..channel })?;
     Ok(if has_mass(&swinging) { plain } else { swinging })
-}
-
-/// Length of the longest carry, s.
-fn longest_s(rows: &Rows<'_>) -> f64 {
-    let carries = rows.seen.iter().flat_map(|one| (1..=one.count).map(move |number| (one, one.carried(number))));
-    let lengths = carries.filter_map(|(one, rows)| Some(one.time_s(*rows.last()?) - one.time_s(*rows.first()?)));
-    lengths.fold(0.0, f64::max)
 }
 
 impl Carry<'_> {
@@ -246,7 +237,7 @@ impl Told for Carry<'_> {
                     .parameters
                     .iter()
                     .enumerate()
-                    .map(|(k, p)| format!("{} {:.1} g", object(k + 1), 1e3 * p.value))
+                    .map(|(k, p)| format!("{} {}", object(k + 1), amount(1e3 * p.value, "g")))
                     .collect();
                 format!(
                     "the force follows the acceleration of carried blocks more than the mass of their weight does (by {})",
@@ -273,18 +264,16 @@ impl Told for Carry<'_> {
         }
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
-        // One hundredth of a newton over the longest carry.
-        let slow = 0.01 / self.longest_s.max(1.0);
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         Some(match candidate.id {
-            inertia::ID => (0.02, "blocks were carried too evenly; carry them fast, with stops"),
-            mass_change::ID => (slow, "blocks were not carried for long; hold one still for some seconds"),
-            force_bias::ID => (0.01, "nothing was ever let go; start and end with a second of free motion"),
-            force_drift::ID => (slow, "the recording is too short, or nothing was let go at both ends"),
-            force_cross_axis::ID => (0.03, "the grip hardly varied; squeeze softly and hard while a block is carried"),
-            added_constraint::ID => (30.0, "blocks were hardly moved while they were carried"),
-            gravity_tilt::ID => (0.03, "no block was carried for long enough"),
-            viscous_friction::ID => (0.3, "blocks were carried too slowly"),
+            inertia::ID => "blocks were carried too evenly; carry them fast, with stops",
+            mass_change::ID => "blocks were not carried for long; hold one still for some seconds",
+            force_bias::ID => "nothing was ever let go; start and end with a second of free motion",
+            force_drift::ID => "the recording is too short, or nothing was let go at both ends",
+            force_cross_axis::ID => "the grip hardly varied; squeeze softly and hard while a block is carried",
+            added_constraint::ID => "blocks were hardly moved while they were carried",
+            gravity_tilt::ID => "no block was carried for long enough",
+            viscous_friction::ID => "blocks were carried too slowly",
             _ => return None,
         })
     }
@@ -354,7 +343,7 @@ fn left(rows: &Rows<'_>, carried: &[&Row], known: &[Option<f64>], by: isize) -> 
             continue;
         };
         let up = if axis == 1 { 1.0 } else { 0.0 };
-        let needed = up + acceleration / one.blocks.recording.meta.gravity().max(1e-9);
+        let needed = up + acceleration / one.blocks.recording.meta.gravity().max(f64::MIN_POSITIVE);
         let given = known[number - 1].map_or(0.0, |weight_n| weight_n * needed);
         for (k, column) in columns[..blocks].iter_mut().enumerate() {
             column.push(if k + 1 == number && known[k].is_none() { needed } else { 0.0 });

@@ -10,7 +10,8 @@ use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::fingertip_slip;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use estimation::identify::block::signals::object;
-use estimation::identify::block::slip_detection::LEAST_M;
+use estimation::identify::block::slip_detection::LEAST;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::world::World;
 
@@ -41,8 +42,9 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
         let error = (variance + a * a + b * b).sqrt().hypot(turns / 3.0_f64.sqrt());
         Some((after - before - expected, error, placed))
     });
+    let object_m = |s: &Stand| seen[s.recording].blocks.signals.object_m();
     let (way, error, stand) = pairs
-        .filter(|(way, error, _)| way.abs() > LEAST_M.max(CERTAIN * error))
+        .filter(|(way, error, stand)| way.abs() > (LEAST * object_m(stand)).max(CERTAIN * error))
         .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
     let share = 1.0 - (error / way).powi(2);
     Some(Cause {
@@ -62,10 +64,10 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             ..Gain::default()
         },
         evidence: format!(
-            "{} was put down {:.2} mm ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \
+            "{} was put down {} ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \
              it was carried",
             object(stand.number),
-            1e3 * way,
+            amount(way, "m"),
             (way / error).abs()
         ),
     })

@@ -1,7 +1,9 @@
 //! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::signals::Seen;
+use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::selection::layout::segments;
+use haptics::Vec2;
 
 /// Kind of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +63,20 @@ impl<'a> Rows<'a> {
         let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording;
         let stretch = segments(&time, period_s, other);
         Self { seen, all: rows, stretch }
+    }
+
+    /// Places of the rows in their recordings.
+    pub fn placed(&self) -> Vec<Placed> {
+        let axes = [Vec2::x(), Vec2::y()];
+        let placed = |row: &Row| Placed {
+            recording: row.recording,
+            time_s: row.time_s - self.seen[row.recording].time_s(0),
+            force: match row.place {
+                Place::Carried { axis, .. } => Force::Plane(axes[axis]),
+                Place::Free { finger, axis } => Force::Finger(finger, axes[axis]),
+            },
+        };
+        self.all.iter().map(placed).collect()
     }
 
     /// Time between independent rows, s.

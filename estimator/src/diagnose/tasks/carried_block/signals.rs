@@ -5,7 +5,7 @@
 pub(crate) mod tests;
 
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{HAND_REST_M_S, LEAST_PIECES, SIGNIFICANT};
+use crate::diagnose::data::limits::{HAND_REST_HZ, LEAST_PIECES, SIGNIFICANT};
 use estimation::identify::block::placement_time::{stands_from, usual_lift};
 use estimation::identify::block::signals::{Blocks, MAIN, object};
 use estimation::identify::limits::{FREE_ENDS_S, LEAST_FREE_S};
@@ -194,13 +194,14 @@ impl<'a> Seen<'a> {
     /// air.
     fn put_down(&self, rows: &[usize]) -> Option<(usize, usize)> {
         let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
-        let moved = rows.iter().rposition(|i| speed(*i) > HAND_REST_M_S)?;
+        let rest_m_s = HAND_REST_HZ * self.blocks.signals.object_m();
+        let moved = rows.iter().rposition(|i| speed(*i) > rest_m_s)?;
         let from = moved + 1;
         if from + 2 > rows.len() || from < LEAST_PIECES {
             return None;
         }
         let before = &rows[from.saturating_sub(2 * LEAST_PIECES)..from - 2];
-        let lowered = before.iter().any(|i| self.velocity[1][*i] < -HAND_REST_M_S);
+        let lowered = before.iter().any(|i| self.velocity[1][*i] < -rest_m_s);
         let mean = |rows: &[usize]| rows.iter().map(|i| self.blocks.lift[*i]).sum::<f64>() / rows.len() as f64;
         let (carried, now) = (mean(before), mean(&rows[from..]));
         let error = self.lift_noise_n * (1.0 / before.len() as f64 + 1.0 / (rows.len() - from) as f64).sqrt();

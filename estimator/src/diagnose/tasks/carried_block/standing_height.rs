@@ -19,11 +19,12 @@ use crate::diagnose::selection::normal_equations::{LEAST_BLOCK, MOST_BLOCKS};
 use crate::diagnose::selection::rules::Rules;
 use estimation::identify::block::rests::{Rest, rests};
 use estimation::identify::block::signals::object;
-use estimation::identify::block::slip_detection::{LEAST_M, may_stand};
+use estimation::identify::block::slip_detection::may_stand;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::half_width;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 use haptics::world::World;
 
@@ -123,7 +124,9 @@ fn add(
         (begins_s.unwrap_or(0.0), rest.samples.clone())
     };
     let picked = one.every(samples.into_iter());
-    if picked.len() < LEAST_PIECES || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
+    let object_m = one.blocks.signals.object_m();
+    rows.object_m = rows.object_m.max(object_m);
+    if picked.len() < LEAST_PIECES || !may_stand(picked.iter().map(|i| one.blocks.height[*i]), object_m) {
         return;
     }
     let half = half_width(&one.blocks.signals.time_s);
@@ -221,7 +224,7 @@ impl Told for Ground {
         }
         let at = found.value_of("t0");
         let Some(stand) = self.stand_at(at) else {
-            return format!("the fingers go on by {:.2} mm although the block stands", 1e3 * value);
+            return format!("the fingers go on by {} although the block stands", amount(value, "m"));
         };
         let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
         let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
@@ -232,21 +235,19 @@ impl Told for Ground {
         let wrong: Vec<String> = stand.below.iter().map(|b| object(*b)).collect();
         let wrong = if wrong.is_empty() { "what it was taken from".to_owned() } else { wrong.join(" and ") };
         format!(
-            "at {at:.2} s the fingers go on by {:.2} mm although {} stands and the load does not ask for it (shear was {ratio:.2} of the \
-             grip): heights from plain means there (of {wrong}) are {:.2} mm off",
-            1e3 * value,
+            "at {at:.2} s the fingers go on by {} although {} stands and the load does not ask for it (shear was {ratio:.2} of the \
+             grip): heights from plain means there (of {wrong}) are {} off",
+            amount(value, "m"),
             object(stand.number),
-            1e3 * mean_off
+            amount(mean_off, "m")
         )
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         match candidate.id {
-            fingertip_slip::ID => {
-                Some((LEAST_M, "blocks were not held on the ground for long enough to see the fingers move on"))
-            }
+            fingertip_slip::ID => Some("blocks were not held on the ground for long enough to see the fingers move on"),
             pad_compliance::ID => {
-                Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))
+                Some("the load hardly varied while a held block stood; press and lift while it stands")
             }
             _ => None,
         }

@@ -30,4 +30,6 @@ pub struct Rows {
     pub ratio: Vec<f64>,
     /// Half of the averaging window of the heights, s.
     pub half_s: f64,
+    /// Size of the largest object, m.
+    pub object_m: f64,
 }

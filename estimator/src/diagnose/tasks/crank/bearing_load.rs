@@ -79,7 +79,7 @@ fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64
 pub(crate) fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
     let before = track.bearing;
     let per_radius = track.radius_m.map_or(0.0, |radius_m| 1.0 / radius_m);
-    track.bearing = Bearing { weight_n, mass_kg: weight_n / gravity_m_s2.max(1e-9), per_radius };
+    track.bearing = Bearing { weight_n, mass_kg: weight_n / gravity_m_s2.max(f64::MIN_POSITIVE), per_radius };
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         row.motion.normal_force_n += track.bearing.load_n(row) - before.load_n(row);
     }

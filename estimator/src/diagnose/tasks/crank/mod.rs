@@ -26,6 +26,7 @@ use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
 use crate::diagnose::validation::on_other_recordings;
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
 use path_answer::{Link, PathFit};
@@ -72,13 +73,10 @@ pub fn crank(
     let study = settle(study);
     // The path itself may have shown a scale of all lengths.
     let scale = scale.filter(|scale| paths.iter().all(|p| !p.study.has(&scale.id)));
-    let on_bearing = bearing_n.map(|weight_n| {
-        format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
-    });
     let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
     let evidence = Evidence {
         causes: scale.into_iter().chain(faults).collect(),
-        remarks: on_bearing.into_iter().chain(short).collect(),
+        remarks: bearing_n.map(on_bearing).into_iter().chain(short).collect(),
         without_known: without_known(!fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m")),
         atlas: options.atlas,
         twins: options.twins,
@@ -89,6 +87,14 @@ pub fn crank(
         path.link = link;
     }
     Ok(explain(&track, &model, &study, paths.iter().map(PathFit::part).collect(), evidence).finish(put_back))
+}
+
+/// Remark about the load that the friction goes with.
+fn on_bearing(weight_n: f64) -> String {
+    let weight = amount(weight_n, "N");
+    format!(
+        "friction goes with the load on the bearing, {weight} of the handle's weight included, not with the fingers' pull alone"
+    )
 }
 
 /// Geometry of all recordings, with the rows on their circles.

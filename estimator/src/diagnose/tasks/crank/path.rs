@@ -18,6 +18,7 @@ use crate::diagnose::selection::rules::Rules;
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::law::Kind;
 
@@ -109,7 +110,7 @@ impl Refinement for Circling<'_> {
         self.step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(self.step_s)).collect();
-        let is_settled = self.moved_m < 1e-8 && finer.is_empty() && round > 1;
+        let is_settled = self.moved_m < 1e-6 * self.radius_m && finer.is_empty() && round > 1;
         self.courses = [self.coarse.as_slice(), &finer].concat();
         !is_settled
     }
@@ -280,13 +281,13 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &ChannelFit) -> Option<String> {
     let error_m = solved.std_error(0, study.system.rows);
     (error_m > UNSURE * arm.radius_m).then(|| {
         format!(
-            "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \
+            "the handle went over {:.0}° only, an arc that bulges by {} where one place is known to {}: the radius is {} give or take {}, and \
              a circle may well come out too small; a centre that seems to wander in so slow or short a motion need not move: turn further",
             arc_rad.to_degrees(),
-            1e3 * bulge_m,
-            1e3 * noise_m,
-            1e3 * arm.radius_m,
-            1e3 * error_m
+            amount(bulge_m, "m"),
+            amount(noise_m, "m"),
+            amount(arm.radius_m, "m"),
+            amount(error_m, "m")
         )
     })
 }

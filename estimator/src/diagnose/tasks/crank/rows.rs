@@ -340,7 +340,7 @@ fn force_noise(rows: &[Row]) -> (f64, bool) {
     let is_measured = count > LEAST_ROWS_OF_A_FIT;
     let along = || rows.iter().filter(|r| r.place == Place::Along).map(|r| r.target).collect::<Vec<f64>>();
     let noise = if is_measured { (square / count as f64).sqrt() } else { white_noise(&along()) };
-    (noise.max(1e-9), is_measured)
+    (noise.max(f64::MIN_POSITIVE), is_measured)
 }
 
 /// The same motion with the recorded force in the true axes.

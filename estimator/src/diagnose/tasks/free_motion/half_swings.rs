@@ -63,7 +63,7 @@ fn of_piece(piece: &Piece, period_s: f64, start_s: f64, freely: Freely) -> Optio
     track.period_s = (last.time_s - first.time_s) / (turns.len() - 1) as f64;
     track.span_s = last.time_s - first.time_s;
     // Of two turning points, over the path between them.
-    track.force_noise = (inertia * gravity * noise * 0.5_f64.sqrt()).max(1e-12);
+    track.force_noise = (inertia * gravity * noise * 0.5_f64.sqrt()).max(f64::MIN_POSITIVE);
     track.velocity_noise = noise * gravity.sqrt();
     let hanging = Effect::new(&EccentricMass, &[gravity * rest.cos(), -gravity * rest.sin()].map(|g| inertia * g));
     track.freely = Some(Freely { is_energy: true, known: [Some(hanging), freely.known[0], freely.known[1]], ..freely });

@@ -132,7 +132,7 @@ impl Plan {
         let [speed, acceleration] = usual(pieces, period_s);
         let (_, step) = points_and_samples(period_s);
         let whole = |length_s: f64| (length_s / (period_s * step as f64)).round().max(1.0) as usize * step;
-        let longest_s = (LONGEST_RAD * speed / acceleration.max(1e-12)).clamp(SHORTEST_S, LONGEST_BLOCK_S);
+        let longest_s = (LONGEST_RAD * speed / acceleration.max(f64::MIN_POSITIVE)).clamp(SHORTEST_S, LONGEST_BLOCK_S);
         let (shortest, longest) = (whole(SHORTEST_S), whole(longest_s).max(whole(SHORTEST_S)));
         let by_place = |block: usize| {
             let length_s = block as f64 * period_s;
@@ -280,7 +280,7 @@ impl Made {
             raw_period_s: plan.period_s,
             velocity_noise,
             position_noise,
-            force_noise: plan.acceleration_noise.max(1e-12),
+            force_noise: plan.acceleration_noise.max(f64::MIN_POSITIVE),
             span_s,
             freely: Some(Freely {
                 inertia: 1.0,

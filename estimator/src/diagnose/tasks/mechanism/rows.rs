@@ -190,7 +190,7 @@ impl Made {
             raw_period_s: self.period_s,
             velocity_noise: worst(0),
             position_noise: (averaged(self.block) * worst(2)).hypot(worst(3)),
-            force_noise: (averaged(self.block) * worst(1)).max(1e-12),
+            force_noise: (averaged(self.block) * worst(1)).max(f64::MIN_POSITIVE),
             inertial_noise,
             span_s,
             ..Track::of(raw.coordinate)

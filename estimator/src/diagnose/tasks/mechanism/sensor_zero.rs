@@ -68,7 +68,7 @@ pub fn ask(found: &mut Named, track: &Track) {
     let (Some(next), Some(size)) = (&mut found.next, constant) else { return };
     let of_both = [force_bias::ID, friction_asymmetry::ID].iter().all(|id| next.separates.iter().any(|s| s == id));
     if of_both && next.expected_power < LEAST_POWER {
-        let lambda = 2.0 * FREE_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);
+        let lambda = 2.0 * FREE_S / track.period_s * (size / track.force_noise.max(f64::MIN_POSITIVE)).powi(2);
         "let go of it for two seconds before and after moving it: a bias of the sensor is read then as well"
             .clone_into(&mut next.motion);
         next.expected_power = SURE_HUNG * power(lambda);

@@ -2,14 +2,14 @@
 //! made yet.
 
 use super::hole::Shaft;
-use super::rows::{AT_SURFACE_M, Needle, Phase, Row};
+use super::rows::{Needle, Phase, Row};
 use super::sheet;
 use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
 use crate::diagnose::data::limits::GAP_IN_PERIODS;
 use crate::diagnose::data::regression_data::Span;
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::strokes::FREE_S;
-use crate::diagnose::experiment::waypoints::{HAND_SPEEDS_M_S, Insertions, PIERCE};
+use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
 use crate::diagnose::selection::comparison::Compared;
 use estimation::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
@@ -17,9 +17,12 @@ use haptics::law::object::MembraneLaw;
 /// Numbers of insertions. The least that is likely to suffice is proposed.
 /// Choice: halved or doubled, none of 15 answers changes.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
-/// Half of a stroke in the hole, m.
+/// Half of a stroke in the hole, in depths of the dent.
 /// Choice: halved or doubled, none of 15 answers changes.
-const HALF_STROKE_M: f64 = 2.5e-3;
+const HALF_STROKE: f64 = 0.85;
+/// Lowest and highest speed of a proposed motion, in depths of the dent per second.
+/// Choice: not varied. They change the words of a proposal and no diagnosis.
+const SPEEDS_S: (f64, f64) = (9.0, 43.0);
 /// Time without touch before and after, s.
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
                      draw out";
@@ -49,9 +52,9 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
         id: PIERCE.to_owned(),
         seconds: f64::MIN_POSITIVE,
         free_s: if needle.two_fingered { FREE_S } else { 0.0 },
-        middle: deep_m + HALF_STROKE_M,
-        half_range: HALF_STROKE_M,
-        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(HAND_SPEEDS_M_S.0, HAND_SPEEDS_M_S.1),
+        middle: deep_m * (1.0 + HALF_STROKE),
+        half_range: deep_m * HALF_STROKE,
+        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(SPEEDS_S.0 * deep_m, SPEEDS_S.1 * deep_m),
         ..Experiment::default()
     };
     let one_s = Insertions::of(&asked)?.duration_s();
@@ -79,8 +82,8 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
         }
         let phase = match depth {
             _ if !is_held => Some(Phase::Empty),
-            d if d < -AT_SURFACE_M => Some(Phase::Outside),
-            d if d < AT_SURFACE_M => None,
+            d if d < -needle.at_surface_m => Some(Phase::Outside),
+            d if d < needle.at_surface_m => None,
             _ if through => Some(Phase::Hole),
             d if d > deepest => Some(Phase::Loading),
             _ => Some(Phase::Unloading),
@@ -107,5 +110,6 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
             span: Span::default(),
         });
     }
-    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, ..*needle }
+    let directions = needle.directions.clone();
+    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, directions, ..*needle }
 }

@@ -143,7 +143,7 @@ impl Forward for Sliding<'_> {
         let mut histories = [MembraneHistory::default(); 2];
         let mut held = |motion: &Motion| -> [f64; 2] {
             let Some(laws) = &of_world else { return [0.0; 2] };
-            [0, 1].map(|k| laws[k].force_n(motion.position.max(1e-6), motion.velocity, &mut histories[k]))
+            [0, 1].map(|k| laws[k].force_n(motion.position.max(f64::MIN_POSITIVE), motion.velocity, &mut histories[k]))
         };
         for motion in &before {
             held(motion);

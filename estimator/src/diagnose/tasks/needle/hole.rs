@@ -95,13 +95,11 @@ impl Told for Shaft<'_> {
         }
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         Some(match candidate.id {
-            stribeck::ID => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
-            backlash::ID => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
-            hysteresis::ID => {
-                (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend")
-            }
+            stribeck::ID => "the needle hardly moved slowly in the hole; go to and fro there slowly and fast",
+            backlash::ID => "the shaft turned round too seldom in the hole, or rubs too little, to show a gap",
+            hysteresis::ID => "the shaft turned round too seldom in the hole, or rubs too little, to show a bend",
             _ => return None,
         })
     }
@@ -212,7 +210,9 @@ pub fn shaft<'a>(
     let dry_n = look.values[first.len() - 1].abs() + of_world;
     // An uncertain direction makes all of the friction uncertain.
     let floor_n = white_noise(&y);
-    let open = |r: &regression_data::Row| (1.0 + dry_n * dry_n * r.open / (floor_n * floor_n).max(1e-18)).powf(-0.5);
+    let open = |r: &regression_data::Row| {
+        (1.0 + dry_n * dry_n * r.open / (floor_n * floor_n).max(f64::MIN_POSITIVE)).powf(-0.5)
+    };
     let weight = track.rows.iter().map(open).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
@@ -278,7 +278,7 @@ fn held(law: &MembraneLaw, rows: &[Row]) -> Vec<f64> {
                 push = Some(row.push);
                 history = MembraneHistory::default();
             }
-            law.force_n(row.depth_m.max(1e-6), row.rate_m_s, &mut history)
+            law.force_n(row.depth_m.max(f64::MIN_POSITIVE), row.rate_m_s, &mut history)
         })
         .collect()
 }
@@ -310,7 +310,6 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         period_s: needle.period_s,
         raw_period_s: needle.period_s,
         velocity_noise: if needle.fine.is_empty() { needle.rate_noise_m_s } else { needle.slope_noise_m_s },
-        force_noise: 1e-12,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
         ..Track::of(Coordinate::Linear)
     }

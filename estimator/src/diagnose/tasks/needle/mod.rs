@@ -27,6 +27,7 @@ use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, friction_change, hysteresis, stiffness_hardening, viscous_friction,
 };
+use crate::diagnose::model_error::twin::{Twin, is_upright};
 use crate::diagnose::options;
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
@@ -34,6 +35,7 @@ use crate::diagnose::selection::comparison::Compared;
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use crate::diagnose::selection::rules::{Rules, THRESHOLD_SLOW};
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::Vec2;
 use haptics::law::Kind;
 use haptics::recording::Recording;
@@ -88,7 +90,16 @@ pub fn needle(
     if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
         beside.delay = DelayFindings::of_scan(late, on_sheet.figures());
     }
-    Ok(draft(&parts, Evidence { next: &asked, ..beside }).finish(put_back))
+    let is_replayed = options.twins && names.len() == recordings.len() && is_upright(faults);
+    let replayed = || {
+        let sliding = shaft.as_ref().map(|s| (&s.compared.study, seen.placed(&s.sliding.rows)));
+        let pressed = (&sheet.compared.study, seen.placed(&sheet.pressed.rows));
+        Twin::of_channels(std::iter::once(pressed).chain(sliding))
+    };
+    let twin = is_replayed.then(replayed).flatten().map(Box::new);
+    let mut draft = draft(&parts, Evidence { next: &asked, ..beside });
+    draft.findings.twin = twin;
+    Ok(draft.finish(put_back))
 }
 
 /// The channels of other recordings of the same needle and sheet.
@@ -141,7 +152,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
     let (first, last) = (all.first()?, all.last()?);
     let told = |p: &Puncture| {
         let within = names.get(p.recording).filter(|_| names.len() > 1).map_or(String::new(), |n| format!(" of {n}"));
-        format!("{:.2} N at {:.1} s{within}", p.force_n, p.time_s)
+        format!("{} at {:.1} s{within}", amount(p.force_n, "N"), p.time_s)
     };
     Some(Cause {
         id: "other:puncture force over time".to_owned(),

@@ -7,26 +7,29 @@ use super::interpolation::Between;
 use crate::diagnose::data::interpolation::{mean_step_s, slope_noise};
 use crate::diagnose::data::limits::{FILTER_REACH_S, PAUSE_S, SETTLING_S, SURE};
 use crate::diagnose::data::regression_data::{Fine, Span};
+use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::recording::delay_scan::{Demands, Late, left_of_fit, look_by_samples};
 use crate::diagnose::selection::layout::segments;
 use estimation::identify::limits::LEAST_FREE_S;
 use estimation::identify::needle::sheet::Sheet;
 use estimation::identify::needle::signals::{Along, along};
-use estimation::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use estimation::identify::needle::strokes::{Push, pushes};
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{half_width, smooth, times};
 use foundation::tasks::SystemState;
+use haptics::Vec2;
 use haptics::law::object::unloading_n;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, m.
+/// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, as a
+/// share of the dent.
 /// Choice: halved, 2 of 15 answers change; doubled, 2 of 15 answers change.
-pub(crate) const AT_SURFACE_M: f64 = 5e-4;
-/// Distance from the surface, m, within which a row belongs to both sides.
+const AT_SURFACE: f64 = 0.14;
+/// Distance from the surface, as a share of the dent, within which a row belongs to both sides.
 /// Choice: halved, 1 of 15 answers change; doubled, 0 of 15 answers change.
-const EDGE_M: f64 = 1e-4;
+const EDGE: f64 = 0.03;
 
 /// Contact phase of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,10 +109,14 @@ pub struct Needle {
     pub two_fingered: bool,
     /// Initial stiffness of the sheet, N/m.
     pub stiffness_n_m: f64,
+    /// Depth from which a needle is in its hole, height from which it is outside, and distance from another place, m.
+    pub at_surface_m: f64,
     /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
     /// Part of that noise due to the measured path alone, whatever the motion.
     pub slope_noise_m_s: f64,
+    /// Unit vector of insertion in each recording.
+    pub directions: Vec<Vec2>,
     /// In order.
     pub punctures: Vec<Puncture>,
     /// Delay of its forces; of several recordings, the best determined one.
@@ -141,6 +148,7 @@ impl Needle {
         let weight = self.recordings as f64;
         self.stiffness_n_m = (weight * self.stiffness_n_m + later.stiffness_n_m) / (weight + 1.0);
         self.recordings += 1;
+        self.directions.extend(later.directions);
         self.holds += later.holds;
         self.period_s = self.period_s.max(later.period_s);
         self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
@@ -151,6 +159,18 @@ impl Needle {
             (Some(own), Some(other)) if clear(&own) >= clear(&other) => Some(own),
             (own, other) => other.or(own),
         };
+    }
+}
+
+impl Needle {
+    /// Places of rows in their recordings.
+    pub fn placed(&self, rows: &[Row]) -> Vec<Placed> {
+        let placed = |row: &Row| Placed {
+            recording: row.recording,
+            time_s: row.time_s - row.start_s,
+            force: Force::Plane(self.directions[row.recording]),
+        };
+        rows.iter().map(placed).collect()
     }
 }
 
@@ -165,7 +185,8 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
     let acceleration = smooth(&time, &depth.slope).slope;
     let surface_m = sheet.loading.surface_m;
-    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
+    let dent_m = pushes.iter().map(|p| p.dent_m).fold(0.0, f64::max);
+    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), (surface_m, dent_m));
     let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
     let between = Between::new(&time, &depth, surface_m, &in_hole, half);
     let row = |(i, of): (usize, &Of)| {
@@ -192,12 +213,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         phases.iter().enumerate().step_by(2 * half).filter_map(row).unzip();
     let period_s = (2 * half) as f64 * step_s;
     number_segments(&mut rows, period_s);
-    let puncture = |push: &Push| {
-        let i = push.puncture?;
-        let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
-        let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
-        Some(Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold })
-    };
+    let step_n = |i: usize| sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
     let mut seen = Needle {
         rate_noise_m_s: white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>()),
         rows,
@@ -208,12 +224,21 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         holds: along.holds.len(),
         two_fingered: along.two_fingered,
         stiffness_n_m: sheet.loading.stiffness_n_m,
+        at_surface_m: AT_SURFACE * dent_m,
         slope_noise_m_s: slope_noise(&own, half, step_s),
-        punctures: pushes.iter().filter_map(puncture).collect(),
+        directions: vec![along.direction],
+        punctures: pushes.iter().filter_map(|push| puncture(push, &along, (&time, &step_n))).collect(),
         late: None,
     };
     seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
     Ok(seen)
+}
+
+/// The puncture of a push. `step_n`: change of the force from a sample to the next.
+fn puncture(push: &Push, along: &Along, (time, step_n): (&[f64], &dyn Fn(usize) -> f64)) -> Option<Puncture> {
+    let i = push.puncture?;
+    let error_n = step_n(i).hypot(along.noise_n);
+    Some(Puncture { recording: 0, time_s: time[i] - time[0], force_n: along.force_n[i], error_n, hold: push.hold })
 }
 
 /// # Errors
@@ -242,8 +267,9 @@ fn phases(
     (along, pushes): (&Along, &[Push]),
     time: &[f64],
     (depth_m, rate_m_s): (&[f64], &[f64]),
-    surface_m: f64,
+    (surface_m, dent_m): (f64, f64),
 ) -> Vec<Of> {
+    let at_surface_m = AT_SURFACE * dent_m;
     let mut found: Vec<Of> = vec![None; time.len()];
     let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > LEAST_FREE_S;
     let mut empty = |range: Range<usize>| {
@@ -265,7 +291,7 @@ fn phases(
         for i in hold.clone() {
             let inner = whole || (far(i, hold.start) && far(i, hold.end));
             let now = of.iter().rev().find(|(_, p)| p.samples.start <= i);
-            if depth_m[i] < surface_m - AT_SURFACE_M {
+            if depth_m[i] < surface_m - at_surface_m {
                 if inner {
                     found[i] = Some((Phase::Outside, h, now.map_or(0, |n| n.0), f64::MIN));
                 }
@@ -273,7 +299,7 @@ fn phases(
             }
             let Some((k, push)) = now else { continue };
             // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
-            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + FILTER_REACH_S * rate_m_s[i].abs();
+            let meets = (depth_m[i] - surface_m).abs() < EDGE * dent_m + FILTER_REACH_S * rate_m_s[i].abs();
             let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < FILTER_REACH_S);
             if meets || falls {
                 continue;
@@ -282,13 +308,13 @@ fn phases(
             let phase = match push.puncture {
                 Some(at) if i > at => {
                     let settled = time[i] - time[at] > SETTLING_S;
-                    (settled && depth_m[i] > surface_m + AT_SURFACE_M).then_some(Phase::Hole)
+                    (settled && depth_m[i] > surface_m + at_surface_m).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
                 // Pushed in again above the dent, or drawn back.
                 _ => Some(Phase::Unloading),
             };
-            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));
+            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.dented_to_m)));
         }
     }
     found

@@ -2,7 +2,7 @@
 
 use super::forces::{CUBIC, HERTZ, Law, first_push_n, own_n, touches};
 use super::held_needle::Pressed;
-use super::rows::{AT_SURFACE_M, Needle, Phase, Puncture, Row};
+use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
@@ -52,7 +52,7 @@ fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
     let (low, high) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)));
     let middle_m = 0.5 * (low + high);
-    if high - low > AT_SURFACE_M
+    if high - low > needle.at_surface_m
         && let Some(slope) = slope_across(needle, rows.iter().filter(|r| r.recording == recording), middle_m)
     {
         for row in rows.iter_mut().filter(|r| met(r)) {
@@ -154,19 +154,15 @@ impl Told for Sheet<'_> {
         }
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         Some(match candidate.id {
-            stiffness_hardening::ID if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
-            hysteresis::ID => {
-                (1.0, "the needle was never drawn back before it went through; push, draw back and push on")
-            }
-            viscous_friction::ID => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
+            stiffness_hardening::ID if candidate.linear[0].0 == "k3" => "the sheet was hardly pressed in",
+            hysteresis::ID => "the needle was never drawn back before it went through; push, draw back and push on",
+            viscous_friction::ID => "the sheet was pressed at one speed; push slowly and fast",
             force_bias::ID => {
-                (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
+                "the needle was held all the time: a bias passes for its weight; start with empty fingers"
             }
-            force_drift::ID => {
-                (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording")
-            }
+            force_drift::ID => "the needle was outside the sheet too briefly at one end of the recording",
             _ => return None,
         })
     }

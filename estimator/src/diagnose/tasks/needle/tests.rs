@@ -62,8 +62,10 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
         period_s: PERIOD_S,
         two_fingered: false,
         stiffness_n_m: STIFFNESS_N_M,
+        at_surface_m: 5e-4,
         rate_noise_m_s: 1e-5,
         slope_noise_m_s: 1e-5,
+        directions: vec![haptics::Vec2::y()],
         punctures: Vec::new(),
         late: None,
     }

@@ -23,9 +23,9 @@ use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{Compared, View};
 use crate::diagnose::selection::layout::{Layout, segments};
 use crate::diagnose::selection::rules::Rules;
-use estimation::identify::limits::SETTLED_M;
 use foundation::estimate::EstimateError;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 
 /// Tried widths of a local resistance, as shares of the travel.
@@ -46,7 +46,7 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, rules: Rules) -> Res
     for (row, found_n) in &push.rows {
         let Some(side) = row.side() else { continue };
         let at_m = known.at_m(row, side);
-        if known.bends_near(at_m, SETTLED_M) || known.switch.curve.is_stopped(at_m) {
+        if known.bends_near(at_m) || known.switch.curve.is_stopped(at_m) {
             continue;
         }
         let (asked_n, slope_n_m) = known.asked_n(at_m, side);
@@ -98,16 +98,19 @@ impl Told for Beside {
     fn shows(&self, found: &Found<'_>) -> String {
         let value = found.value();
         match found.candidate.id {
-            coulomb_friction::ID => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+            coulomb_friction::ID => {
+                format!("the knob asks for {} more than the world's in both directions", amount(value, "N"))
+            }
             friction_asymmetry::ID => {
-                format!("the knob asks for {value:+.2} N more than the world's in one direction alone")
+                format!("the knob asks for {} more than the world's in one direction alone", amount(value, "N"))
             }
             viscous_friction::ID => "what the knob asks for beyond the world's goes with its speed".to_owned(),
             return_spring::ID => "the knob is drawn to one place, the same in both directions".to_owned(),
             local_resistance::ID => {
                 format!(
-                    "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
-                    1e3 * found.value_of("place")
+                    "the knob binds at {} of its way: it asks for {} more there in both directions",
+                    amount(found.value_of("place"), "m"),
+                    amount(value, "N")
                 )
             }
             force_gain::ID => format!(
@@ -135,7 +138,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
             // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
             // The knob leaves the finger half way.
-            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, SETTLED_M) {
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m) {
                 continue;
             }
             let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
@@ -148,7 +151,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
 
 /// Travel and speed of a smooth movement, every `period_s`.
 pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
-    let takes_s = PEAK * way_m / fast_m_s.max(1e-6);
+    let takes_s = PEAK * way_m / fast_m_s.max(f64::MIN_POSITIVE);
     (0..(takes_s / period_s) as usize).map(move |k| {
         let u = k as f64 * period_s / takes_s;
         let gone = way_m * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
@@ -192,5 +195,5 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
     let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
-    candidate.at_least(least_n / size.max(1e-12))
+    candidate.at_least(least_n / size.max(f64::MIN_POSITIVE))
 }

@@ -17,9 +17,9 @@ use haptics::Vec2;
 /// Numbers of throws. The least that is likely to suffice is proposed.
 /// Choice: halved or doubled, none of 21 answers changes.
 const THROWS: [usize; 3] = [6, 12, 18];
-/// Travel between a finger's release and the next push, m: that of the spring and the gap.
+/// Travel between a finger's release and the next push, as a share of the fingers' range: that of the spring and the gap.
 /// Choice: halved or doubled, none of 21 answers changes.
-const GAP_M: f64 = 6e-3;
+const GAP: f64 = 0.23;
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
                      before and after";
 
@@ -51,7 +51,8 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     let ways = [way(0), way(1)];
     let half_m = ways.iter().map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
     let mut speeds: Vec<f64> = [0, 1].into_iter().flat_map(of_side).map(|r| r.speed_m_s().abs()).collect();
-    let half_range = half_m + GAP_M;
+    let gap_m = GAP * seen.range_m;
+    let half_range = half_m + gap_m;
     // The two fingers touch the knob on either side of it.
     let middles: Vec<f64> =
         ways.iter().filter(|(low, high)| high > low).map(|(low, high)| 0.5 * (low + high)).collect();
@@ -68,10 +69,10 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     let mut seconds = 0.0;
     for _ in 0..count {
         asked.seconds = seconds + 1e-3;
-        seconds = Throws::of(&asked, half_range, half_range - GAP_M)?.duration_s();
+        seconds = Throws::of(&asked, half_range, half_range - gap_m)?.duration_s();
     }
     asked.seconds = seconds - 1e-3;
-    let motion = Throws::of(&asked, half_range, half_range - GAP_M)?;
+    let motion = Throws::of(&asked, half_range, half_range - gap_m)?;
     Some((asked, motion))
 }
 
@@ -88,15 +89,16 @@ fn imagine(seen: &Seen, push: &Push, motion: &Throws) -> Seen {
         force: Vec2::zeros(),
         above_zero: Vec2::zeros(),
     };
+    let gap_m = GAP * seen.range_m;
     let mut stretch = Vec::new();
     let mut number = 0;
     for throw in motion.all() {
         let side = usize::from(!throw.right);
         let Some((low, high)) = push.seen_m(side) else { continue };
-        let way_m = (high - low) + 2.0 * GAP_M;
+        let way_m = (high - low) + 2.0 * gap_m;
         number += 1;
         for (k, (gone, speed)) in curve::pushed(throw.fast_m_s, way_m, seen.period_s).enumerate() {
-            let travel = low - GAP_M + gone;
+            let travel = low - gap_m + gone;
             if (low..high).contains(&travel) {
                 let time_s = FREE_S + throw.begins_s + k as f64 * seen.period_s;
                 rows.push(row(time_s, Place::Push(side), direction(side) * travel, direction(side) * speed));

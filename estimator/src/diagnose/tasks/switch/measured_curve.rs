@@ -2,9 +2,9 @@
 
 use super::rows::{Place, Row, direction};
 
-/// Spacing of the nodes of the estimated curve, m.
+/// Spacing of the nodes of the estimated curve, as a share of the fingers' range.
 /// Choice: halved, 6 of 21 answers change; doubled, 11 of 21 answers change.
-const APART_M: f64 = 0.7e-3;
+pub const APART: f64 = 0.027;
 /// Largest number of nodes of the estimated curve.
 /// Choice: halved, 1 of 21 answers change; doubled, 0 of 21 answers change.
 const MOST_PLACES: usize = 24;
@@ -21,13 +21,13 @@ pub struct Curve {
 }
 
 impl Curve {
-    pub fn of(rows: &[Row], side: usize) -> Option<Self> {
+    pub fn of(rows: &[Row], side: usize, apart_m: f64) -> Option<Self> {
         let own: Vec<f64> = rows.iter().filter(|r| r.place == Place::Push(side)).map(along_m).collect();
         let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-        if own.len() < 2 || high - low < APART_M {
+        if own.len() < 2 || high - low < apart_m {
             return None;
         }
-        let pieces = (((high - low) / APART_M).ceil() as usize).clamp(1, MOST_PLACES).min(own.len() / 4).max(1);
+        let pieces = (((high - low) / apart_m).ceil() as usize).clamp(1, MOST_PLACES).min(own.len() / 4).max(1);
         let places = (0..=pieces).map(|k| low + (high - low) * k as f64 / pieces as f64).collect();
         Some(Self { side, places })
     }

@@ -8,9 +8,13 @@ use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
-/// Uncertainty of a world's stop that states none, and least uncertainty of one: a tip meets a round knob, m.
+/// Uncertainty of a world's stop that states none, and least uncertainty of one, as a share of the travel: a tip meets a
+/// round knob.
 /// Choice: halved or doubled, none of 12 answers changes.
-const UNKNOWN_END_M: f64 = 0.2e-3;
+const UNKNOWN_END: f64 = 0.0125;
+/// Distance from a corner of the curve within which both of its lines count, as a share of the travel.
+/// Choice: halved, 9 of 21 answers change; doubled, 17 of 19 answers change (2 to wrong).
+const CORNER: f64 = 0.05;
 /// Halvings of the search for the knob's position.
 /// Derived: 40 halvings of 2.8 levers leave 3e-12 levers, far below the noise of any position.
 const KNOB_HALVINGS: usize = 40;
@@ -20,6 +24,14 @@ pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
     let branch = if side == 0 { 1.0 } else { 0.0 };
     let sign = direction(side);
     (sign * curve.force_n(at_m, branch), sign * curve.stiffness_n_m(at_m, branch, sign))
+}
+
+/// Half of the travel of a curve, m.
+fn half_way_m(curve: &ToggleCurve) -> f64 {
+    match (curve.points.first(), curve.points.last()) {
+        (Some(first), Some(last)) => 0.5 * (last.at_m - first.at_m),
+        _ => 1.0,
+    }
 }
 
 /// The switch of a world, and its uncertainty.
@@ -53,7 +65,7 @@ impl<'a> Known<'a> {
         let sides: Vec<f64> = ["", "return_"].iter().filter_map(|prefix| of_side(prefix)).collect();
         let error_n = sides.iter().copied().fold(f64::NAN, f64::max);
         let ends = ["left_end_position_m", "right_end_position_m"].iter().filter_map(|name| curve(name));
-        let give = |k: f64, share: f64| share / k.max(1e-9);
+        let give = |k: f64, share: f64| share / k.max(f64::MIN_POSITIVE);
         let pad = world.pad.stiffness_n_m;
         let assumed = world.provenance.iter().any(|p| p.name == "damping_N_s_m" && p.source == Source::Assumed);
         Some(Self {
@@ -61,8 +73,11 @@ impl<'a> Known<'a> {
             pad: world.pad.elastic(),
             gravity_m_s2: world.gravity_m_s2,
             error_n: if error_n.is_nan() { ASSUMED_ERROR * most_n } else { error_n },
-            end_error_m: ends.fold(UNKNOWN_END_M, f64::max),
-            give_error_m_n: give(pad, stated("pad", "stiffness_N_m").map_or(ASSUMED_ERROR, |e| e / pad.max(1e-9))),
+            end_error_m: ends.fold(UNKNOWN_END * 2.0 * half_way_m(&switch.curve), f64::max),
+            give_error_m_n: give(
+                pad,
+                stated("pad", "stiffness_N_m").map_or(ASSUMED_ERROR, |e| e / pad.max(f64::MIN_POSITIVE)),
+            ),
             damping_n_s_m: if assumed { 0.0 } else { switch.damping_n_s_m },
         })
     }
@@ -112,17 +127,13 @@ impl<'a> Known<'a> {
     }
 
     /// True if a position is near a corner of the curve.
-    pub fn bends_near(&self, at_m: f64, within_m: f64) -> bool {
+    pub fn bends_near(&self, at_m: f64) -> bool {
         let points = &self.switch.curve.points;
-        points.iter().any(|p| (p.at_m - at_m).abs() < within_m)
+        points.iter().any(|p| (p.at_m - at_m).abs() < CORNER * 2.0 * self.half_way_m())
     }
 
     /// Half of the knob's travel, m.
     pub fn half_way_m(&self) -> f64 {
-        let points = &self.switch.curve.points;
-        match (points.first(), points.last()) {
-            (Some(first), Some(last)) => 0.5 * (last.at_m - first.at_m),
-            _ => 1.0,
-        }
+        half_way_m(&self.switch.curve)
     }
 }

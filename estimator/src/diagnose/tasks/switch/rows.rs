@@ -5,7 +5,8 @@ use crate::diagnose::data::interpolation::mean_step_s;
 use crate::diagnose::data::limits::{CERTAIN, FAST_ROW_S, GAP_IN_PERIODS, PARTS, SETTLING_S};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
-use estimation::identify::limits::{SETTLED_M, TOUCH_SHARE};
+use estimation::identify::limits::{SETTLED, TOUCH_SHARE};
+use estimation::identify::switch::longest_push_m;
 use estimation::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
@@ -18,12 +19,12 @@ use std::ops::Range;
 /// Share of the blocks that are taken as free in each part of a recording, because a finger is free at some time.
 /// Choice: halved, 6 of 21 answers change; doubled, 6 of 21 answers change.
 const FREE_SHARE: f64 = 0.15;
-/// Speed below which the knob may rest, m/s.
+/// Speed below which the knob may rest, in ranges of the touching fingers per second.
 /// Choice: halved, 1 of 21 answers change; doubled, 0 of 21 answers change.
-pub(crate) const KNOB_REST_M_S: f64 = 2e-3;
-/// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
+pub(crate) const KNOB_REST_HZ: f64 = 0.077;
+/// Velocity below which the finger draws back, in such ranges per second. Above it, the knob is on the forward branch.
 /// Choice: halved, 4 of 21 answers change (1 to right); doubled, 4 of 21 answers change.
-const BACK_M_S: f64 = -5e-4;
+const BACK_HZ: f64 = -0.019;
 /// Spacing of free rows, in blocks: neighbours share their noise.
 /// Choice: halved, 2 of 21 answers change; doubled, 5 of 21 answers change.
 pub(crate) const FREE_EVERY: usize = 10;
@@ -73,6 +74,8 @@ pub struct Seen {
     pub period_s: f64,
     /// Noise of one block's force, N.
     pub noise_n: f64,
+    /// Range of the fingers' middle while one of them touches, m.
+    pub range_m: f64,
     /// Throws to the right and to the left.
     pub throws: [usize; 2],
     pub recordings: usize,
@@ -115,6 +118,7 @@ pub fn seen(recordings: &[Recording], bad: &[Vec<bool>]) -> Result<Seen, Estimat
         stretch: Vec::new(),
         period_s: 0.0,
         noise_n: 0.0,
+        range_m: 0.0,
         throws: [0; 2],
         recordings: recordings.len(),
     };
@@ -179,9 +183,15 @@ fn one(recording: &Recording, number: usize, bad: &[bool], all: &mut Seen) -> Re
         force: finger.force[k],
         above_zero: finger.force[k] - finger.zero[k],
     };
+    let touched = (0..blocks).filter(|k| fingers.iter().any(|finger| finger.touches[*k]));
+    let middle = |k: usize| 0.5 * (fingers[0].tip[k].x + fingers[1].tip[k].x);
+    let (low, high) = touched.map(middle).fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+    let range_m = (high - low).max(0.0);
+    all.range_m = all.range_m.max(range_m);
     let mut found: Vec<Row> = Vec::new();
+    let settled_m = SETTLED * fingers.iter().map(Finger::longest_push_m).fold(0.0, f64::max);
     for (side, finger) in fingers.iter().enumerate() {
-        for touch in touches(finger, side, &time) {
+        for touch in touches(finger, side, &time, [settled_m, range_m]) {
             let place = if touch.throws { Place::Push(side) } else { Place::Stop(side) };
             all.throws[side] += usize::from(touch.throws);
             found.extend(touch.blocks.filter(|k| usable(*k)).map(|k| row(finger, k, place)));
@@ -253,6 +263,12 @@ fn line(at: &[usize], of: &dyn Fn(usize) -> f64) -> [f64; 2] {
     [level - slope * middle, slope]
 }
 
+impl Finger {
+    fn longest_push_m(&self) -> f64 {
+        longest_push_m(&self.tip.iter().map(|tip| tip.x).collect::<Vec<_>>(), &self.touches)
+    }
+}
+
 /// A finger in touch.
 struct Touch {
     blocks: Range<usize>,
@@ -261,7 +277,7 @@ struct Touch {
 }
 
 /// Touches that move the knob on, and the press on the stop after each of them.
-fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
+fn touches(finger: &Finger, side: usize, time: &[f64], [settled_m, range_m]: [f64; 2]) -> Vec<Touch> {
     let along = |k: usize| direction(side) * finger.tip[k].x;
     let pressed = |k: usize| direction(side) * (finger.force[k].x - finger.zero[k].x);
     let mut found = Vec::new();
@@ -274,17 +290,17 @@ fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
         }
         let end = (first..time.len()).find(|k| !finger.touches[*k]).unwrap_or(time.len());
         let way_m = along(end - 1) - along(first);
-        if way_m > 2.0 * SETTLED_M && end < time.len() {
-            let settled = (first..end).find(|k| along(*k) > along(first) + SETTLED_M).unwrap_or(end);
+        if way_m > 2.0 * settled_m && end < time.len() {
+            let settled = (first..end).find(|k| along(*k) > along(first) + settled_m).unwrap_or(end);
             let leaving = (settled..end).find(|k| time[end] - time[*k] <= DERIVATIVE_WINDOW_S).unwrap_or(end);
-            let moves = |k: &usize| direction(side) * finger.velocity[*k].x > KNOB_REST_M_S;
+            let moves = |k: &usize| direction(side) * finger.velocity[*k].x > KNOB_REST_HZ * range_m;
             let last = (settled..leaving).rev().find(moves).map_or(settled, |k| k + 1);
             found.push(Touch { blocks: settled..last, throws: true });
             thrown_to = Some(along(end - 1));
-        } else if thrown_to.is_some_and(|to| along(first) > to + SETTLED_M) {
+        } else if thrown_to.is_some_and(|to| along(first) > to + settled_m) {
             let most = (first..end).map(pressed).fold(0.0, f64::max);
             let hard = |k: &usize| pressed(*k) > PRESSING * most;
-            let stays = |k: &usize| direction(side) * finger.velocity[*k].x > BACK_M_S;
+            let stays = |k: &usize| direction(side) * finger.velocity[*k].x > BACK_HZ * range_m;
             let start = (first..end).find(hard).unwrap_or(end);
             let last = (start..end).find(|k| !hard(k) || !stays(k)).unwrap_or(end);
             found.push(Touch { blocks: start..last, throws: false });

@@ -16,6 +16,7 @@ use crate::diagnose::selection::rules::Rules;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::tasks::SystemState;
+use foundation::words::amount;
 use haptics::law::Kind;
 
 /// Largest missing share of the world's pad compliance: ten times as stiff.
@@ -43,7 +44,7 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, rules: Rules) -> Result<Opti
     let y = of(&|r| direction(side(r)) * r.tip.x - expected(r));
     // Damping of the pads is part of the base model.
     let mut base = vec![of(&|r| direction(side(r)) * r.velocity.x)];
-    let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(1e-9);
+    let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let bend = of(&|r| -usual * (pressed(r) / usual).powi(3));
     let force = of(&pressed);
     let on = |wanted: usize| rows.iter().map(|r| f64::from(u8::from(side(r) == wanted))).collect::<Vec<f64>>();
@@ -78,12 +79,12 @@ impl Told for Pressed {
         match found.candidate.id {
             pad_compliance::ID => {
                 format!(
-                    "pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give",
-                    1e3 * value
+                    "pressed against a stop, the tip goes {} farther than the world's pads give",
+                    amount(value, "m/N")
                 )
             }
             stiffness_hardening::ID => "pressed harder against a stop, the pads give less and less".to_owned(),
-            added_constraint::ID => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
+            added_constraint::ID => format!("a stop comes {} before the world's", amount(value, "m")),
             other => format!("{other} shows on the stops"),
         }
     }
@@ -95,7 +96,7 @@ fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<
     let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     // However stiff other pads are, their compliance is not negative.
     let shape = Shape::Share {
-        least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
+        least: -MOST_STIFFER / known.pad.spring.k1.max(f64::MIN_POSITIVE),
         whole: f64::NEG_INFINITY,
         most: f64::INFINITY,
     };

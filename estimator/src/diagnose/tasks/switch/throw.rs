@@ -3,8 +3,8 @@
 //! with the world's is a separate channel.
 
 use super::held_knob::Knob;
-use super::measured_curve::{Curve, along_m};
-use super::rows::{KNOB_REST_M_S, Place, Row, Seen, direction};
+use super::measured_curve::{APART, Curve, along_m};
+use super::rows::{KNOB_REST_HZ, Place, Row, Seen, direction};
 use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::experiment::separation::Imagined;
@@ -21,18 +21,20 @@ use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
+use foundation::words::amount;
 use haptics::law::Kind;
 
-/// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
-/// ones.
+/// Distance from the top of the curve within which rows are left out, as a share of the fingers' range: fast throws
+/// round its corner more than slow ones.
 /// Choice: halved, 5 of 21 answers change; doubled, 11 of 21 answers change (2 to wrong).
-const TOP_CORNER_M: f64 = 0.6e-3;
+const TOP_CORNER: f64 = 0.023;
 /// Tried times of a sudden change of friction, in shares of the recording.
 /// Choice: halved, 3 of 21 answers change; doubled, 3 of 21 answers change.
 const CHANGES: Axis = Axis::even(0.05, 0.95, 19);
-/// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
+/// Least force of viscous friction at the highest speed, as a share of the largest force. Pads with damping, and corners
+/// that a fast throw rounds, look like nearly half of it.
 /// Choice: halved or doubled, none of 21 answers changes.
-const LEAST_VISCOUS_N_S_M: f64 = 0.8;
+const LEAST_VISCOUS: f64 = 0.045;
 
 /// The comparison.
 pub struct Push {
@@ -55,8 +57,8 @@ fn force_n(row: &Row) -> f64 {
 }
 
 /// Curves of both directions, over their observed range.
-fn curves(rows: &[Row]) -> Vec<Curve> {
-    [0, 1].into_iter().filter_map(|side| Curve::of(rows, side)).collect()
+fn curves(rows: &[Row], range_m: f64) -> Vec<Curve> {
+    [0, 1].into_iter().filter_map(|side| Curve::of(rows, side, APART * range_m)).collect()
 }
 
 /// Node forces of all curves in a plain fit.
@@ -73,14 +75,15 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
 
 /// Compares the causes that depend on speed and time.
 pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
-    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > KNOB_REST_M_S;
+    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > KNOB_REST_HZ * seen.range_m;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
     let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
-    let rough = curves(&all);
+    let rough = curves(&all, seen.range_m);
     let forces = first_look(&all, &rough)?;
     let tops: Vec<(usize, f64)> = rough.iter().zip(&forces).map(|(c, f)| (c.side, c.top_m(f))).collect();
     let corner = |r: &Row| {
-        tops.iter().any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < TOP_CORNER_M)
+        tops.iter()
+            .any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < TOP_CORNER * seen.range_m)
     };
     let kept = |i: usize| {
         let r = &seen.rows[i];
@@ -104,7 +107,7 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
             "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_ROWS_OF_A_FIT} are needed: throw the switch over more often"
         )));
     }
-    let curves = curves(&rows);
+    let curves = curves(&rows, seen.range_m);
     let forces = first_look(&rows, &curves)?;
     let base = base(&rows, &curves);
     let y: Vec<f64> = rows.iter().map(force_n).collect();
@@ -164,10 +167,12 @@ fn of_found(study: &ChannelFit, rows: usize) -> Vec<f64> {
 fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) -> Vec<Candidate> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let pushed = |f: &dyn Fn(&Row) -> f64| of(&|r| if matches!(r.place, Place::Push(_)) { f(r) } else { 0.0 });
+    let most = |f: &dyn Fn(&Row) -> f64| pushed(f).into_iter().fold(0.0, f64::max);
+    let (largest_n, fastest_m_s) = (most(&force_n), most(&|r| r.speed_m_s()));
     let mut found = vec![
         Candidate::one(viscous_friction::ID, Kind::Plant, "c", "N s/m", pushed(&|r| r.speed_m_s()))
             .positive()
-            .at_least(LEAST_VISCOUS_N_S_M),
+            .at_least(LEAST_VISCOUS * largest_n / fastest_m_s.max(f64::MIN_POSITIVE)),
     ];
     let late = |r: &Row| {
         let slope: f64 = curves.iter().zip(forces).map(|(c, f)| c.slope(r, f)).sum();
@@ -221,7 +226,7 @@ impl Told for Push {
         let value = found.value();
         match found.candidate.id {
             viscous_friction::ID => {
-                format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
+                format!("fast throws ask for more force than slow ones at the same place ({})", amount(value, "N s/m"))
             }
             friction_change::ID => {
                 "at the same place the knob asks for another force, the same way in both directions, as time goes on"
@@ -236,12 +241,11 @@ impl Told for Push {
         }
     }
 
-    fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+    fn hidden_by(&self, candidate: &Candidate) -> Option<&'static str> {
         Some(match (candidate.id, candidate.linear[0].0) {
-            (viscous_friction::ID, _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
-            (friction_change::ID, "change") => (0.05, "there were few throws; go on for longer"),
-            (time_delay::ID, _) => (5e-3, "the throws were all of one speed; throw it slowly and fast"),
-            (force_bias::ID, _) => (0.01, "no finger was ever free; start and end with a second of free motion"),
+            (viscous_friction::ID | time_delay::ID, _) => "the throws were all of one speed; throw it slowly and fast",
+            (friction_change::ID, "change") => "there were few throws; go on for longer",
+            (force_bias::ID, _) => "no finger was ever free; start and end with a second of free motion",
             _ => return None,
         })
     }

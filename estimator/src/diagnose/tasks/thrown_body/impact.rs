@@ -13,7 +13,7 @@ use crate::diagnose::selection::layout::Layout;
 use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::tasks::thrown_body::powers;
 use estimation::identify::tossed::Tossed;
-use estimation::identify::tossed::flight::BLOW_M_S;
+use estimation::identify::tossed::flight::BLOW_S;
 use estimation::identify::tossed::flight::least;
 use estimation::identify::tossed::pose::Track;
 use foundation::estimate::EstimateError;
@@ -28,12 +28,13 @@ const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
 /// Derived: one sample of the recorded tosses at 148 Hz.
 const REACH_S: f64 = 0.0068;
-/// Least speed of a blow, m/s: the scatter of a slower one is as large as its restitution.
+/// Least speed of a blow, as the time in which free fall makes it, s: the scatter of a slower one is as large as its restitution.
 /// Choice: halved or doubled, none of 6 answers changes.
-const SLOW_M_S: f64 = 0.4;
-/// Change of the velocity up to which a blow is over, and up to which two velocities are equal, m/s.
+const LEAST_BLOW_S: f64 = 0.04;
+/// Change of the velocity up to which a blow is over, and up to which two velocities are equal, as the
+/// time in which free fall makes it, s.
 /// Choice: halved or doubled, none of 6 answers changes.
-const STILL_M_S: f64 = 0.10;
+const STILL_S: f64 = 0.01;
 /// Height within which a second corner hits at the same time, in half widths.
 /// Choice: halved or doubled, none of 6 answers changes.
 const SECOND_CORNER_HEIGHT: f64 = 0.1;
@@ -126,7 +127,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     let turned = track.turned.as_ref()?;
     let Beside { hit, before, after, reach } = around(track, fall_m_s2)?;
     let (falls, rises) = (free(track, &before, fall_m_s2)?, free(track, &after, fall_m_s2)?);
-    let at_s = track.time_s[hit] + met(&falls, &rises, track.time_s[hit], track.step_s(), reach);
+    let at_s = track.time_s[hit] + met((&falls, &rises), (track.time_s[hit], track.step_s()), reach, fall_m_s2);
     let spin = |range: &Range<usize>| {
         let (a, b) = (range.start, range.end - 1);
         (turned[b] * turned[a].inverse()).scaled_axis() / (track.time_s[b] - track.time_s[a])
@@ -148,7 +149,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     }
     let up = |of: &Free, spin: Vector3<f64>| of.rise_m_s(at_s, fall_m_s2) + spin.cross(&arm).z;
     let (down, rebound) = (up(&falls, spin_before), up(&rises, spin_after));
-    (down < -SLOW_M_S).then_some((down, rebound))
+    (down < -LEAST_BLOW_S * fall_m_s2).then_some((down, rebound))
 }
 
 /// A first blow, and the free flight on either side of it.
@@ -177,9 +178,10 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     first.sort_by(f64::total_cmp);
     // Effect of the tracker's noise on free flight.
     let noise = first.get(first.len() / 2)?;
-    let hit = (reach..n - reach).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
-    let over = (hit + 1..n - reach).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
-    let free = (over..n - reach).take_while(|i| kick(*i) < STILL_M_S.max(2.5 * noise)).count();
+    let still_m_s = STILL_S * fall_m_s2;
+    let hit = (reach..n - reach).find(|i| kick(*i) > (BLOW_S * fall_m_s2).max(4.0 * noise))?;
+    let over = (hit + 1..n - reach).find(|i| kick(*i) < still_m_s.max(3.0 * noise))?;
+    let free = (over..n - reach).take_while(|i| kick(*i) < still_m_s.max(2.5 * noise)).count();
     let beside = track.steps(BESIDE_S).max(4);
     (hit >= least && free > 0).then(|| Beside {
         hit,
@@ -190,9 +192,9 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
 }
 
 /// Time at which two free flights met, s after `at_s`. A blow changes the velocity, not the position.
-fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 {
+fn met((falls, rises): (&Free, &Free), (at_s, step_s): (f64, f64), reach: usize, fall_m_s2: f64) -> f64 {
     let faster = falls.speed_m_s - rises.speed_m_s;
-    if faster.abs() < STILL_M_S {
+    if faster.abs() < STILL_S * fall_m_s2 {
         return 0.0;
     }
     let since = (rises.at_zero_m() - falls.at_zero_m()) / faster;

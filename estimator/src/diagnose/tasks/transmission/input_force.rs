@@ -61,7 +61,7 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
     }
     let mut speeds: Vec<f64> = seen.rows.iter().map(|r| r.rate.abs()).collect();
     speeds.sort_by(f64::total_cmp);
-    let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0).max(1e-12);
+    let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE);
     let kept = sure(seen, usual);
     let rows = seen.at(&kept);
     let stretch = stretches_of(&rows);
@@ -217,7 +217,7 @@ impl Input {
                 coulomb_friction::ID => dry += own[0],
                 // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
                 hysteresis::ID => {
-                    let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
+                    let way = candidate.searched.first().map_or(0.0, |s| s.value).max(f64::MIN_POSITIVE);
                     dry -= own[0];
                     effects.push(Effect::new(&Hysteresis, &[own[0], own[0] / way]));
                 }
