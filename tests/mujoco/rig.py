@@ -28,23 +28,23 @@ def finger(name, friction, start):
     damping = 1.4 * (ARM_N_M * ARM_KG) ** 0.5
     axes = (("x", "1 0 0", start[0]), ("z", "0 0 1", start[1]))
     joints = "".join(f'<joint name="{name}{a}" type="slide" axis="{v}" ref="{at}" damping="{damping}"/>' for a, v, at in axes)
-    foam = "".join(f'<joint type="slide" axis="{v}" stiffness="{k}" damping="{PAD_N_S_M}"/>'
-                   for v, k in (("1 0 0", PAD_N_M), ("0 0 1", PAD_SHEAR_N_M)))
+    foam = "".join(f'<joint name="{name}-foam-{a}" type="slide" axis="{v}" stiffness="{k}" damping="{PAD_N_S_M}"/>'
+                   for a, v, k in (("x", "1 0 0", PAD_N_M), ("z", "0 0 1", PAD_SHEAR_N_M)))
     geom = (f'<geom name="{name}" type="box" size="{RADIUS_M} 0.008 0.004" pos="{side * RADIUS_M} 0 0" mass="{PAD_KG}"'
             f' friction="{friction}" priority="1" contype="2" conaffinity="1" solref="0.002 1"/>')
     inertial = f'<inertial pos="0 0 0" mass="{ARM_KG}" diaginertia="1e-5 1e-5 1e-5"/>'
     body = (f'<body name="{name}" gravcomp="1" pos="{start[0]} 0 {start[1]}">{joints}{inertial}'
-            f'<body gravcomp="1">{foam}{geom}</body></body>')
+            f'<body name="{name}-pad" gravcomp="1">{foam}{geom}</body></body>')
     motors = "".join(f'<position joint="{name}{a}" kp="{ARM_N_M}"/>' for a in "xz")
     return body, motors
 
 
-def model(things, fingers, more=""):
+def model(things, fingers, more="", noslip=5):
     bodies = "".join(body for body, _ in fingers)
     motors = "".join(motors for _, motors in fingers)
     return mujoco.MjModel.from_xml_string(
         f'<mujoco><compiler angle="radian"/><option timestep="{STEP_S}" gravity="0 0 {-GRAVITY}" cone="elliptic"'
-        f' impratio="20" noslip_iterations="5"/><worldbody>{things}{bodies}</worldbody>'
+        f' impratio="20" noslip_iterations="{noslip}"/><worldbody>{things}{bodies}</worldbody>'
         f'<actuator>{motors}</actuator>{more}</mujoco>')
 
 
@@ -81,6 +81,12 @@ def pressed_by(m, d, name):
     return total[0], total[2]
 
 
+def felt_by(m, d, name):
+    """Force in the plane that a finger exerts through its foam, N: what a sensor between the arm and the foam reads."""
+    joints = [m.joint(f"{name}-foam-{axis}") for axis in "xz"]
+    return [-m.jnt_stiffness[j.id] * d.qpos[j.qposadr[0]] - PAD_N_S_M * d.qvel[j.dofadr[0]] for j in joints]
+
+
 class Sensors:
     """White noise on what is recorded, and the resolution of a usual converter."""
 
@@ -95,7 +101,7 @@ class Sensors:
         return rows
 
 
-def pinched(m, path, end_s, sensors, each=lambda m, d, t: None):
+def pinched(m, path, end_s, sensors, each=lambda m, d, t: None, force=pressed_by):
     """Leads both fingers along `path(t)` = (middle x, middle z, distance) and records them."""
     d = mujoco.MjData(m)
     columns = ["t_s", "x1_m", "y1_m", "x2_m", "y2_m", "vx1_m_s", "vy1_m_s", "vx2_m_s", "vy2_m_s",
@@ -110,7 +116,7 @@ def pinched(m, path, end_s, sensors, each=lambda m, d, t: None):
         mujoco.mj_step(m, d)
         if tick % every == every - 1:
             # What a step leaves: places after it, forces of it.
-            rows.append([d.time, *d.qpos[joints], *d.qvel[speeds], *pressed_by(m, d, "left"), *pressed_by(m, d, "right")])
+            rows.append([d.time, *d.qpos[joints], *d.qvel[speeds], *force(m, d, "left"), *force(m, d, "right")])
     return columns, sensors.see(rows, columns), d
 
 

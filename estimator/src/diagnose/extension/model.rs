@@ -4,9 +4,9 @@ use crate::diagnose::data::regression_data::{Model, Track};
 use crate::diagnose::hypotheses::all::{hypothesis, relations};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::dry_share::DryFriction;
-use crate::diagnose::hypotheses::free_motion;
 use crate::diagnose::hypotheses::hypothesis::Found;
 use crate::diagnose::hypotheses::relations::Relation;
+use crate::diagnose::hypotheses::{coulomb_friction, free_motion};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::normal_equations::Solved;
 use crate::diagnose::selection::profile_likelihood::{settled, shares};
@@ -54,8 +54,22 @@ fn made(
 ) -> (Vec<Effect>, bool) {
     let found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
     let of_causes = causes.iter().map(|c| c.regressors.len()).sum::<usize>();
-    let dry = DryFriction::of(&found);
-    beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
+    let values = &values[values.len() - of_causes..];
+    let mut dry = DryFriction::of(&found);
+    // The shares refer to all dry friction.
+    dry.level_n +=
+        with_values(causes, values).filter(|(c, _)| c.id == coulomb_friction::ID).map(|(_, v)| v[0]).sum::<f64>();
+    beside_model(track, found, &dry, causes, values, searched)
+}
+
+/// Each cause with its values.
+fn with_values<'a>(causes: &'a [&Candidate], values: &'a [f64]) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
+    let mut rest = values;
+    causes.iter().map(move |cause| {
+        let (own, others) = rest.split_at(cause.regressors.len());
+        rest = others;
+        (*cause, own)
+    })
 }
 
 /// Laws of causes found beside a model without dry friction of its own. Dry friction must precede the causes that are a
@@ -83,16 +97,17 @@ fn beside_model(
     searched: &[Vec<f64>],
 ) -> (Vec<Effect>, bool) {
     let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
-    let (mut at, mut is_whole) = (0, true);
-    for (candidate, searched) in causes.iter().zip(searched) {
-        let values = &values[at..at + candidate.regressors.len()];
+    let mut is_whole = true;
+    // Dry friction comes first: other causes bend or lift a share of it.
+    let mut ordered: Vec<_> = with_values(causes, values).zip(searched).collect();
+    ordered.sort_by_key(|((candidate, _), _)| candidate.id != coulomb_friction::ID);
+    for ((candidate, values), searched) in ordered {
         if relations(candidate.id).contains(&Relation::TakesDryFriction) {
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
         let laws = laws_of(&Found { candidate, values, searched, track, weight_n, dry });
         is_whole &= !laws.is_empty() || candidate.kind == Kind::Instrument;
         found.extend(laws);
-        at += candidate.regressors.len();
     }
     (free_motion::whole(track, found), is_whole)
 }

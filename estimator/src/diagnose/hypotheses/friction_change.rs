@@ -2,12 +2,14 @@
 
 use super::axis::Axis;
 use super::candidate::Candidate;
+use super::change_scan::{Scan, slides, widen_time};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
-use crate::diagnose::data::regression_data::Place;
+use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::data::regression_data::{Place, Track};
 use haptics::law::{Effect, FrictionChange, Kind, LoadFrictionChange};
 
 pub(crate) const ID: &str = "friction-change";
@@ -19,6 +21,8 @@ const WARMING_SHARES: Axis = Axis::geometric(0.1, 3.0, 7);
 const WARMING: &str = "time constant";
 /// Points: start time of a sudden change.
 const STARTS: &str = "start";
+/// Points: none; a scan finds the start time at which a sudden change explains most.
+const SCAN: &str = "scan";
 
 impl Hypothesis for FrictionChange {
     fn about(&self) -> About {
@@ -33,7 +37,8 @@ impl Hypothesis for FrictionChange {
 
     fn coarse(&self, ranges: &Ranges<'_>) -> Vec<Point> {
         let warming = WARMING_SHARES.values().map(|share| Point::one(WARMING, share * ranges.track.span_s));
-        warming.chain(ranges.starts().map(|start| Point::one(STARTS, start))).collect()
+        let starts = ranges.starts().map(|start| Point::one(STARTS, start));
+        warming.chain(starts).chain([Point::one(SCAN, 0.0)]).collect()
     }
 
     fn around(&self, near: &Near<'_>) -> Vec<Point> {
@@ -49,8 +54,14 @@ impl Hypothesis for FrictionChange {
         };
         let warm = |[tau, ..]: [f64; 3]| change(of_dry(&[0.0, 1.0, tau, 0.0, 0.0])).at("tau", tau, "s");
         let step = |[start, ..]: [f64; 3]| change(of_dry(&[0.0, 1.0, 0.0, start, 0.0])).at("t0", start, "s");
-        let in_time = data.points(ID, WARMING).map(warm).chain(data.points(ID, STARTS).map(step));
+        let scanned = data.points(ID, SCAN).filter_map(|_| best_start_s(data));
+        let starts = data.points(ID, STARTS).chain(scanned.map(|start_s| [start_s, 0.0, 0.0]));
+        let in_time = data.points(ID, WARMING).map(warm).chain(starts.map(step));
         in_time.chain(with_channels(data)).collect()
+    }
+
+    fn widen(&self, parameters: &mut [CauseParameter], track: &Track) {
+        parameters.iter_mut().filter(|p| p.name == "t0").for_each(|start| widen_time(start, track));
     }
 
     fn effects(&self, found: &Found<'_>) -> Vec<Effect> {
@@ -64,6 +75,12 @@ impl Hypothesis for FrictionChange {
         let everywhere = Effect::new(&FrictionChange, &of(found.dry.level_n));
         found.dry.parts(everywhere, Effect::new(&LoadFrictionChange, &of(found.dry.mu)))
     }
+}
+
+/// Start time at which a sudden change of the dry friction explains most. The starts are those of every recording.
+fn best_start_s(data: &Dictionary<'_>) -> Option<f64> {
+    let is_one = data.track.rows.iter().all(|row| row.recording == 0);
+    is_one.then(|| Scan::of(data, 0, 1, &|i| [slides(data, i), 0.0]).best_time_s()).flatten()
 }
 
 fn change(column: Vec<f64>) -> Candidate {

@@ -5,6 +5,7 @@ pub(crate) mod all;
 pub(crate) mod axis;
 pub(crate) mod axis_sign;
 pub(crate) mod candidate;
+pub(crate) mod change_scan;
 pub(crate) mod channel_fault;
 pub(crate) mod covariate;
 pub(crate) mod dictionary;

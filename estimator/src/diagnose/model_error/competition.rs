@@ -16,6 +16,7 @@ use crate::diagnose::selection::held_out_gain::confirmed;
 use crate::diagnose::selection::layout::Use;
 use crate::diagnose::selection::noise_model::{Whitening, whitener};
 use crate::diagnose::selection::normal_equations::{System, counted};
+use crate::diagnose::selection::open_values;
 use crate::diagnose::selection::stepwise::Stepwise;
 
 /// Lets each chosen cause of a channel compete. `None` if the rows determine nothing.
@@ -268,7 +269,7 @@ pub fn settle(mut study: ChannelFit) -> ChannelFit {
         // The order is that in which a model with causes alone needs them.
         let order = Stepwise::new(alone, &study.candidates, &study.rules).order(&study.picks());
         study.chosen.sort_by_key(|c| order.iter().position(|o| *o == c.candidate));
-        study.solved = study.system.solve(&study.picks());
+        open_values::close(&mut study);
         study.competition = found.take();
         leave_out_what_is_unsure(&mut study);
         found = compete(&study, &errors);

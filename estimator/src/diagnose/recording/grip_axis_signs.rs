@@ -60,6 +60,12 @@ pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
     Some((mirrored(&straight, &names), cause))
 }
 
+/// False if both fingers press and one of them pulls away from the other: nothing can be held like that. The difference of
+/// two gripping forces shows no load, so a wrong sign takes every effect out of the residual.
+pub fn is_plausible(recording: &Recording) -> bool {
+    Grips::of(recording).is_none_or(|grips| grips.across(recording).is_none())
+}
+
 /// Mirrored axes, and the sentence with the reason.
 struct Found {
     axes: Vec<String>,

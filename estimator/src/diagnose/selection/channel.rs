@@ -11,6 +11,7 @@ use super::held_out_gain::{LEAST_CHANGE_SHARE, confirmed, gain, holds_out, is_te
 use super::layout::{Layout, Use};
 use super::noise_model::whitener;
 use super::normal_equations::{System, columns_of, solve, uses};
+use super::open_values;
 use super::prescreen::Rough;
 use super::rules::Rules;
 use super::stepwise::Stepwise;
@@ -83,7 +84,9 @@ impl Channel {
         system.resisting = resisting;
         system.pieces = layout.pieces();
         let chosen = Stepwise::new(&system, &candidates, &rules).run(&start);
-        Ok(ChannelFit { errors, ..ChannelFit::of(candidates, chosen, system, (y, base, layout), rules) })
+        let mut made = ChannelFit { errors, ..ChannelFit::of(candidates, chosen, system, (y, base, layout), rules) };
+        open_values::close(&mut made);
+        Ok(made)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Estimated friction of a model: its size in every row, and its sign.
 
+use super::comparison::ChannelFit;
 use super::normal_equations::Solved;
 use crate::diagnose::data::regression_data::{Model, Track};
+use crate::diagnose::hypotheses::coulomb_friction;
 use haptics::law::{Effect, Motion, Role};
 
 /// Sum of the model's laws in all rows at these values: all laws, or only those that oppose motion.
@@ -27,12 +29,24 @@ pub fn is_resisting(effect: &Effect) -> bool {
 }
 
 /// Ratio of the dry friction `used` for shares, by row, to the estimated one along the motion, and its relative error.
-pub fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
-    let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
-    let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));
+pub fn shares_of(track: &Track, model: &Model, used: &[f64], study: &ChannelFit) -> [f64; 2] {
+    let Some(solved) = &study.solved else { return [1.0, 0.0] };
+    let along = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
+    let found = dry_levels(track, model, study, solved);
+    let (used, now) = (along(&|i| used[i]), along(&|i| found[i]));
     let dry = model.iter().enumerate().filter(|(_, effect)| effect.law().is_dry());
-    let error = |(k, effect): (usize, &Effect)| solved.std_error(k, rows) * of(&|i| level(effect, track, i).abs());
+    let error = |(k, effect): (usize, &Effect)| {
+        solved.std_error(k, study.system.rows) * along(&|i| level(effect, track, i).abs())
+    };
     if used > 0.0 && now > 0.0 { [used / now, dry.map(error).sum::<f64>() / now] } else { [1.0, 0.0] }
+}
+
+/// Size of the dry friction at each row if it slid: that of the model's laws, and Coulomb friction that was found beside
+/// them.
+fn dry_levels(track: &Track, model: &Model, study: &ChannelFit, solved: &Solved) -> Vec<f64> {
+    let found = study.found().into_iter().filter(|(c, _)| c.id == coulomb_friction::ID);
+    let beside: f64 = found.map(|(_, values)| values[0]).sum();
+    (0..study.target.len()).map(|i| dry_level(track, model, &solved.values, i) + beside).collect()
 }
 
 /// Size of the model's dry friction at a row if it slid.

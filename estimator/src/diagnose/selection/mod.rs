@@ -8,6 +8,7 @@ pub(crate) mod layout;
 pub(crate) mod leave_window_out;
 pub(crate) mod noise_model;
 pub(crate) mod normal_equations;
+pub(crate) mod open_values;
 pub(crate) mod prescreen;
 pub(crate) mod profile_likelihood;
 pub(crate) mod refinement;

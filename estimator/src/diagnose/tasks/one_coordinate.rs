@@ -202,8 +202,7 @@ impl Refinement for Search<'_> {
         let errors = self.errors.get_or_insert_with(make).clone();
         let mut study =
             Channel { target: y, baseline: base, resisting, candidates, errors, layout, rules }.select(before)?;
-        let solved = study.solved.as_ref();
-        study.shares_of = solved.map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, study.system.rows));
+        study.shares_of = shares_of(track, model, &dry, &study);
         Ok(study)
     }
 

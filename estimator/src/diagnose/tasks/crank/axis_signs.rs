@@ -7,6 +7,7 @@ use crate::diagnose::contract::Cause;
 use crate::diagnose::data::limits::HALF;
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
+use crate::diagnose::recording::grip_axis_signs::is_plausible;
 use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::rules::{MUCH, MUCH_UNSEEN, Rules};
@@ -84,6 +85,9 @@ pub fn of_crank<'a>(
     let mut best: Option<(f64, Looked, Recording, &[&str])> = None;
     for names in ALONE.iter().filter(|names| names.iter().any(|name| recording.channel(name).is_some())) {
         let other = mirrored(&straight, names);
+        if !is_plausible(&other) {
+            continue;
+        }
         let Ok(looked) = Looked::at(&other, bad) else { continue };
         let Ok((after, resists)) = looked.left() else { continue };
         // One mirrored channel is likelier than that and an axis of the force.

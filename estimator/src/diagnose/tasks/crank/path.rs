@@ -161,10 +161,7 @@ fn compare(
     let y: Vec<f64> = (0..arms.len()).map(|i| distance(i) + path.points[i].inside_m2 / arms[i].norm()).collect();
     let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
     let mut base = vec![vec![1.0; y.len()], column(&|i| outward[i].x), column(&|i| outward[i].y)];
-    if path.two_fingered {
-        base.push(column(&|i| outward[i].x * path.points[i].force.x));
-        base.push(column(&|i| outward[i].y * path.points[i].force.y));
-    }
+    base.extend(path.pad_axes().iter().map(|a| column(&|i| outward[i][*a] * path.points[i].force[*a])));
     let channel = Channel::new(y, base, candidates(path, &outward, courses), layout(path), rules);
     let mut study = channel.select(None).map_err(|_| no_circle())?;
     // Misfit of hardening pads, or of two slips by one, looks like another weak cause in the fitted rows.
@@ -227,7 +224,8 @@ fn corrections(path: &Path, study: &ChannelFit, shift_m: &mut [Vec2], center_m: 
     shift_m.fill(Vec2::zeros());
     let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };
     let found = study.found();
-    let give = if path.two_fingered { Vec2::new(solved.values[3], solved.values[4]) } else { Vec2::zeros() };
+    let mut give = Vec2::zeros();
+    path.pad_axes().iter().zip(&solved.values[3..]).for_each(|(axis, value)| give[*axis] = *value);
     let of = |point: &PathPoint| {
         let outward = (point.position - center_m).normalize();
         let mut shift = point.force.component_mul(&give);

@@ -1,6 +1,7 @@
 //! Rows of a crank's recording: positions and forces of the fingers or tool that hold the handle.
 
 use super::contact_phases::held_and_free;
+use super::handle_motion::HandleMotion;
 use super::path::{Arm, unwrapped};
 use super::path_points::{Path, PathPoint};
 use crate::diagnose::data::hung_weight::Hung;
@@ -10,7 +11,7 @@ use crate::diagnose::data::regression_data::{Fine, Place, Row, Track};
 use foundation::estimate::EstimateError;
 use foundation::signal::derive::savitzky_golay;
 use foundation::signal::noise::{white_noise, white_noise_under_fast_motion};
-use foundation::signal::task::{is_two_fingered, task_signals, times, tip_series};
+use foundation::signal::task::{is_two_fingered, times};
 use haptics::Vec2;
 use haptics::hand::JointAngles;
 use haptics::law::{Coordinate, Motion};
@@ -28,6 +29,8 @@ pub struct Signals {
     pub force: Vec<Vec2>,
     /// True if two fingers hold the handle. Positions are then means of both tips.
     pub two_fingered: bool,
+    /// True if the positions are without the give of the pads along the line of the grip.
+    grip_is_corrected: bool,
     /// Joint angles of each finger, if recorded.
     joints: [Option<Vec<JointAngles>>; 2],
     pub held: Vec<bool>,
@@ -95,7 +98,7 @@ impl Signals {
     /// `bad`: samples that no sensor measured.
     pub fn of(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let time_s = times(recording);
-        let (position, velocity, force) = raw(recording)?;
+        let HandleMotion { position, velocity, force, grip_is_corrected } = HandleMotion::of(recording)?;
         let n = time_s.len();
         let (mut held, mut free) = held_and_free(recording, &time_s, &force)?;
         for (i, bad) in bad.iter().enumerate().filter(|(_, b)| **b) {
@@ -131,6 +134,7 @@ impl Signals {
             velocity: mean(&velocity),
             force: mean(&force),
             two_fingered,
+            grip_is_corrected,
             joints,
             held: all(&held),
             free: all(&free),
@@ -177,7 +181,7 @@ impl Signals {
                 }
             })
             .collect();
-        Path { points, period_s: self.period_s, two_fingered }
+        Path { points, period_s: self.period_s, two_fingered, grip_is_corrected: self.grip_is_corrected }
     }
 
     /// The rows along the circle of `arm`, then the free ones, with the force as it was recorded.
@@ -375,24 +379,4 @@ fn stretches(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
         end - run.len()..end
     });
     ranges.filter(|range| flags[range.start] && range.len() >= 8).collect()
-}
-
-type Raw = (Vec<Vec2>, Vec<Vec2>, Vec<Vec2>);
-
-fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
-    if is_two_fingered(recording) {
-        let signals = task_signals(recording)?;
-        return Ok((signals.position, signals.velocity, signals.net_force_n));
-    }
-    let tip = tip_series(recording, "")?;
-    let velocity = tip.velocity.ok_or_else(|| EstimateError::Clockless {
-        what: "a diagnosis of a crank".to_owned(),
-        recording: recording.name.clone(),
-    })?;
-    let force = tip.force.ok_or_else(|| EstimateError::MissingColumn {
-        task: "a diagnosis of a crank".to_owned(),
-        column: "fx_N".to_owned(),
-        recording: recording.name.clone(),
-    })?;
-    Ok((tip.position, velocity, force))
 }
