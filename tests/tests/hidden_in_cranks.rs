@@ -35,6 +35,8 @@ struct Hidden {
     /// What the left finger's top joint is wrong by, rad.
     joint_rad: f64,
     two_fingers: bool,
+    /// Grip of both fingers beyond 1.3 N, N.
+    firmer_n: f64,
     /// Weight of a handle that hangs on the bearing, N: it loads that beside the fingers' pull, and its mass is held on the circle there.
     handle_n: f64,
     /// Whether it is turned one way, and pulled outward all the time.
@@ -116,7 +118,7 @@ fn recording(seed: u64, hidden: Hidden) -> Recording {
         channels.push((format!("qt{ending}_rad"), top));
         for axis in 0..2 {
             let of = |(k, instant): (usize, &Instant)| {
-                let squeeze_n = if axis == 0 && instant.held { -1.3 * side } else { 0.0 };
+                let squeeze_n = if axis == 0 && instant.held { -(1.3 + hidden.firmer_n) * side } else { 0.0 };
                 let drift_n = if axis == 1 { hidden.drift_n * k as f64 / instants.len() as f64 } else { 0.0 };
                 share * (instant.force_n[axis] + drift_n) + squeeze_n
             };
@@ -216,6 +218,15 @@ fn a_mass_off_the_axis_between_two_fingers_is_no_mirrored_axis() {
     for seed in SEEDS {
         let found = asked(seed, Hidden { eccentric_n: 0.7, two_fingers: true, ..Hidden::default() });
         assert_eq!(ids(&found), ["eccentric-mass"], "{seed}");
+    }
+}
+
+/// The difference of two gripping forces is a constant: with a wrong sign of one of them, every effect vanishes.
+#[test]
+fn a_light_crank_in_a_firm_grip_has_no_mirrored_axis() {
+    for seed in SEEDS {
+        let hidden = Hidden { ripple: (5.0, 0.25), two_fingers: true, firmer_n: 4.0, ..Hidden::default() };
+        assert_eq!(ids(&asked(seed, hidden)), ["position-ripple"], "{seed}");
     }
 }
 

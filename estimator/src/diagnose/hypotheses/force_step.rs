@@ -10,7 +10,7 @@ use super::sensor_fault::{SensorFault, add_each, add_halved};
 use super::variable::Variable;
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::HALF;
-use crate::diagnose::data::regression_data::{Place, Row, Track};
+use crate::diagnose::data::regression_data::{Row, Track};
 use haptics::Vec2;
 use haptics::law::{ForceStep, Kind};
 

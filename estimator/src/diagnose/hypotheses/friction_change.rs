@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::candidate::Candidate;
 use super::change_scan::{Scan, slides, widen_time};
 use super::dictionary::Dictionary;
-use super::grid::{Near, Point, Ranges};
+use super::grid::{Near, Point, Ranges, may_start};
 use super::hypothesis::{About, Found, Hypothesis};
 use super::relations::{Form, Over, Relation};
 use super::variable::Variable;
@@ -80,7 +80,8 @@ impl Hypothesis for FrictionChange {
 /// Start time at which a sudden change of the dry friction explains most. The starts are those of every recording.
 fn best_start_s(data: &Dictionary<'_>) -> Option<f64> {
     let is_one = data.track.rows.iter().all(|row| row.recording == 0);
-    is_one.then(|| Scan::of(data, 0, 1, &|i| [slides(data, i), 0.0]).best_time_s()).flatten()
+    let best_s = is_one.then(|| Scan::of(data, 0, 1, &|i| [slides(data, i), 0.0]).best_time_s()).flatten();
+    best_s.filter(|start_s| may_start(data.track, *start_s))
 }
 
 fn change(column: Vec<f64>) -> Candidate {

@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::relations::Relation;
 use crate::diagnose::data::interpolation::FINE_HZ;
 use crate::diagnose::data::limits::SIGNIFICANT;
-use crate::diagnose::data::regression_data::{Place, Track};
+use crate::diagnose::data::regression_data::{Place, Row, Track};
 use std::f64::consts::TAU;
 
 /// Shortest distance that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the
@@ -136,8 +136,18 @@ impl<'a> Ranges<'a> {
     /// Start times of a sudden change.
     pub(crate) fn starts(&self) -> impl Iterator<Item = f64> {
         let span_s = self.track.span_s;
-        START_SHARES.values().map(move |share| share * span_s)
+        START_SHARES.values().map(move |share| share * span_s).filter(|start_s| may_start(self.track, *start_s))
     }
+}
+
+/// True if enough of the motion lies before and after a sudden change. Otherwise it may be a grasp that begins or ends.
+pub(crate) fn may_start(track: &Track, start_s: f64) -> bool {
+    let before = |row: &Row| row.motion.time_s < start_s;
+    let way = |counts: &dyn Fn(&Row) -> bool| -> f64 {
+        let rows = track.along().map(|i| &track.rows[i]).filter(|row| counts(row));
+        rows.map(|row| row.motion.velocity.abs()).sum()
+    };
+    (START_SHARES.low()..=START_SHARES.high()).contains(&(way(&before) / way(&|_| true)))
 }
 
 /// Shortest presliding distance that is felt in the force.
@@ -191,6 +201,7 @@ impl Near<'_> {
     /// Start times around those that were found of any sudden change.
     pub(crate) fn starts(&self) -> Vec<f64> {
         let starts = self.found.iter().filter_map(|(c, _)| c.value("t0"));
-        starts.flat_map(|start| START_SHARES.around(start, self.ranges.track.span_s, self.step)).collect()
+        let near = starts.flat_map(|start| START_SHARES.around(start, self.ranges.track.span_s, self.step));
+        near.filter(|start_s| may_start(self.ranges.track, *start_s)).collect()
     }
 }

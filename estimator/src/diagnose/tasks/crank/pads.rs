@@ -25,3 +25,48 @@ pub fn give_m_n(signals: &TaskSignals) -> Option<f64> {
     let explains = fit.rms.powi(2) < HALF * spread_m.powi(2);
     (explains && fit.values[1] < 0.0).then_some(-0.25 * fit.values[1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foundation::signal::task::task_signals;
+    use haptics::recording::{Channel, Recording};
+
+    /// Two fingers that close on a handle and pull it back and forth. `give`: of either pad, m/N.
+    fn held(give: f64) -> Recording {
+        let n = 2000;
+        let closed = |i: usize| (0.01 * i as f64 - 2.0).clamp(0.0, 3.0);
+        let pull = |i: usize| 0.4 * (0.02 * i as f64).sin() * closed(i) / 3.0;
+        let noise = |i: usize, k: usize| 5e-6 * (1.3 * (i * i + 7 * k) as f64).sin();
+        let force = |i: usize, side: f64| closed(i) * -side + 0.5 * pull(i);
+        let tip = |i: usize, side: f64, k: usize| {
+            let open = if closed(i) > 0.0 { 0.0 } else { 2e-5 * (200.0 - i as f64) };
+            side * (0.005 + open) + give * force(i, side) + 1e-3 * (0.004 * i as f64).sin() + noise(i, k)
+        };
+        let channel = |name: &str, of: &dyn Fn(usize) -> f64| Channel {
+            name: name.to_owned(),
+            unit: String::new(),
+            values: (0..n).map(of).collect(),
+        };
+        let channels = vec![
+            channel("x1_m", &|i| tip(i, -1.0, 1)),
+            channel("x2_m", &|i| tip(i, 1.0, 2)),
+            channel("y1_m", &|_| 0.0),
+            channel("y2_m", &|_| 0.0),
+            channel("fx1_N", &|i| force(i, -1.0)),
+            channel("fx2_N", &|i| force(i, 1.0)),
+            channel("fy1_N", &|_| 0.0),
+            channel("fy2_N", &|_| 0.0),
+        ];
+        let time_s = Some((0..n).map(|i| 0.005 * i as f64).collect());
+        Recording { time_s, channels, ..Recording::default() }
+    }
+
+    #[test]
+    fn pads_give_by_half_of_either_and_rigid_fingertips_do_not() {
+        let of = |give: f64| give_m_n(&task_signals(&held(give)).expect("signals"));
+        let give_m_n = of(4e-4).expect("the closing shows it");
+        assert!((give_m_n / 2e-4 - 1.0).abs() < 0.02, "{give_m_n}");
+        assert_eq!(of(0.0), None);
+    }
+}
