@@ -99,7 +99,9 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Fi
     faults.dedup_by(|a, b| which(a) == which(b));
     match task {
         Task::BlockStack | Task::Barrel if tasks::sliding_block::is_slid(recordings) => {
-            tasks::sliding_block::slid(recordings, options, &faults)
+            delay_correction::corrected(recordings, |some, back| {
+                tasks::sliding_block::slid(some, options, &faults, back)
+            })
         }
         // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => delay_correction::corrected(recordings, |some, back| {

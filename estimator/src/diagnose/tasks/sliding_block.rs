@@ -11,6 +11,7 @@ use super::mechanism::rows;
 use super::one_coordinate;
 use crate::diagnose::answer::build::Evidence;
 use crate::diagnose::answer::named::Named;
+use crate::diagnose::answer::put_back::PutBack;
 use crate::diagnose::contract::{
     Alternative, Cause, Experiment, Gain, NextExperiment, NotExcited, Validation, parameter,
 };
@@ -21,13 +22,13 @@ use crate::diagnose::data::regression_data::{Model, Place, Track};
 use crate::diagnose::data::row_means::mean_and_error;
 use crate::diagnose::experiment::proposal;
 use crate::diagnose::experiment::strokes::FREE_S;
-use crate::diagnose::findings::Findings;
+use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::windows::AT_ONCE;
 use crate::diagnose::hypotheses::{
     force_bias, force_gain, friction_asymmetry, gravity_tilt, length_scale, load_friction,
 };
 use crate::diagnose::options::{Options, nothing};
-use crate::diagnose::recording::sample_faults;
+use crate::diagnose::recording::{pads, sample_faults, time_delay};
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain;
 use crate::diagnose::validation::on_other_recordings;
@@ -73,7 +74,12 @@ pub fn is_slid(recordings: &[Recording]) -> bool {
 }
 
 /// Diagnoses recordings of one block that is slid.
-pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Result<Findings, EstimateError> {
+pub fn slid(
+    recordings: &[Recording],
+    options: &Options,
+    faults: &[Cause],
+    put_back: Option<&PutBack<'_>>,
+) -> Result<Findings, EstimateError> {
     let (mut track, of_samples, read) = track_of(recordings, options.world.as_ref())?;
     let weight_n = read.iter().find_map(|s| s.weight_n);
     let model = model(options, weight_n.is_some())?;
@@ -82,7 +88,9 @@ pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Re
     options.progress.tell(0.8)?;
     let scale = scale(&study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
     let causes = faults.iter().cloned().chain(of_samples).collect();
-    let mut draft = explain(&track, &model, &study, Vec::new(), Evidence { causes, ..Evidence::default() });
+    let delay = DelayFindings { guess_s: time_delay::guess_s(&track, &model), ..DelayFindings::default() };
+    let evidence = Evidence { causes, delay, ..Evidence::default() };
+    let mut draft = explain(&track, &model, &study, Vec::new(), evidence);
     let named = &mut draft.named;
     // Motions of the library are for an object that a program drives along its coordinate.
     if let Some(next) = &mut named.next {
@@ -98,7 +106,7 @@ pub fn slid(recordings: &[Recording], options: &Options, faults: &[Cause]) -> Re
         let ids = [load_friction::ID, force_gain::ID, length_scale::ID];
         named.not_excited.extend(ids.map(|id| NotExcited::new(id, why)));
     }
-    Ok(draft.finish(None))
+    Ok(draft.finish(put_back))
 }
 
 /// Validates the found causes on another recording.
@@ -188,8 +196,12 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
         (0..n).map(at).collect()
     };
     let force = |f: usize, i: usize| signals.tips[f].force.as_ref().map_or(0.0, |v| v[i].x);
-    let place = of_touching(&|f, i| signals.tips[f].position[i].x, true);
-    let rate = of_touching(&|f, i| signals.tips[f].velocity.as_ref().map_or(0.0, |v| v[i].x), true);
+    // The block lies behind each tip by what the pad gives.
+    let pad_m_n = pads::compliance_m_n(&signals).unwrap_or(0.0);
+    let force_rates = [0, 1].map(|f| smooth(time, &(0..n).map(|i| force(f, i)).collect::<Vec<f64>>()).slope);
+    let velocity = |f: usize, i: usize| signals.tips[f].velocity.as_ref().map_or(0.0, |v| v[i].x);
+    let place = of_touching(&|f, i| signals.tips[f].position[i].x - pad_m_n * force(f, i), true);
+    let rate = of_touching(&|f, i| velocity(f, i) - pad_m_n * force_rates[f][i], true);
     let along_n = of_touching(&force, false);
     let net: Vec<f64> = signals.net_force_n.iter().map(|f| f.y).collect();
     let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;

@@ -1,6 +1,6 @@
 //! Position and velocity of a crank's handle, and the net force on it, from the fingers or the tool that hold it.
 
-use super::pads;
+use crate::diagnose::recording::pads;
 use foundation::estimate::EstimateError;
 use foundation::signal::task::{TaskSignals, is_two_fingered, task_signals, tip_series};
 use haptics::Vec2;
@@ -19,12 +19,14 @@ impl HandleMotion {
     pub fn of(recording: &Recording) -> Result<Self, EstimateError> {
         if is_two_fingered(recording) {
             let signals = task_signals(recording)?;
-            let give_m_n = pads::give_m_n(&signals);
+            let compliance_m_n = pads::compliance_m_n(&signals);
             let TaskSignals { mut position, velocity, net_force_n: force, .. } = signals;
+            // The middle of both tips. The path alone shows only how much more the pads give along one axis than along
+            // the other.
             for (place, force) in position.iter_mut().zip(&force) {
-                place.x -= give_m_n.unwrap_or(0.0) * force.x;
+                place.x -= 0.5 * compliance_m_n.unwrap_or(0.0) * force.x;
             }
-            return Ok(Self { position, velocity, force, grip_is_corrected: give_m_n.is_some() });
+            return Ok(Self { position, velocity, force, grip_is_corrected: compliance_m_n.is_some() });
         }
         let tip = tip_series(recording, "")?;
         let velocity = tip.velocity.ok_or_else(|| EstimateError::Clockless {

@@ -5,7 +5,6 @@ pub(crate) mod bearing_load;
 pub(crate) mod contact_phases;
 pub(crate) mod grasp_slip;
 pub(crate) mod handle_motion;
-pub(crate) mod pads;
 pub(crate) mod path;
 pub(crate) mod path_answer;
 pub(crate) mod path_points;

@@ -1,17 +1,17 @@
-//! Give of the pads with which two fingers hold a handle, from the closing of their grip.
+//! Compliance of the pads with which two fingers hold an object, from the closing of their grip.
 
+use super::grip_axis_signs::PRESSING;
 use crate::diagnose::data::limits::HALF;
-use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use estimation::regression::linear::least_squares_values;
 use foundation::signal::task::TaskSignals;
 use haptics::Vec2;
 
-/// Displacement of the middle of both tips along their line of grip by a net force, m/N. A handle of constant width, held
-/// by two equal pads, brings the tips nearer to each other by four times as much for each newton of grip.
+/// Compliance of one of two equal pads along their line of grip, m/N. An object of constant width between them brings the
+/// tips nearer to each other by twice as much for each newton of grip; it lies behind each tip by this for each newton of
+/// that finger's force.
 ///
-/// The path of the handle alone does not determine it: it shows only how much more the pads give along one axis than
-/// along the other. `None` if the grip does not explain most of the changes of its width.
-pub fn give_m_n(signals: &TaskSignals) -> Option<f64> {
+/// `None` if the grip does not explain most of the changes of its width.
+pub fn compliance_m_n(signals: &TaskSignals) -> Option<f64> {
     let force = |k: usize, i: usize| signals.tips[k].force.as_ref().map_or(0.0, |force: &Vec<Vec2>| force[i].x);
     let grip_n = |i: usize| 0.5 * (force(0, i) - force(1, i));
     let firmest_n = signals.grip_force_n.iter().copied().fold(0.0, f64::max);
@@ -23,7 +23,7 @@ pub fn give_m_n(signals: &TaskSignals) -> Option<f64> {
     let mean_m = width_m.iter().sum::<f64>() / width_m.len() as f64;
     let spread_m = (width_m.iter().map(|w| (w - mean_m).powi(2)).sum::<f64>() / width_m.len() as f64).sqrt();
     let explains = fit.rms.powi(2) < HALF * spread_m.powi(2);
-    (explains && fit.values[1] < 0.0).then_some(-0.25 * fit.values[1])
+    (explains && fit.values[1] < 0.0).then_some(-0.5 * fit.values[1])
 }
 
 #[cfg(test)]
@@ -32,7 +32,7 @@ mod tests {
     use foundation::signal::task::task_signals;
     use haptics::recording::{Channel, Recording};
 
-    /// Two fingers that close on a handle and pull it back and forth. `give`: of either pad, m/N.
+    /// Two fingers that close on an object and pull it back and forth. `give`: of either pad, m/N.
     fn held(give: f64) -> Recording {
         let n = 2000;
         let closed = |i: usize| (0.01 * i as f64 - 2.0).clamp(0.0, 3.0);
@@ -63,10 +63,10 @@ mod tests {
     }
 
     #[test]
-    fn pads_give_by_half_of_either_and_rigid_fingertips_do_not() {
-        let of = |give: f64| give_m_n(&task_signals(&held(give)).expect("signals"));
-        let give_m_n = of(4e-4).expect("the closing shows it");
-        assert!((give_m_n / 2e-4 - 1.0).abs() < 0.02, "{give_m_n}");
+    fn the_closing_of_a_grip_shows_its_pads_and_rigid_fingertips_show_none() {
+        let of = |give: f64| compliance_m_n(&task_signals(&held(give)).expect("signals"));
+        let compliance_m_n = of(4e-4).expect("the closing shows it");
+        assert!((compliance_m_n / 4e-4 - 1.0).abs() < 0.02, "{compliance_m_n}");
         assert_eq!(of(0.0), None);
     }
 }
