@@ -12,6 +12,8 @@ const LOGS: usize = 6;
 /// Answers to the logs of one seed.
 #[derive(Debug, Default)]
 pub struct Score {
+    pub logs: usize,
+    /// Logs with a hidden effect.
     pub hidden: usize,
     /// Logs whose hidden effect was named.
     pub named: usize,
@@ -54,6 +56,7 @@ impl Score {
         };
         let named = effect == "none" || is_certain(effect);
         let misleads = found.causes.iter().any(|c| c.posterior >= CERTAIN && !is_there(effect, &c.id));
+        self.logs += 1;
         self.hidden += usize::from(effect != "none");
         self.named += usize::from(effect != "none" && named);
         self.misled += usize::from(misleads);

@@ -12,6 +12,7 @@ mod seeds;
 mod table;
 mod thrown;
 
+use blind::Share;
 use table::Table;
 
 #[test]
@@ -42,9 +43,11 @@ fn hidden_effects_of_mujocos_cranks_are_named_and_nothing_else() {
     println!("TOUCHSTONE_SEED={seed} repeats it");
     let Some(score) = hidden::scored(seed) else { return };
     println!("{score:#?}");
-    // One of ten may be missed (docs/validation.md has the figures of several seeds); of a few logs, one.
-    assert!(score.named + 1.max(score.hidden / 10) >= score.hidden, "{score:#?}");
-    assert_eq!(score.misled, 0, "{score:#?}");
+    let named = Share { hits: score.named, of: score.hidden };
+    let led_well = Share { hits: score.logs - score.misled, of: score.logs };
+    // Chance of a false alarm, a day; the figures of a large set are in `docs/validation.md`.
+    const LUCK: f64 = 1e-4;
+    assert!(named.at_most(LUCK) >= 0.9 && led_well.at_most(LUCK) >= 0.97, "{score:#?}");
 }
 
 #[test]
