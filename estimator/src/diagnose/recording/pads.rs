@@ -3,7 +3,7 @@
 use super::grip_axis_signs::PRESSING;
 use crate::diagnose::data::limits::HALF;
 use estimation::regression::linear::least_squares_values;
-use foundation::signal::task::TaskSignals;
+use foundation::signal::task::{TaskSignals, smooth};
 use haptics::Vec2;
 
 /// Compliance of one of two equal pads along their line of grip, m/N. An object of constant width between them brings the
@@ -24,6 +24,22 @@ pub fn compliance_m_n(signals: &TaskSignals) -> Option<f64> {
     let spread_m = (width_m.iter().map(|w| (w - mean_m).powi(2)).sum::<f64>() / width_m.len() as f64).sqrt();
     let explains = fit.rms.powi(2) < HALF * spread_m.powi(2);
     (explains && fit.values[1] < 0.0).then_some(-0.5 * fit.values[1])
+}
+
+/// Position, m, and velocity, m/s, along the grip of the object behind one finger's pad: those of the tip less the give of
+/// the pad.
+pub fn behind_pad(signals: &TaskSignals, finger: usize) -> (Vec<f64>, Vec<f64>) {
+    let pad_m_n = compliance_m_n(signals).unwrap_or(0.0);
+    let tip = &signals.tips[finger];
+    let along = |values: &Option<Vec<Vec2>>| -> Vec<f64> {
+        values.as_ref().map_or_else(|| vec![0.0; signals.len()], |all| all.iter().map(|v| v.x).collect())
+    };
+    let force_n = along(&tip.force);
+    let rate_n_s = smooth(&signals.time_s, &force_n).slope;
+    let less = |tip: f64, force: &f64| tip - pad_m_n * force;
+    let position = tip.position.iter().map(|p| p.x).zip(&force_n).map(|(tip, force)| less(tip, force));
+    let velocity = along(&tip.velocity).into_iter().zip(&rate_n_s).map(|(tip, rate)| less(tip, rate));
+    (position.collect(), velocity.collect())
 }
 
 #[cfg(test)]

@@ -196,12 +196,9 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
         (0..n).map(at).collect()
     };
     let force = |f: usize, i: usize| signals.tips[f].force.as_ref().map_or(0.0, |v| v[i].x);
-    // The block lies behind each tip by what the pad gives.
-    let pad_m_n = pads::compliance_m_n(&signals).unwrap_or(0.0);
-    let force_rates = [0, 1].map(|f| smooth(time, &(0..n).map(|i| force(f, i)).collect::<Vec<f64>>()).slope);
-    let velocity = |f: usize, i: usize| signals.tips[f].velocity.as_ref().map_or(0.0, |v| v[i].x);
-    let place = of_touching(&|f, i| signals.tips[f].position[i].x - pad_m_n * force(f, i), true);
-    let rate = of_touching(&|f, i| velocity(f, i) - pad_m_n * force_rates[f][i], true);
+    let behind = [0, 1].map(|f| pads::behind_pad(&signals, f));
+    let place = of_touching(&|f, i| behind[f].0[i], true);
+    let rate = of_touching(&|f, i| behind[f].1[i], true);
     let along_n = of_touching(&force, false);
     let net: Vec<f64> = signals.net_force_n.iter().map(|f| f.y).collect();
     let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
