@@ -36,7 +36,7 @@ pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
     let felt: Vec<Vec2> = channel.values.iter().map(|force| Vec2::new(*force, 0.0)).collect();
     let begun_s = times.first().copied().unwrap_or_default();
     let read = |time_s: f64| {
-        let drifted_for_s = drifted_for(time_s - begun_s, fault.settles_s);
+        let drifted_for_s = fault.drifted_for(time_s - begun_s);
         let force = at(&times, &felt, time_s - fault.delay_s).x;
         let stepped: f64 = fault.steps_until(time_s - begun_s).map(|step| step.along).sum();
         (1.0 + fault.gain_error) * force + fault.offset_along + drifted_for_s * fault.drift_along_per_s + stepped
@@ -53,19 +53,10 @@ fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), dr
         .map(|time_s| {
             let force = at(times, felt, time_s - fault.delay_s);
             let crossed = Vec2::new(force.x + cross.x * force.y, force.y + cross.y * force.x);
-            let drifted_for_s = drifted_for((time_s - drifts_from_s).max(0.0), fault.settles_s);
-            let stepped: Vec2 = fault.steps_until(time_s - begun_s).map(|step| step.force_n[finger]).sum();
-            (1.0 + fault.gain_error) * crossed
-                + fault.offset_n[finger]
-                + drifted_for_s * fault.drift_n_s[finger]
-                + stepped
+            let drifts_s = (time_s - drifts_from_s).max(0.0);
+            (1.0 + fault.gain_error) * crossed + fault.zero_n(finger, time_s - begun_s, drifts_s)
         })
         .collect()
-}
-
-/// Equivalent duration of a drift at its initial rate, s: a settling one saturates at its time constant.
-fn drifted_for(time_s: f64, settles_s: f64) -> f64 {
-    if settles_s > 0.0 { -settles_s * (-time_s / settles_s).exp_m1() } else { time_s }
 }
 
 /// Force at a time by linear interpolation; constant before the first sample and after the last.
@@ -138,12 +129,5 @@ mod tests {
         see_along(&mut recording, &fault);
         let read = recording.channel("f_N").expect("still there")[50];
         assert!((read - (0.45 + 0.3 + 0.1)).abs() < 1e-9, "{read}");
-    }
-
-    #[test]
-    fn a_drift_that_settles_comes_to_rest() {
-        assert!((drifted_for(10.0, 0.0) - 10.0).abs() < 1e-12);
-        assert!((drifted_for(0.01, 5.0) - 0.01).abs() < 1e-4, "at its first rate in the beginning");
-        assert!((drifted_for(1e3, 5.0) - 5.0).abs() < 1e-9);
     }
 }

@@ -6,8 +6,9 @@ use serde_json::Value;
 
 /// Posterior from which a cause is certain.
 const CERTAIN: f64 = 0.95;
-/// Logs of a daily seed; `TOUCHSTONE_TASK_CASES` asks for more.
-const LOGS: usize = 6;
+/// Seed and number of the logs; `TOUCHSTONE_SEED` and `TOUCHSTONE_TASK_CASES` ask for others.
+const SEED: u64 = 900_301;
+const LOGS: usize = 12;
 
 /// Answers to the logs of one seed.
 #[derive(Debug, Default)]
@@ -17,15 +18,18 @@ pub struct Score {
     pub hidden: usize,
     /// Logs whose hidden effect was named.
     pub named: usize,
-    /// Logs in which another cause was certain.
+    /// Logs in which another cause was certain, and those among them without a hidden effect.
     pub misled: usize,
+    pub alarms: usize,
     /// One line for each log that was not answered rightly.
     pub lines: Vec<String>,
 }
 
-/// Makes and diagnoses the logs of a seed; `None` without MuJoCo.
-pub fn scored(seed: u64) -> Option<Score> {
-    let count = std::env::var("TOUCHSTONE_TASK_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(LOGS);
+/// Makes and diagnoses the logs; `None` without MuJoCo.
+pub fn scored() -> Option<Score> {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let seed = asked("TOUCHSTONE_SEED").unwrap_or(SEED);
+    let count = asked("TOUCHSTONE_TASK_CASES").map_or(LOGS, |count| count as usize);
     let [logs, truths] = [0, 1].map(|_| tempfile::tempdir().expect("a folder"));
     let [of_logs, of_truths] = [&logs, &truths].map(|folder| folder.path().to_str().expect("a plain path").to_owned());
     let arguments = [of_logs.as_str(), &of_truths, &seed.to_string(), &count.to_string()];
@@ -60,6 +64,7 @@ impl Score {
         self.hidden += usize::from(effect != "none");
         self.named += usize::from(effect != "none" && named);
         self.misled += usize::from(misleads);
+        self.alarms += usize::from(effect == "none" && misleads);
         if !named || misleads {
             let said: Vec<String> = found.causes.iter().map(|c| format!("{} {:.2}", c.id, c.posterior)).collect();
             self.lines.push(format!("{name}: {effect} is hidden, said is {said:?}"));

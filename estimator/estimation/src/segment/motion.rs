@@ -11,7 +11,7 @@ use foundation::signal::task::{
 use foundation::tasks::definition::Definition;
 use foundation::tasks::{Sign, SystemState, Thresholds};
 use haptics::Vec2;
-use haptics::recording::Recording;
+use haptics::recording::{Recording, Task};
 
 /// The signals that rest and motion are told from, one entry a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,11 @@ impl Motion {
         let signals = calmed(&task_signals(recording)?);
         let levels = Levels::of(&signals);
         let thresholds = task.thresholds(given, || choose(&signals, &levels));
-        let load = push_without_bias(&signals, &levels);
+        let mut load = push_without_bias(&signals, &levels);
+        if task.like == Task::Crank {
+            let open = levels.opened(&signals, thresholds.force_n);
+            load.iter_mut().zip(open).filter(|(_, open)| *open).for_each(|(load, _)| *load = 0.0);
+        }
         let speed: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
         let leave_load = task.thresholds.leave;
         Ok(Self {
@@ -207,4 +211,51 @@ fn single_tool(
     let (leave_load, least_change_s) = load.as_ref().map_or((1.0, 0.0), |l| (l.leave, l.least_change_s));
     let (load, warnings) = load.map_or((None, Vec::new()), |l| (Some(l.values), l.warnings));
     Ok(Motion { time_s, speed, load, thresholds, leave_load, least_change_s, warnings })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::segment::segment;
+    use foundation::tasks::SystemState;
+    use haptics::recording::{Channel, Meta, Recording, Task};
+
+    const RATE_HZ: f64 = 200.0;
+
+    /// Two fingers that grip a handle from 1 s to 9 s, turn it, and open in place. The second one's sensor drifts.
+    fn turned(drift_n_s: f64) -> Recording {
+        let n = 2000;
+        let time_s = |i: usize| i as f64 / RATE_HZ;
+        let closed = |i: usize| (time_s(i) - 1.0).clamp(0.0, 0.5).min((9.0 - time_s(i)).clamp(0.0, 0.5)) / 0.5;
+        let pressed = |i: usize| (5.0 * closed(i) - 4.0).max(0.0);
+        let noise = |i: usize, k: usize| 0.004 * (1.3 * (i * i + 7 * k) as f64).sin();
+        let angle = |i: usize| 1.2 * (time_s(i).clamp(1.5, 8.5) - 1.5).sin();
+        let x = |i: usize, side: f64| 0.02 * angle(i).cos() + side * (0.004 + 0.006 * (1.0 - closed(i)));
+        let drift = |i: usize, finger: f64| 0.5 * (finger + 1.0) * drift_n_s * time_s(i);
+        let channel = |name: &str, of: &dyn Fn(usize) -> f64| Channel {
+            name: name.to_owned(),
+            unit: String::new(),
+            values: (0..n).map(of).collect(),
+        };
+        let of_finger = |k: usize, side: f64| {
+            vec![
+                channel(&format!("x{k}_m"), &|i| x(i, side)),
+                channel(&format!("y{k}_m"), &|i| 0.02 * angle(i).sin()),
+                channel(&format!("fx{k}_N"), &|i| -side * 2.0 * pressed(i) + noise(i, k)),
+                channel(&format!("fy{k}_N"), &|i| 0.2 * pressed(i) + drift(i, side) + noise(i, k + 2)),
+            ]
+        };
+        let channels = [of_finger(1, -1.0), of_finger(2, 1.0)].concat();
+        let meta = Meta { task: Some(Task::Crank), ..Meta::default() };
+        Recording { time_s: Some((0..n).map(time_s).collect()), channels, meta, ..Recording::default() }
+    }
+
+    #[test]
+    fn an_opened_hand_is_free_whatever_its_sensor_reads() {
+        for drift_n_s in [0.0, 0.03] {
+            let found = segment(&turned(drift_n_s), None, None).expect("segments");
+            let last = found.states.last().expect("states");
+            assert_eq!(last.state, SystemState::FreeMotion, "{drift_n_s}");
+            assert!((8.5..8.7).contains(&last.t0), "{drift_n_s}: free from {} s on", last.t0);
+        }
+    }
 }

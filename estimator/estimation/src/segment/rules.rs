@@ -36,9 +36,12 @@ pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds, 
         signals.tips[finger].force.as_ref().map_or_else(Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
     };
     let mut qualifier = Qualifier::default();
-    (0..signals.len())
-        .map(|i| qualifier.next([force(0, i), force(1, i)], signals.velocity[i], thresholds, leave))
-        .collect()
+    let opened = levels.opened(signals, thresholds.force_n);
+    let of = |(i, open): (usize, bool)| {
+        let quality = qualifier.next([force(0, i), force(1, i)], signals.velocity[i], thresholds, leave);
+        Quality { no_contact: open || quality.no_contact, ..quality }
+    };
+    opened.into_iter().enumerate().map(of).collect()
 }
 
 /// Tells the qualitative values of one sample after the other; remembers the ones before for the hysteresis.

@@ -79,6 +79,29 @@ impl Levels {
         }
     }
 
+    /// Flags of samples in which the hand is open: the tips are farther apart than at any time at which both press against
+    /// each other with `least_n`, N, and all forces stay within it of their medians. A zero that moved is no contact there.
+    pub fn opened(&self, signals: &TaskSignals, least_n: f64) -> Vec<bool> {
+        let forces: [&[Vec2]; 2] = [0, 1].map(|f| signals.tips[f].force.as_deref().unwrap_or(&[]));
+        let presses = |i: usize| (forces[0][i] - self.bias_n[0]).x.min((self.bias_n[1] - forces[1][i]).x) > least_n;
+        let n = forces[0].len().min(forces[1].len());
+        let widest_m = (0..n).filter(|i| presses(*i)).map(|i| signals.grip_width_m[i]).max_by(f64::total_cmp);
+        let mut open: Vec<bool> =
+            signals.grip_width_m.iter().map(|width_m| widest_m.is_some_and(|widest_m| *width_m > widest_m)).collect();
+        let mut end = 0;
+        while let Some(first) = open[end..].iter().position(|open| *open).map(|k| end + k) {
+            end = open[first..].iter().position(|open| !open).map_or(n, |k| first + k);
+            for force in forces {
+                for axis in 0..2 {
+                    let level_n = percentile(&mut force[first..end].iter().map(|f| f[axis]).collect::<Vec<_>>(), 0.5);
+                    let calm = force[first..end].iter().map(|f| (f[axis] - level_n).abs() <= least_n);
+                    open[first..end].iter_mut().zip(calm).for_each(|(open, calm)| *open &= calm);
+                }
+            }
+        }
+        open
+    }
+
     /// Warnings about the forces at rest.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

@@ -136,6 +136,12 @@ fn of_picks(
     Some((acts, sum.map(as_sensed)))
 }
 
+/// The fault of the force sensors that a comparison found, if it found one that can be added to a recording.
+pub(crate) fn found_fault(study: &ChannelFit) -> Option<SensorFault> {
+    let values = &study.solved.as_ref()?.values;
+    add_faults(&SensorFault::default(), study, &study.picks(), values).filter(|fault| *fault != SensorFault::default())
+}
+
 /// The sensor faults among some candidates, added to other faults; `None` if one of them cannot be added to a recording.
 fn add_faults(beside: &SensorFault, study: &ChannelFit, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;

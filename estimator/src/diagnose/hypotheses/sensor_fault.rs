@@ -46,6 +46,17 @@ impl SensorFault {
     pub fn steps_until(&self, time_s: f64) -> impl Iterator<Item = &Step> {
         self.steps.iter().filter(move |step| step.at_s <= time_s)
     }
+
+    /// Equivalent duration of the drift at its initial rate, s: one that settles saturates at its time constant.
+    pub fn drifted_for(&self, time_s: f64) -> f64 {
+        if self.settles_s > 0.0 { -self.settles_s * (-time_s / self.settles_s).exp_m1() } else { time_s }
+    }
+
+    /// Error of a finger's zero, N, at a time since the start, s. `drifts_s`: time since the drift began.
+    pub fn zero_n(&self, finger: usize, time_s: f64, drifts_s: f64) -> Vec2 {
+        let stepped: Vec2 = self.steps_until(time_s).map(|step| step.force_n[finger]).sum();
+        self.offset_n[finger] + self.drifted_for(drifts_s) * self.drift_n_s[finger] + stepped
+    }
 }
 
 /// Names and units of a bias and of a drift of each finger along each axis.
@@ -100,4 +111,24 @@ pub(crate) fn add_halved(faults: &mut [Vec2; 2], [x, y]: [&str; 2], name: &str, 
 /// name.
 pub(crate) fn add_each(candidate: &Candidate, values: &[f64], mut add: impl FnMut(&str, f64) -> bool) -> bool {
     candidate.linear.iter().zip(values).all(|((name, _), value)| add(name, *value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_is_the_sum_of_offset_drift_and_jumps_and_a_drift_may_settle() {
+        let settling = |settles_s| SensorFault { settles_s, ..SensorFault::default() };
+        assert!((settling(0.0).drifted_for(10.0) - 10.0).abs() < 1e-12);
+        assert!((settling(5.0).drifted_for(0.01) - 0.01).abs() < 1e-4, "at its first rate in the beginning");
+        assert!((settling(5.0).drifted_for(1e3) - 5.0).abs() < 1e-9);
+        let mut fault = settling(0.0);
+        fault.offset_n[1] = Vec2::new(0.1, 0.0);
+        fault.drift_n_s[1] = Vec2::new(0.0, 0.02);
+        fault.steps[0] = Step { at_s: 4.0, force_n: [Vec2::zeros(), Vec2::new(-0.3, 0.0)], along: 0.0 };
+        assert_eq!(fault.zero_n(0, 5.0, 5.0), Vec2::zeros());
+        assert!((fault.zero_n(1, 3.0, 2.0) - Vec2::new(0.1, 0.04)).norm() < 1e-12);
+        assert!((fault.zero_n(1, 5.0, 4.0) - Vec2::new(-0.2, 0.08)).norm() < 1e-12);
+    }
 }

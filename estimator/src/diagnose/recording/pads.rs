@@ -27,9 +27,8 @@ pub fn compliance_m_n(signals: &TaskSignals) -> Option<f64> {
 }
 
 /// Position, m, and velocity, m/s, along the grip of the object behind one finger's pad: those of the tip less the give of
-/// the pad.
-pub fn behind_pad(signals: &TaskSignals, finger: usize) -> (Vec<f64>, Vec<f64>) {
-    let pad_m_n = compliance_m_n(signals).unwrap_or(0.0);
+/// a pad of this compliance, m/N.
+pub fn behind_pad(signals: &TaskSignals, finger: usize, pad_m_n: f64) -> (Vec<f64>, Vec<f64>) {
     let tip = &signals.tips[finger];
     let along = |values: &Option<Vec<Vec2>>| -> Vec<f64> {
         values.as_ref().map_or_else(|| vec![0.0; signals.len()], |all| all.iter().map(|v| v.x).collect())

@@ -196,7 +196,8 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
         (0..n).map(at).collect()
     };
     let force = |f: usize, i: usize| signals.tips[f].force.as_ref().map_or(0.0, |v| v[i].x);
-    let behind = [0, 1].map(|f| pads::behind_pad(&signals, f));
+    let pad_m_n = pads::compliance_m_n(&signals).unwrap_or(0.0);
+    let behind = [0, 1].map(|f| pads::behind_pad(&signals, f, pad_m_n));
     let place = of_touching(&|f, i| behind[f].0[i], true);
     let rate = of_touching(&|f, i| behind[f].1[i], true);
     let along_n = of_touching(&force, false);

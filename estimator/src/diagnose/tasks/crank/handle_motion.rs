@@ -11,22 +11,22 @@ pub struct HandleMotion {
     pub position: Vec<Vec2>,
     pub velocity: Vec<Vec2>,
     pub force: Vec<Vec2>,
-    /// True if the positions are without the give of the pads along the line of the grip.
-    pub grip_is_corrected: bool,
+    /// Compliance of a pad along the line of the grip, m/N, whose give is taken off the positions.
+    pub grip_m_n: Option<f64>,
 }
 
 impl HandleMotion {
     pub fn of(recording: &Recording) -> Result<Self, EstimateError> {
         if is_two_fingered(recording) {
             let signals = task_signals(recording)?;
-            let compliance_m_n = pads::compliance_m_n(&signals);
+            let grip_m_n = pads::compliance_m_n(&signals);
             let TaskSignals { mut position, velocity, net_force_n: force, .. } = signals;
             // The middle of both tips. The path alone shows only how much more the pads give along one axis than along
             // the other.
             for (place, force) in position.iter_mut().zip(&force) {
-                place.x -= 0.5 * compliance_m_n.unwrap_or(0.0) * force.x;
+                place.x -= 0.5 * grip_m_n.unwrap_or(0.0) * force.x;
             }
-            return Ok(Self { position, velocity, force, grip_is_corrected: compliance_m_n.is_some() });
+            return Ok(Self { position, velocity, force, grip_m_n });
         }
         let tip = tip_series(recording, "")?;
         let velocity = tip.velocity.ok_or_else(|| EstimateError::Clockless {
@@ -38,6 +38,6 @@ impl HandleMotion {
             column: "fx_N".to_owned(),
             recording: recording.name.clone(),
         })?;
-        Ok(Self { position: tip.position, velocity, force, grip_is_corrected: false })
+        Ok(Self { position: tip.position, velocity, force, grip_m_n: None })
     }
 }

@@ -19,18 +19,22 @@ use crate::diagnose::contract::{Cause, Validation};
 use crate::diagnose::data::limits::AMBIGUOUS;
 use crate::diagnose::data::regression_data::Model;
 use crate::diagnose::data::{covariates, regression_data};
+use crate::diagnose::extension::hypothetical_worlds::found_fault;
 use crate::diagnose::findings::{DelayFindings, Findings};
+use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use crate::diagnose::hypotheses::{force_cross_axis, joint_offset};
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::options::{Options, nothing};
 use crate::diagnose::recording::{sample_faults, time_delay};
 use crate::diagnose::selection::comparison;
+use crate::diagnose::selection::rules::Rules;
 use crate::diagnose::validation::on_other_recordings;
 use foundation::estimate::EstimateError;
 use foundation::words::amount;
 use haptics::law::{Effect, Law as _, Weight};
 use haptics::recording::Recording;
 use path_answer::{Link, PathFit};
+use path_points::Path;
 
 /// Diagnoses recordings of one crank.
 pub fn crank(
@@ -38,7 +42,7 @@ pub fn crank(
     options: &Options,
     put_back: Option<&PutBack<'_>>,
 ) -> Result<Findings, EstimateError> {
-    let Geometry { tracks, swapped, mut paths, short, faults, mut link, scale } = geometry(recordings, options)?;
+    let Geometry { tracks, swapped, mut paths, held, short, faults, mut link, scale } = geometry(recordings, options)?;
     let other = swapped.iter().any(Option::is_some).then(|| {
         let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
         regression_data::join(either.collect())
@@ -72,6 +76,9 @@ pub fn crank(
     }
     options.progress.tell(0.8)?;
     let study = settle(study);
+    if let Some(fault) = found_fault(&study) {
+        without_fault(&mut paths, held, &fault)?;
+    }
     // The path itself may have shown a scale of all lengths.
     let scale = scale.filter(|scale| paths.iter().all(|p| !p.study.has(&scale.id)));
     let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
@@ -105,6 +112,8 @@ struct Geometry {
     /// The same rows with an error of the other link's angle, if one link's angle has an error.
     swapped: Vec<Option<regression_data::Track>>,
     paths: Vec<PathFit>,
+    /// Points of those paths.
+    held: Vec<Path>,
     /// Warnings of arcs that are too short for a circle.
     short: Vec<String>,
     faults: Vec<Cause>,
@@ -137,12 +146,20 @@ fn geometry(recordings: &[Recording], options: &Options) -> Result<Geometry, Est
         found.tracks.push(rows);
         let path = signals.path(recording);
         found.short.extend(path::short_arc(&path, &circle.arm, &circle.study));
-        let mut study = circle.study;
-        study.competition = path::competition(&path, &circle.arm, &study);
-        let along = vec![true; study.target.len()];
-        found.paths.push(PathFit { study, along, link: None });
+        found.paths.push(PathFit::of(&path, circle));
+        found.held.push(path);
     }
     Ok(found)
+}
+
+/// Compares the paths that pads follow anew, without a fault of the force sensors: a drift reads as a slip of the grasp.
+fn without_fault(paths: &mut [PathFit], held: Vec<Path>, fault: &SensorFault) -> Result<(), EstimateError> {
+    for (fit, mut path) in paths.iter_mut().zip(held).filter(|(_, path)| path.two_fingered) {
+        path.take_off(fault);
+        let signals = path.points.last().map_or(0, |point| point.index + 1);
+        *fit = PathFit::of(&path, path::geometry(&path, signals, Rules::of_path(path.period_s))?);
+    }
+    Ok(())
 }
 
 /// Validates the found causes on another recording of the same crank.

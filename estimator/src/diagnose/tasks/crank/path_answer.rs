@@ -1,5 +1,7 @@
 //! Path of a crank as a part of its answer.
 
+use super::path::{Geometry, competition};
+use super::path_points::Path;
 use crate::diagnose::answer::part::{Part, Role, Told};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::free_run::FreeRun;
@@ -59,6 +61,14 @@ impl Told for PathFit {
 }
 
 impl PathFit {
+    /// The comparison of a path with its structured errors.
+    pub fn of(path: &Path, circle: Geometry) -> Self {
+        let mut study = circle.study;
+        study.competition = competition(path, &circle.arm, &study);
+        let along = vec![true; study.target.len()];
+        Self { study, along, link: None }
+    }
+
     /// The path beside the force along it.
     pub fn part(&self) -> Part<'_> {
         Part {

@@ -1,5 +1,6 @@
 //! Samples of a held handle, from which its path is estimated.
 
+use crate::diagnose::hypotheses::sensor_fault::SensorFault;
 use haptics::Vec2;
 
 /// One held sample.
@@ -23,17 +24,26 @@ pub struct Path {
     pub period_s: f64,
     /// True if two pads hold the handle: their compliance belongs to the model.
     pub two_fingered: bool,
-    /// True if the positions are already without the give of the pads along the line of the grip.
-    pub grip_is_corrected: bool,
+    /// Compliance of a pad along the line of the grip, m/N, whose give is already taken off the positions.
+    pub grip_m_n: Option<f64>,
 }
 
 impl Path {
     /// Axes (x, y) along which the give of two pads is estimated from the path.
     pub fn pad_axes(&self) -> &'static [usize] {
-        match (self.two_fingered, self.grip_is_corrected) {
+        match (self.two_fingered, self.grip_m_n) {
             (false, _) => &[],
-            (true, true) => &[1],
-            (true, false) => &[0, 1],
+            (true, Some(_)) => &[1],
+            (true, None) => &[0, 1],
+        }
+    }
+
+    /// Takes errors of the sensors' zeros off the forces, and off the give of the pads.
+    pub fn take_off(&mut self, fault: &SensorFault) {
+        for point in &mut self.points {
+            let error: Vec2 = (0..2).map(|finger| fault.zero_n(finger, point.time_s, point.time_s)).sum();
+            point.force -= error;
+            point.position.x += 0.5 * self.grip_m_n.unwrap_or(0.0) * error.x;
         }
     }
 

@@ -29,8 +29,8 @@ pub struct Signals {
     pub force: Vec<Vec2>,
     /// True if two fingers hold the handle. Positions are then means of both tips.
     pub two_fingered: bool,
-    /// True if the positions are without the give of the pads along the line of the grip.
-    grip_is_corrected: bool,
+    /// Compliance of a pad along the line of the grip, m/N, whose give is taken off the positions.
+    grip_m_n: Option<f64>,
     /// Joint angles of each finger, if recorded.
     joints: [Option<Vec<JointAngles>>; 2],
     pub held: Vec<bool>,
@@ -98,7 +98,7 @@ impl Signals {
     /// `bad`: samples that no sensor measured.
     pub fn of(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let time_s = times(recording);
-        let HandleMotion { position, velocity, force, grip_is_corrected } = HandleMotion::of(recording)?;
+        let HandleMotion { position, velocity, force, grip_m_n } = HandleMotion::of(recording)?;
         let n = time_s.len();
         let (mut held, mut free) = held_and_free(recording, &time_s, &force)?;
         for (i, bad) in bad.iter().enumerate().filter(|(_, b)| **b) {
@@ -134,7 +134,7 @@ impl Signals {
             velocity: mean(&velocity),
             force: mean(&force),
             two_fingered,
-            grip_is_corrected,
+            grip_m_n,
             joints,
             held: all(&held),
             free: all(&free),
@@ -181,7 +181,7 @@ impl Signals {
                 }
             })
             .collect();
-        Path { points, period_s: self.period_s, two_fingered, grip_is_corrected: self.grip_is_corrected }
+        Path { points, period_s: self.period_s, two_fingered, grip_m_n: self.grip_m_n }
     }
 
     /// The rows along the circle of `arm`, then the free ones, with the force as it was recorded.
