@@ -4,9 +4,11 @@ use blind::{Bench, Chance, Counts, Job, Set, battery};
 use estimator::diagnose::{Diagnosis, Options, diagnose};
 use estimator::pipeline;
 use haptics::recording::Recording;
+use tests::tasks::{Case, Truth, barrel, blocks, needle, switch};
 
-/// Seeds on which nothing was chosen: for recordings with a step, for those that stay as they are, and for fits.
-const SEEDS: [u64; 3] = [7_370_001, 7_370_002, 7_370_003];
+/// Seeds on which nothing was chosen: for recordings with a step, for those that stay as they are, for fits, and for other
+/// tasks.
+const SEEDS: [u64; 4] = [7_370_001, 7_370_002, 7_370_003, 7_600_001];
 /// Sizes of a step over the noise of the force.
 const SIZES: [f64; 3] = [4.0, 10.0, 40.0];
 
@@ -109,4 +111,69 @@ fn a_fit_warns_of_a_step() {
         told += usize::from(found.len() == 1 && found[0].contains(" s and stays"));
     }
     assert!(all >= 4 && 4 * told >= 3 * all, "{told} of {all}");
+}
+
+/// A task, its recordings without anything hidden, and the channels whose zero jumps in turn, with their names in an answer.
+struct Task {
+    name: &'static str,
+    make: fn(u64) -> (Case, Truth),
+    channels: &'static [(&'static str, &'static str)],
+}
+
+const FINGERS: [(&str, &str); 4] = [("fx1_N", "bx1"), ("fy1_N", "by1"), ("fx2_N", "bx2"), ("fy2_N", "by2")];
+const TASKS: [Task; 4] = [
+    Task { name: "blocks", make: |seed| blocks::make(blocks::Kind::Nothing, seed), channels: &FINGERS },
+    Task { name: "barrel", make: |seed| barrel::make(barrel::Kind::Nothing, seed), channels: &FINGERS },
+    Task { name: "switch", make: |seed| switch::make(switch::Kind::Nothing, seed), channels: &FINGERS },
+    Task { name: "needle", make: |seed| needle::make(needle::Kind::Nothing, seed), channels: &[("fy_N", "step")] },
+];
+
+/// Adds a jump to a channel; returns its time since the start, s.
+fn jump(recording: &mut Recording, name: &str, share: f64, size_n: f64) -> f64 {
+    let times = recording.time_s.clone().expect("a clock");
+    let at_s = share * (times[times.len() - 1] - times[0]);
+    let channel = recording.channels.iter_mut().find(|c| c.name == name).expect("the channel");
+    let later = channel.values.iter_mut().zip(&times).filter(|(_, t)| **t - times[0] >= at_s);
+    later.for_each(|(value, _)| *value += size_n);
+    at_s
+}
+
+#[test]
+fn a_step_beside_other_objects_is_named_with_its_time_and_size() {
+    const CASES: usize = 8;
+    for task in TASKS {
+        let (mut named_alone, mut in_time, mut report) = (0, 0, Vec::new());
+        for k in 0..CASES {
+            let seed = SEEDS[3] + k as u64;
+            let mut chance = Chance::new(seed, 23);
+            let (mut case, truth) = (task.make)(seed);
+            let (channel, parameter) = task.channels[k % task.channels.len()];
+            let size_n = chance.between(0.05, 0.3);
+            let at_s = jump(&mut case.recordings[0], channel, chance.between(0.3, 0.7), size_n);
+            let answer = diagnose(&case.recordings, &case.options).expect("an answer").diagnosis;
+            let certain =
+                answer.causes.iter().filter(|c| c.posterior >= 0.95 && !truth.besides.contains(&c.id.as_str()));
+            let named: Vec<&str> = certain.map(|c| c.id.as_str()).collect();
+            let found = answer.causes.iter().find(|c| c.id == "force-step").map(|c| &c.parameters);
+            let value = |name: &str| found.and_then(|all| all.iter().find(|p| p.name == name));
+            let told = value(parameter).map_or(f64::NAN, |p| p.value.abs());
+            report.push(format!(
+                "{} {seed} {channel} {at_s:.3} s {size_n:.3} N: {named:?} {told:.3} {:?}",
+                task.name,
+                value("t0")
+            ));
+            if named == ["force-step"] && (told - size_n).abs() < 0.15 * size_n {
+                named_alone += 1;
+                in_time +=
+                    usize::from(value("t0").is_some_and(|t| (t.value - at_s).abs() < (3.0 * t.std_error).max(0.1)));
+            }
+        }
+        println!("{}", report.join("\n"));
+        assert!(
+            named_alone >= CASES - 2 && 8 * in_time >= 7 * named_alone,
+            "{}: {named_alone}, {in_time}\n{}",
+            task.name,
+            report.join("\n")
+        );
+    }
 }

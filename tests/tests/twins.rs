@@ -6,9 +6,11 @@ use estimator::diagnose::{Diagnosis, Options, diagnose, twins};
 use haptics::recording::{Channel, Recording};
 use rayon::prelude::*;
 use tests::tasks::structured::sets as tasks;
+use tests::tasks::switch;
 
-/// Seeds on which nothing was chosen: for recordings with structure, for those with a cause, and for blocks and needles.
-const SEEDS: [u64; 3] = [7_430_001, 7_430_002, 7_430_003];
+/// Seeds on which nothing was chosen: for recordings with structure, for those with a cause, for blocks and needles, and for
+/// switches.
+const SEEDS: [u64; 4] = [7_430_001, 7_430_002, 7_430_003, 7_600_101];
 const REPLAYS: u32 = 5;
 /// Probability of a worse result by chance, beyond which the test fails.
 const LUCK: f64 = 0.01;
@@ -103,6 +105,23 @@ fn replays_of_blocks_and_needles_have_their_structure_and_few_certain_names() {
         println!("named in replays: {named}");
         assert!(named.at_least(LUCK) <= 0.05, "named in replays: {named}");
     }
+}
+
+#[test]
+fn replays_of_switches_have_few_certain_names() {
+    let answers: Vec<Diagnosis> = (0..8_u64)
+        .into_par_iter()
+        .filter_map(|k| {
+            let kind = if k < 4 { switch::Kind::Nothing } else { switch::Kind::Viscous };
+            let (case, _) = switch::make(kind, SEEDS[3] + k);
+            replayed(&case.recordings, case.options).map_err(|e| println!("{e}")).ok()
+        })
+        .collect();
+    assert!(answers.len() == 8, "{} could be replayed", answers.len());
+    leave_the_residual(&answers);
+    let named = named(&answers);
+    println!("named in replays: {named}");
+    assert!(named.at_least(LUCK) <= 0.05, "named in replays: {named}");
 }
 
 #[test]

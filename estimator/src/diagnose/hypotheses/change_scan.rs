@@ -10,7 +10,7 @@ use foundation::signal::noise::white_noise;
 /// Least-squares scan over the times of a step beside the model of one recording.
 pub(crate) struct Scan {
     time_s: Vec<f64>,
-    /// Effect on each row of a unit force along each axis of the sensor.
+    /// Effect on each row of a unit of each component of the change.
     axes: Vec<Vec<f64>>,
     /// Orthonormal regressors of the model and of the steps found, and the residual beside them.
     basis: Vec<Vec<f64>>,
@@ -26,13 +26,14 @@ impl Scan {
         own.sort_by(|a, b| rows[*a].motion.time_s.total_cmp(&rows[*b].motion.time_s));
         let column = |of: &dyn Fn(usize) -> f64| own.iter().map(|i| of(*i)).collect::<Vec<f64>>();
         let axes = (0..axes).map(|axis| column(&|i| unit(i)[axis])).collect();
-        let model = [column(&|i| data.predicted[i]), column(&|i| data.resisting[i]), column(&|i| slides(data, i))];
-        let mut scan = Self {
-            time_s: column(&|i| rows[i].motion.time_s),
-            axes,
-            basis: Vec::new(),
-            residual: column(&|i| rows[i].target),
-        };
+        let model = vec![column(&|i| data.predicted[i]), column(&|i| data.resisting[i]), column(&|i| slides(data, i))];
+        Self::beside(model, column(&|i| rows[i].motion.time_s), axes, column(&|i| rows[i].target))
+    }
+
+    /// Scan of rows in the order of their times, beside a model's regressors. `axes`: effect on each row of a unit of each
+    /// component of the change, at most two.
+    pub(crate) fn beside(model: Vec<Vec<f64>>, time_s: Vec<f64>, axes: Vec<Vec<f64>>, target: Vec<f64>) -> Self {
+        let mut scan = Self { time_s, axes, basis: Vec::new(), residual: target };
         let whole = dot(&scan.residual, &scan.residual);
         for column in model {
             scan.fit(column);
@@ -137,9 +138,14 @@ impl Scan {
 /// before and after.
 pub(crate) fn widen_time(time: &mut CauseParameter, track: &Track) {
     let moves = |row: &&Row| !matches!(row.place, Place::Stuck { .. }) && row.open <= STANDS;
-    let times = || track.rows.iter().filter(moves).map(|row| row.motion.time_s);
-    let before_s = times().filter(|t| *t <= time.value).fold(f64::NEG_INFINITY, f64::max);
-    let after_s = times().filter(|t| *t > time.value).fold(f64::INFINITY, f64::min);
+    let times: Vec<f64> = track.rows.iter().filter(moves).map(|row| row.motion.time_s).collect();
+    widen_between(time, &times);
+}
+
+/// Widens the standard error of a change's time: it may be anywhere between the times before and after.
+pub(crate) fn widen_between(time: &mut CauseParameter, times: &[f64]) {
+    let before_s = times.iter().copied().filter(|t| *t <= time.value).fold(f64::NEG_INFINITY, f64::max);
+    let after_s = times.iter().copied().filter(|t| *t > time.value).fold(f64::INFINITY, f64::min);
     if (after_s - before_s).is_finite() {
         // Standard deviation of a uniform distribution about any of its points.
         let [spread_s, aside_s] = [(after_s - before_s) / 12.0_f64.sqrt(), HALF * (before_s + after_s) - time.value];

@@ -1,7 +1,7 @@
 //! A step of the force channel as a hypothesis: its times come from a scan of all times.
 
 use super::candidate::Candidate;
-use super::change_scan::{Scan, dot, widen_time};
+use super::change_scan::{Scan, dot, widen_between, widen_time};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Hypothesis};
@@ -89,6 +89,76 @@ const SYMBOLS: [Symbols; 3] = [
     Symbols { along: "second step", axes: ["second bx", "second by"], time: "second t0" },
     Symbols { along: "third step", axes: ["third bx", "third by"], time: "third t0" },
 ];
+
+/// Sets of channels of two fingers whose zeros may jump at once: one, both of a finger, all.
+pub(crate) const OF_FINGERS: [&[&str]; 7] =
+    [&["bx1"], &["by1"], &["bx2"], &["by2"], &["bx1", "by1"], &["bx2", "by2"], &["bx1", "by1", "bx2", "by2"]];
+/// The one channel of a force along a line.
+pub(crate) const ALONG: [&[&str]; 1] = [&[SYMBOLS[0].along]];
+
+/// Rows of a task in which the zero of a sensor may have jumped.
+pub(crate) struct Jumps<F> {
+    pub recording: Vec<usize>,
+    pub time_s: Vec<f64>,
+    /// Share of the zero of a channel in a row.
+    pub share: F,
+}
+
+impl<F: Fn(&str, usize) -> f64> Jumps<F> {
+    /// Steps of sets of channels, each at the time that explains most beside a model, and one row earlier and later.
+    pub(crate) fn candidates(&self, sets: &[&[&'static str]], model: &[Vec<f64>], target: &[f64]) -> Vec<Candidate> {
+        let recordings = self.recording.iter().max().map_or(0, |last| last + 1);
+        let of_recording = |recording| sets.iter().flat_map(move |set| self.best(recording, set, model, target));
+        (0..recordings).flat_map(of_recording).collect()
+    }
+
+    fn best(&self, recording: usize, set: &[&'static str], model: &[Vec<f64>], target: &[f64]) -> Vec<Candidate> {
+        let mut own: Vec<usize> = (0..self.time_s.len()).filter(|i| self.recording[*i] == recording).collect();
+        own.sort_by(|a, b| self.time_s[*a].total_cmp(&self.time_s[*b]));
+        let of = |column: &dyn Fn(usize) -> f64| own.iter().map(|i| column(*i)).collect::<Vec<f64>>();
+        let scanned = set.iter().take(2).map(|name| of(&|i| (self.share)(name, i))).collect();
+        let model = model.iter().map(|column| of(&|i| column[i])).collect();
+        let scan = Scan::beside(model, of(&|i| self.time_s[i]), scanned, of(&|i| target[i]));
+        let Some(best_s) = scan.best_time_s() else { return Vec::new() };
+        let times = self.times(recording, set);
+        let at = times.partition_point(|time_s| *time_s < best_s);
+        let between = times.windows(2).map(|pair| HALF * (pair[0] + pair[1]));
+        between.skip(at.saturating_sub(2)).take(3).map(|at_s| self.step(recording, set, at_s)).collect()
+    }
+
+    fn step(&self, recording: usize, set: &[&'static str], at_s: f64) -> Candidate {
+        let since = |i: usize| self.recording[i] == recording && self.time_s[i] >= at_s;
+        let column = |name: &&'static str| -> Vec<f64> {
+            (0..self.time_s.len()).map(|i| if since(i) { (self.share)(name, i) } else { 0.0 }).collect()
+        };
+        let linear = set.iter().map(|name| (*name, "N")).collect();
+        let mut step = Candidate::several(ID, Kind::Instrument, set.iter().map(column).collect(), linear);
+        step.cost += 1.0;
+        step.within(recording).at(SYMBOLS[0].time, at_s, "s")
+    }
+
+    /// Times of the rows of a recording in which some channels show.
+    fn times(&self, recording: usize, set: &[&str]) -> Vec<f64> {
+        let shows = |i: usize| set.iter().any(|name| (self.share)(name, i) != 0.0);
+        let own = (0..self.time_s.len()).filter(|i| self.recording[*i] == recording && shows(*i));
+        let mut times: Vec<f64> = own.map(|i| self.time_s[i]).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// Widens the standard error of the time of a step that was found: nothing shows it between two rows.
+    pub(crate) fn widen(&self, step: &Candidate, found: &mut [CauseParameter]) {
+        let set: Vec<&str> = step.linear.iter().map(|(name, _)| *name).collect();
+        let times = self.times(step.part, &set);
+        found.iter_mut().filter(|p| p.name == SYMBOLS[0].time).for_each(|time| widen_between(time, &times));
+    }
+}
+
+/// Finger (0, 1) and axis (0, 1) of a channel of [`OF_FINGERS`].
+pub(crate) fn finger_and_axis(name: &str) -> (usize, usize) {
+    (usize::from(name.ends_with('2')), usize::from(name.starts_with("by")))
+}
 
 /// Sum of the steps of a candidate with two axes until a time, N. `values`: two for each step.
 pub(crate) fn vector_at(candidate: &Candidate, values: &[f64], time_s: f64) -> Vec2 {

@@ -92,7 +92,7 @@ fn no_replays(found: &Findings) -> EstimateError {
             "--twin needs a recording with true axes, and this one has a fault: {}; correct it in the sidecar and repeat",
             cause.evidence
         ),
-        None => "--twin replays cranks, driven mechanisms, carried blocks and needles; of other tasks, and of motions without a force, there are no replays yet".to_owned(),
+        None => "--twin replays cranks, driven mechanisms, carried blocks, needles and switches; of other tasks, and of motions without a force, there are no replays yet".to_owned(),
     })
 }
 

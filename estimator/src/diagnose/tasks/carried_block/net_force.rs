@@ -16,8 +16,8 @@ use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
-    added_constraint, force_bias, force_cross_axis, force_drift, force_gain, gravity_tilt, inertia, mass_change,
-    viscous_friction,
+    added_constraint, force_bias, force_cross_axis, force_drift, force_gain, force_step, gravity_tilt, inertia,
+    mass_change, viscous_friction,
 };
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
@@ -76,6 +76,7 @@ pub fn carry<'a>(seen: &'a [Seen<'a>], world: Option<&World>, rules: Rules) -> R
     let cables = cables(&rows, &y, &base, &weight);
     let mut candidates = plant;
     candidates.extend(instrument(&rows, &known, &given));
+    candidates.extend(rows.jumps().candidates(&force_step::OF_FINGERS, &base, &y));
     candidates.extend(cables);
     let layout = Layout::of(rows.stretch.clone(), &testable, rows.period_s()).weighted(weight);
     let view = view(&rows);
@@ -203,6 +204,9 @@ impl Carry<'_> {
         if [mass_change::ID, added_constraint::ID].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
         }
+        if candidate.id == force_step::ID {
+            rows.jumps().widen(candidate, &mut found);
+        }
         if let (added_constraint::ID, Some(errors)) = (candidate.id, self.cable_errors) {
             for (name, error) in ["k", "anchor x", "anchor y", "length"].into_iter().zip(errors) {
                 found.iter_mut().filter(|p| p.name == name).for_each(|p| p.std_error = p.std_error.max(error));
@@ -248,6 +252,7 @@ impl Told for Carry<'_> {
                 "the lift changes while a block is carried, and the forces of empty fingers do not".to_owned()
             }
             force_bias::ID => "empty fingers feel a force, and the same is missing while blocks are carried".to_owned(),
+            force_step::ID => "the forces of empty fingers jump, and those of carried blocks with them".to_owned(),
             force_drift::ID => {
                 "the forces of empty fingers go with time, and those of carried blocks with them".to_owned()
             }

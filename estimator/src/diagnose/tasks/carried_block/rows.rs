@@ -1,6 +1,7 @@
 //! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::signals::Seen;
+use crate::diagnose::hypotheses::force_step::{Jumps, finger_and_axis};
 use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::selection::layout::segments;
 use haptics::Vec2;
@@ -117,6 +118,15 @@ impl<'a> Rows<'a> {
             Place::Free { finger: f, axis: own } => f == finger && own == axis,
         };
         f64::from(u8::from(holds))
+    }
+
+    /// The rows as those in which a sensor's zero may have jumped.
+    pub fn jumps(&self) -> Jumps<impl Fn(&str, usize) -> f64> {
+        let share = |name: &str, i: usize| {
+            let (finger, axis) = finger_and_axis(name);
+            Self::share(&self.all[i], finger, axis)
+        };
+        Jumps { recording: self.all.iter().map(|r| r.recording).collect(), time_s: self.column(|r| r.time_s), share }
     }
 
     pub fn blocks(&self) -> usize {

@@ -4,11 +4,13 @@ use super::forces::{RIM_SHARE, rim};
 use super::held_needle::Sliding;
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::part::{Found, Told};
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::direction::blur;
 use crate::diagnose::data::limits::{FILTER_REACH_S, LEAST_ROWS_OF_A_FIT, SIGNIFICANT};
 use crate::diagnose::data::regression_data;
 use crate::diagnose::data::regression_data::Track;
 use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::all::widen;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
 use crate::diagnose::hypotheses::dictionary::Dictionary;
@@ -16,8 +18,8 @@ use crate::diagnose::hypotheses::grid::Grid;
 use crate::diagnose::hypotheses::regressor_cache::Columns;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
-    backlash, coulomb_friction, force_drift, friction_change, hysteresis, local_resistance, quadratic_drag, stribeck,
-    viscous_friction,
+    backlash, coulomb_friction, force_drift, force_step, friction_change, hysteresis, local_resistance, quadratic_drag,
+    stribeck, viscous_friction,
 };
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
@@ -35,7 +37,7 @@ use haptics::law::{Coordinate, Kind, Motion};
 
 /// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
 /// needle, because its position between their pads is not known well enough.
-const POSSIBLE: [&str; 9] = [
+const POSSIBLE: [&str; 10] = [
     coulomb_friction::ID,
     viscous_friction::ID,
     quadratic_drag::ID,
@@ -45,6 +47,7 @@ const POSSIBLE: [&str; 9] = [
     local_resistance::ID,
     friction_change::ID,
     force_drift::ID,
+    force_step::ID,
 ];
 /// Possible causes that need the points between the rows.
 const CLOSELY: [&str; 3] = [stribeck::ID, backlash::ID, local_resistance::ID];
@@ -75,6 +78,11 @@ impl Shaft<'_> {
 }
 
 impl Told for Shaft<'_> {
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        widen(candidate.id, &mut found, &self.sliding.track);
+        found
+    }
+
     fn shows(&self, found: &Found<'_>) -> String {
         match found.candidate.id {
             coulomb_friction::ID => {

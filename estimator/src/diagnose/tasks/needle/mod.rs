@@ -23,7 +23,7 @@ use crate::diagnose::findings::{DelayFindings, Findings};
 use crate::diagnose::free_run::FreeRun;
 use crate::diagnose::free_run::windows::AT_AN_INSTANT;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::sensor_fault::SensorFault;
+use crate::diagnose::hypotheses::sensor_fault::{SensorFault, Step};
 use crate::diagnose::hypotheses::{
     coulomb_friction, force_bias, friction_change, hysteresis, stiffness_hardening, viscous_friction,
 };
@@ -234,6 +234,7 @@ impl Simulated for InWorld {
         SensorFault {
             offset_n: down(fault.offset_along),
             drift_n_s: down(fault.drift_along_per_s),
+            steps: fault.steps.map(|step| Step { force_n: down(step.along), along: 0.0, ..step }),
             offset_along: 0.0,
             drift_along_per_s: 0.0,
             ..*fault

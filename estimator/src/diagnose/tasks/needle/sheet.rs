@@ -4,13 +4,16 @@ use super::forces::{CUBIC, HERTZ, Law, first_push_n, own_n, touches};
 use super::held_needle::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::part::{Found, Told};
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::{GAP_IN_PERIODS, SIGNIFICANT};
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::force_step::Jumps;
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{
-    coulomb_friction, force_bias, force_drift, hysteresis, quadratic_drag, stiffness_hardening, viscous_friction,
+    coulomb_friction, force_bias, force_drift, force_step, hysteresis, quadratic_drag, stiffness_hardening,
+    viscous_friction,
 };
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
@@ -98,8 +101,18 @@ pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     // Surface position to first order: each recording detected it by itself.
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
-    let candidates = candidates(needle, &rows, law, &elastic);
+    let mut candidates = candidates(needle, &rows, law, &elastic);
+    candidates.extend(jumps(&rows).candidates(&force_step::ALONG, &base, &of(&|r| r.force_n)));
     Columns { rows, floor_n, base, candidates }
+}
+
+/// The rows as those in which the sensor's zero may have jumped.
+fn jumps(rows: &[Row]) -> Jumps<impl Fn(&str, usize) -> f64> {
+    Jumps {
+        recording: rows.iter().map(|r| r.recording).collect(),
+        time_s: rows.iter().map(|r| r.time_s - r.start_s).collect(),
+        share: |_: &str, _| 1.0,
+    }
 }
 
 fn candidates(
@@ -143,6 +156,13 @@ pub struct Sheet<'a> {
 }
 
 impl Told for Sheet<'_> {
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        if candidate.id == force_step::ID {
+            jumps(&self.pressed.rows).widen(candidate, &mut found);
+        }
+        found
+    }
+
     fn shows(&self, found: &Found<'_>) -> String {
         match found.candidate.id {
             stiffness_hardening::ID => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
@@ -150,6 +170,7 @@ impl Told for Sheet<'_> {
             viscous_friction::ID => "the force on the sheet follows the speed".to_owned(),
             force_bias::ID => "empty fingers feel a force along the needle".to_owned(),
             force_drift::ID => "the force of the needle outside the sheet goes with time".to_owned(),
+            force_step::ID => "the force of the needle outside the sheet jumps".to_owned(),
             other => format!("{other} shows in the force on the sheet"),
         }
     }
@@ -247,6 +268,7 @@ pub fn level_n(study: &ChannelFit, at: &Puncture) -> f64 {
         level += match candidate.id {
             force_bias::ID => values[0],
             force_drift::ID if own => values[0] * at.time_s,
+            force_step::ID if candidate.part == at.recording && at.time_s >= candidate.searched[0].value => values[0],
             _ => 0.0,
         };
     }

@@ -10,6 +10,7 @@ pub(crate) mod held_knob;
 pub(crate) mod measured_curve;
 pub(crate) mod model;
 pub(crate) mod rows;
+pub(crate) mod sensor_zero;
 pub(crate) mod stop;
 pub(crate) mod throw;
 
@@ -24,6 +25,7 @@ use crate::diagnose::hypotheses::{
     added_constraint, backlash, coulomb_friction, force_gain, friction_asymmetry, friction_change, hysteresis,
     length_scale, local_resistance, pad_compliance, return_spring, viscous_friction,
 };
+use crate::diagnose::model_error::twin::{Twin, is_upright};
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use crate::diagnose::selection::comparison::Compared;
@@ -88,7 +90,11 @@ pub fn switch(recordings: &[Recording], options: &Options, faults: &[Cause]) -> 
         let on_curve = curve.as_ref().map(|c| &c.compared);
         experiment::propose(open, &seen, (&push, on_curve, known.as_ref())).or_else(|| next(open))
     };
-    Ok(answer(&parts, Evidence { next: &asked, ..beside }))
+    let mut found = answer(&parts, Evidence { next: &asked, ..beside });
+    if options.twins && is_upright(faults) {
+        found.twin = Twin::of_channels([(&push.compared.study, push.placed())]).map(Box::new);
+    }
+    Ok(found)
 }
 
 /// Causes that no recording of this kind shows.

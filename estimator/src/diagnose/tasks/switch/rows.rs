@@ -1,13 +1,13 @@
 //! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
 //! that touch nothing.
 
+use super::sensor_zero::zeros;
 use crate::diagnose::data::interpolation::mean_step_s;
-use crate::diagnose::data::limits::{CERTAIN, FAST_ROW_S, GAP_IN_PERIODS, PARTS, SETTLING_S};
+use crate::diagnose::data::limits::{CERTAIN, FAST_ROW_S, GAP_IN_PERIODS, SETTLING_S};
 use crate::diagnose::recording::grip_axis_signs::PRESSING;
 use crate::diagnose::selection::layout::segments;
 use estimation::identify::limits::{SETTLED, TOUCH_SHARE};
 use estimation::identify::switch::longest_push_m;
-use estimation::segment::threshold::percentile;
 use foundation::estimate::EstimateError;
 use foundation::signal::noise::white_noise;
 use foundation::signal::task::{DERIVATIVE_WINDOW_S, TipSeries, is_two_fingered, tip_series};
@@ -16,9 +16,6 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Share of the blocks that are taken as free in each part of a recording, because a finger is free at some time.
-/// Choice: halved, 6 of 21 answers change; doubled, 6 of 21 answers change.
-const FREE_SHARE: f64 = 0.15;
 /// Speed below which the knob may rest, in ranges of the touching fingers per second.
 /// Choice: halved, 1 of 21 answers change; doubled, 0 of 21 answers change.
 pub(crate) const KNOB_REST_HZ: f64 = 0.077;
@@ -229,38 +226,12 @@ fn finger(recording: &Recording, name: &str, block: usize, side: usize) -> Resul
     let (tip, velocity, force) = (means(&position), means(&velocity), means(&force));
     let noise_n = noise_n / (block as f64).sqrt();
     let along: Vec<f64> = force.iter().map(|f| direction(side) * f.x).collect();
-    let free = free_blocks(&along);
-    let lines = [0, 1].map(|axis| line(&free, &|k| force[k][axis]));
-    let zero: Vec<Vec2> =
-        (0..force.len()).map(|k| Vec2::from_fn(|axis, _| lines[axis][0] + lines[axis][1] * k as f64)).collect();
+    let zero = zeros(&force, &along, noise_n);
     let above: Vec<f64> = (0..force.len()).map(|k| along[k] - direction(side) * zero[k].x).collect();
     let strongest = above.iter().fold(0.0_f64, |most, f| most.max(*f));
     let least_n = (TOUCH_SHARE * strongest).max(CERTAIN * noise_n);
     let touches = above.iter().map(|f| *f > least_n).collect();
     Ok(Finger { tip, velocity, force, zero, touches, noise_n })
-}
-
-/// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is
-/// none.
-fn free_blocks(along: &[f64]) -> Vec<usize> {
-    let long = along.len().div_ceil(PARTS).max(1);
-    (0..along.len())
-        .step_by(long)
-        .flat_map(|first| {
-            let window = &along[first..(first + long).min(along.len())];
-            let least = percentile(&mut window.to_vec(), FREE_SHARE);
-            (first..first + window.len()).filter(move |k| along[*k] <= least)
-        })
-        .collect()
-}
-
-/// Level and slope of a line through the values at some blocks.
-fn line(at: &[usize], of: &dyn Fn(usize) -> f64) -> [f64; 2] {
-    let n = at.len().max(1) as f64;
-    let (middle, level) = (at.iter().map(|k| *k as f64).sum::<f64>() / n, at.iter().map(|k| of(*k)).sum::<f64>() / n);
-    let spread: f64 = at.iter().map(|k| (*k as f64 - middle).powi(2)).sum();
-    let slope = at.iter().map(|k| (*k as f64 - middle) * (of(*k) - level)).sum::<f64>() / spread.max(1e-12);
-    [level - slope * middle, slope]
 }
 
 impl Finger {
@@ -318,17 +289,4 @@ fn rate(finger: &Finger, k: usize, time: &[f64]) -> f64 {
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_zero_that_drifts_is_found_below_the_pushes() {
-        let push = |k: usize| if k % 100 > 55 { 1.0 } else { 0.0 };
-        let along: Vec<f64> = (0..1600).map(|k| 0.02 + 2e-4 * k as f64 + push(k)).collect();
-        let [level, slope] = line(&free_blocks(&along), &|k| along[k]);
-        assert!((level - 0.02).abs() < 0.03 && (slope - 2e-4).abs() < 4e-5, "{level} {slope}");
-    }
 }

@@ -6,15 +6,18 @@ use super::held_knob::Knob;
 use super::measured_curve::{APART, Curve, along_m};
 use super::rows::{KNOB_REST_HZ, Place, Row, Seen, direction};
 use crate::diagnose::answer::part::{Found, Told};
+use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::force_step::{Jumps, finger_and_axis};
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
-use crate::diagnose::hypotheses::{force_bias, force_drift, friction_change, time_delay, viscous_friction};
+use crate::diagnose::hypotheses::{force_bias, force_drift, force_step, friction_change, time_delay, viscous_friction};
 use crate::diagnose::model_error::competition::settle;
 use crate::diagnose::model_error::of_channel::beside_errors;
+use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::selection::channel::Channel;
 use crate::diagnose::selection::comparison::{ChannelFit, Compared, View};
 use crate::diagnose::selection::layout::Layout;
@@ -22,6 +25,7 @@ use crate::diagnose::selection::rules::Rules;
 use estimation::regression::linear::least_squares;
 use foundation::estimate::EstimateError;
 use foundation::words::amount;
+use haptics::Vec2;
 use haptics::law::Kind;
 
 /// Distance from the top of the curve within which rows are left out, as a share of the fingers' range: fast throws
@@ -39,6 +43,8 @@ const LEAST_VISCOUS: f64 = 0.045;
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
+    /// Rows of the comparison.
+    all: Vec<Row>,
     /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
@@ -111,7 +117,8 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let forces = first_look(&rows, &curves)?;
     let base = base(&rows, &curves);
     let y: Vec<f64> = rows.iter().map(force_n).collect();
-    let candidates = candidates(seen, &rows, &curves, &forces);
+    let mut candidates = candidates(seen, &rows, &curves, &forces);
+    candidates.extend(jumps(&rows).candidates(&force_step::OF_FINGERS, &base, &y));
     let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let layout = Layout::of(stretch.clone(), &testable, seen.period_s);
     let view = view(&rows);
@@ -122,10 +129,10 @@ pub fn push(seen: &Seen, rules: Rules) -> Result<Push, EstimateError> {
     let state = rows.iter().map(Row::state).collect();
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
     let thrown = Knob::thrown(&rows, &stretch, seen.period_s, &curves);
-    let kept = rows.into_iter().zip(found).filter(is_push).collect();
+    let kept = rows.iter().copied().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
     let compared = Compared { study, channel, unit, floor, along, state, view };
-    Ok(Push { compared, rows: kept, curves, forces_n: forces, thrown })
+    Ok(Push { compared, all: rows, rows: kept, curves, forces_n: forces, thrown })
 }
 
 /// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
@@ -198,7 +205,31 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
     found
 }
 
+/// The rows as those in which a sensor's zero may have jumped.
+fn jumps(rows: &[Row]) -> Jumps<impl Fn(&str, usize) -> f64> {
+    let share = |name: &str, i: usize| {
+        let (finger, axis) = finger_and_axis(name);
+        rows[i].share(finger, axis)
+    };
+    Jumps {
+        recording: rows.iter().map(|r| r.recording).collect(),
+        time_s: rows.iter().map(|r| r.time_s).collect(),
+        share,
+    }
+}
+
 impl Push {
+    /// Places of the rows in their recordings.
+    pub fn placed(&self) -> Vec<Placed> {
+        let force = |row: &Row| match row.place {
+            Place::Push(side) => Force::Finger(side, direction(side) * Vec2::x()),
+            Place::Free(finger, axis) => Force::Finger(finger, [Vec2::x(), Vec2::y()][axis]),
+            Place::Stop(_) => Force::None,
+        };
+        let placed = |row: &Row| Placed { recording: row.recording, time_s: row.time_s, force: force(row) };
+        self.all.iter().map(placed).collect()
+    }
+
     /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
         let candidates = candidates(seen, &seen.rows, &self.curves, &self.forces_n);
@@ -222,6 +253,13 @@ fn best_seen(id: &str) -> Variable {
 }
 
 impl Told for Push {
+    fn states(&self, _: usize, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        if candidate.id == force_step::ID {
+            jumps(&self.all).widen(candidate, &mut found);
+        }
+        found
+    }
+
     fn shows(&self, found: &Found<'_>) -> String {
         let value = found.value();
         match found.candidate.id {
@@ -237,6 +275,7 @@ impl Told for Push {
             }
             force_bias::ID => "fingers that touch nothing feel a force".to_owned(),
             force_drift::ID => "the forces of fingers that touch nothing go with time".to_owned(),
+            force_step::ID => "the forces of fingers that touch nothing jump".to_owned(),
             other => format!("{other} shows on the way of the throws"),
         }
     }
