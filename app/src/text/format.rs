@@ -19,6 +19,7 @@ const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_kg_m3", "kg/m³", 1.0),
     ("_kg_s", "g/s", 1e3),
     ("_kg_m", "kg·m", 1.0),
+    ("_rad_s2", "rad/s²", 1.0),
     ("_rad_Nm", "°/N·m", 180.0 / std::f64::consts::PI),
     ("_N_s_m", "N·s/m", 1.0),
     ("_N_m3", "N/mm³", 1e-9),
@@ -27,6 +28,8 @@ const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_Nm", "N·m", 1.0),
     ("_m_s2", "m/s²", 1.0),
     ("_m_s", "mm/s", 1e3),
+    ("_1_m", "1/m", 1.0),
+    ("_1_s", "1/s", 1.0),
     ("_kg", "g", 1e3),
     ("_rad", "°", 180.0 / std::f64::consts::PI),
     ("_m", "mm", 1e3),
@@ -218,6 +221,11 @@ mod tests {
             ("µN/m", "nm", "kN")
         );
         assert_eq!((parameter("leak_kg_s", None).unit, parameter("free_fall_m_s2", None).unit), ("g/s", "m/s²"));
+        assert_eq!(
+            (parameter("drag_per_mass_1_m", None).unit, parameter("viscous_per_mass_1_s", None).unit),
+            ("1/m", "1/s")
+        );
+        assert_eq!(parameter("coulomb_per_inertia_rad_s2", None).unit, "rad/s²");
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub struct Evidence<'a> {
     pub without_known: Vec<NotExcited>,
     /// Figures of the residual if there is no channel.
     pub figures: Figures,
+    /// True if something was compared beside the channels.
+    pub is_compared: bool,
     /// Experiment that would settle the open questions.
     pub next: &'a dyn Fn(&[Alternative]) -> Option<NextExperiment>,
     /// True if the residual of each channel is shown beside every suspect.
@@ -55,6 +57,7 @@ impl Default for Evidence<'_> {
             warnings: Vec::new(),
             remarks: Vec::new(),
             without_known: Vec::new(),
+            is_compared: false,
             figures: Figures::of_nothing(),
             next: &|_| None,
             atlas: false,
@@ -113,7 +116,8 @@ pub struct Draft {
 
 /// Findings of the comparisons and of the evidence beside them, without a verdict.
 pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
-    let Evidence { model, mut causes, mut alternatives, not_excited, mut warnings, remarks, .. } = evidence;
+    let Evidence { model, mut causes, mut alternatives, not_excited, mut warnings, remarks, is_compared, .. } =
+        evidence;
     let compared = compare(parts, not_excited);
     warnings.extend(compared.excuses);
     causes.extend(compared.ranking.0.into_iter().map(|(_, cause)| cause));
@@ -151,7 +155,16 @@ pub fn draft(parts: &[Part<'_>], evidence: Evidence<'_>) -> Draft {
         ..Findings::default()
     };
     let named = Named { causes, alternatives, not_excited, passed_over, next };
-    Draft { named, findings, figures, terms, open: limit, is_strange, is_doubtful: parts.is_empty(), outweighed }
+    Draft {
+        named,
+        findings,
+        figures,
+        terms,
+        open: limit,
+        is_strange,
+        is_doubtful: parts.is_empty() && !is_compared,
+        outweighed,
+    }
 }
 
 impl Draft {

@@ -1,6 +1,7 @@
 //! Diagnosis of a thrown body. Its falls, impacts and slides are compared with a simulation with the right lengths,
 //! lossless impacts and no sliding friction, or with the floor of `--world`.
 
+pub(crate) mod air;
 pub(crate) mod flight;
 pub(crate) mod impact;
 pub(crate) mod sliding;
@@ -16,7 +17,7 @@ use crate::diagnose::hypotheses::{channel_fault, coulomb_friction, length_scale,
 use crate::diagnose::options::Options;
 use crate::diagnose::recording::sample_faults;
 use estimation::identify::tossed::slide::unknown_of_foot;
-use estimation::identify::tossed::{Tossed, tossed};
+use estimation::identify::tossed::{Tossed, tossed, trajectory};
 use foundation::estimate::EstimateError;
 use haptics::recording::Recording;
 
@@ -32,7 +33,10 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let sliding =
         sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)), mean_friction(seen))?;
     let half_width_m = meta.known.get("half_width_m").copied();
-    let scaled = flight::scale(seen, meta.gravity());
+    let air = trajectory::air(&seen.tracks, meta.gravity());
+    let bent = air.as_ref().filter(|air| air::bends(air));
+    let is_compared = air.is_some();
+    let scaled = if bent.is_some() { None } else { flight::scale(seen, meta.gravity()) };
     let recorded = if scaled.is_some() { seen.fall.down_m_s2 / meta.gravity() } else { 1.0 };
     let blow = match half_width_m {
         // Only for bodies whose positions are recorded.
@@ -47,6 +51,8 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     if floor.is_some() {
         "free-fall+floor of the world".clone_into(&mut beside.model);
     }
+    beside.causes.extend(bent.into_iter().flat_map(air::causes));
+    beside.warnings.extend(bent.and_then(air::spin));
     if let Some((cause, alternative)) = scaled {
         beside.causes.push(cause);
         beside.alternatives.push(alternative);
@@ -68,14 +74,15 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let slides = sliding.as_ref().map(|slides| Part::of(&slides.compared, slides).running(FreeRun::Channel(slides)));
     let blows = blow.as_ref().map(|blows| Part::of(&blows.compared, blows).running(FreeRun::None(AT_AN_INSTANT)));
     let parts: Vec<Part<'_>> = slides.into_iter().chain(blows).collect();
-    let figures = of_falls(seen, meta.gravity(), &beside.causes);
-    Ok(answer(&parts, Evidence { figures, next: &next, atlas: options.atlas, ..beside }))
+    let figures = of_falls(seen, meta.gravity(), (&beside.causes, bent.map(|air| air.best.rms_m)));
+    Ok(answer(&parts, Evidence { figures, is_compared, next: &next, atlas: options.atlas, ..beside }))
 }
 
 /// Figures of the falls, for throws without anything else to compare.
-fn of_falls(seen: &Tossed, gravity_m_s2: f64, causes: &[Cause]) -> Figures {
+fn of_falls(seen: &Tossed, gravity_m_s2: f64, (causes, bent_m): (&[Cause], Option<f64>)) -> Figures {
     let [before_m, after_m, own_m] = flight::left_m(seen, gravity_m_s2);
-    let is_named = causes.iter().any(|c| c.id == length_scale::ID);
+    let [after_m, own_m] = [after_m, own_m].map(|own_m| bent_m.unwrap_or(own_m));
+    let is_named = bent_m.is_some() || causes.iter().any(|c| c.id == length_scale::ID);
     let Figures { baseline, end, .. } = Figures::of_nothing();
     Figures {
         baseline: Baseline {
