@@ -16,6 +16,7 @@ use flight::Fall;
 use foundation::estimate::{Fit, Parameter};
 use haptics::recording::Recording;
 use pose::Track;
+use trajectory::Air;
 
 /// The object's name.
 const BODY: &str = "body";
@@ -23,9 +24,6 @@ const BODY: &str = "body";
 /// kind, and a body that falls more slowly is held by something.
 /// Choice: halved or doubled, none of 6 answers changes.
 const LIKE_GRAVITY: f64 = 0.2;
-/// Evidence, 2 ln(likelihood ratio) less the price of the parameters, from which drag or spin bends the flights.
-/// Derived: 1 in 20000 by chance.
-const BENT: f64 = 20.0;
 /// Share of the recordings that must begin with a fall.
 /// Choice: halved or doubled, none of 6 answers changes.
 const FALLING_SHARE: f64 = 0.5;
@@ -59,7 +57,7 @@ pub fn tossed(recordings: &[Recording]) -> Option<Tossed> {
     // One throw has nothing beside it that says the same: it must have ended in a blow, as nothing does that a path holds.
     let is_alone = tracks.len() == 1 && flight::end(&tracks[0]) == tracks[0].points.len();
     let falls = falls_like(&tracks, &fall, gravity) && !is_alone;
-    if !falls && !trajectory::is_flight(&tracks, gravity) {
+    if !falls && !trajectory::is_flight(&tracks, gravity, LIKE_GRAVITY) {
         return None;
     }
     let half_width_m = first.meta.known.get("half_width_m").copied().filter(|h| h.is_finite() && *h > 0.0);
@@ -81,7 +79,7 @@ pub fn fit(recordings: &[Recording]) -> Option<Fit> {
     let Tossed { tracks, fall, slides } = tossed(recordings)?;
     let gravity = recordings.first()?.meta.gravity();
     let samples: usize = tracks.iter().map(|t| t.time_s.len()).sum();
-    let bent = trajectory::air(&tracks, gravity).filter(|air| air.drag.score.max(air.spin.score) > BENT);
+    let bent = trajectory::air(&tracks, gravity).filter(Air::bends);
     let (fall, how) = match &bent {
         Some(air) => {
             (air.fall(fall, gravity), "trajectories through air of all flights, drag common, spin of each".to_owned())
@@ -97,7 +95,7 @@ pub fn fit(recordings: &[Recording]) -> Option<Fit> {
         identified("free_fall_m_s2", fall.down_m_s2, fall.error_m_s2, &how),
         identified("length_scale", fall.down_m_s2 / gravity, fall.error_m_s2 / gravity, &by),
     ];
-    if let Some(air) = bent.filter(|air| air.drag.score > BENT) {
+    if let Some(air) = bent.filter(|air| air.drag.is_clear()) {
         let [drag, error] = air.best.drag_per_m;
         parameters.push(identified("drag_per_mass_1_m", drag, error, &how));
     }

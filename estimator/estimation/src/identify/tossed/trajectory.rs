@@ -10,6 +10,10 @@ use super::pose::Track;
 use crate::identify::limits::SIGNIFICANT;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
+/// Evidence, 2 ln(likelihood ratio) less the price of the parameters, from which a part of a model is beyond doubt.
+/// Derived: below 1 in 20000 by chance.
+const CLEAR: f64 = 20.0;
+
 /// Free parameters of a model beside the initial states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Free {
@@ -39,11 +43,19 @@ pub struct Air {
 /// Evidence for a part of a model of flights.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Evidence {
-    /// 2 ln(likelihood ratio) of the best model with it and the best one without, less the price of the parameters. Zero
-    /// if it explains less than what the best model leaves above the noise.
+    /// 2 ln(likelihood ratio) of the best model with it and the best one without, less the price of the parameters.
     pub score: f64,
+    /// True if it explains more than what the best model leaves above the noise.
+    pub carries: bool,
     /// Residual RMS of the best model without it, m.
     pub rms_without_m: f64,
+}
+
+impl Evidence {
+    /// True if this part of the model is beyond doubt.
+    pub fn is_clear(&self) -> bool {
+        self.carries && self.score > CLEAR
+    }
 }
 
 /// Compares all models of the flights; `None` if none converges.
@@ -70,15 +82,19 @@ pub fn air(tracks: &[Track], gravity_m_s2: f64) -> Option<Air> {
     let evidence = |part: usize| {
         let [without, with] = [false, true].map(|has| least(&|free| free[part] == has));
         let (Some(without), Some(with)) = (without, with) else { return Evidence::default() };
-        let own_m2 = without.rms_m.powi(2) - best.rms_m.powi(2);
-        let score = if own_m2 > structure_m2 { price(without) - price(with) } else { 0.0 };
-        Evidence { score, rms_without_m: without.rms_m }
+        let carries = without.rms_m.powi(2) - best.rms_m.powi(2) > structure_m2;
+        Evidence { score: price(without) - price(with), carries, rms_without_m: without.rms_m }
     };
     let scaled = least(&|free| free[0]).cloned();
     Some(Air { scale: evidence(0), drag: evidence(1), spin: evidence(2), scaled, best })
 }
 
 impl Air {
+    /// True if drag or spin bends the flights: their parabolas then do not show the scale of the lengths.
+    pub fn bends(&self) -> bool {
+        self.drag.is_clear() || self.spin.is_clear()
+    }
+
     /// The fall beside drag and spin.
     pub fn fall(&self, parabolas: Fall, gravity_m_s2: f64) -> Fall {
         let Some(scaled) = &self.scaled else { return parabolas };
@@ -235,10 +251,7 @@ fn told(
 
 /// Initial state by a cubic polynomial through the flight.
 fn start(flight: &Flight) -> Option<Own> {
-    let powers = |t: f64| [1.0, t, t * t, t * t * t];
-    let powers = DMatrix::from_fn(flight.time_s.len(), 4, |i, j| powers(flight.time_s[i])[j]);
-    let points = DMatrix::from_fn(flight.time_s.len(), 3, |i, axis| flight.points[i][axis]);
-    let solved = powers.svd(true, true).solve(&points, 1e-12).ok()?;
+    let (solved, _) = polynomial(flight, 4)?;
     let row = |k: usize| Vector3::from_fn(|axis, _| solved[(k, axis)]);
     Some([row(0), row(1), Vector3::zeros()])
 }
@@ -302,12 +315,17 @@ fn linearized(
     (DMatrix::from_fn(here.len(), there.len(), |i, j| (there[j][i] - here[i]) / by), residual)
 }
 
-/// True if all flights are free flights through air: with gravity as it is, drag and spin leave hardly more than the noise
-/// of the positions, the drag takes energy out, and no flight is straight. Along a line, lift and drag could carry the
-/// weight of what a hand leads.
-pub fn is_flight(tracks: &[Track], gravity_m_s2: f64) -> bool {
-    let Some(found) = fit(tracks, gravity_m_s2, Free { scale: false, drag: true, spin: true }) else { return false };
-    let flights = flights(tracks);
+/// True if all flights are free flights through air: drag, spin and a scale of at most `most_off` leave hardly more than
+/// the noise of the positions, the drag takes energy out, and no flight is straight. Along a line, lift and drag could
+/// carry the weight of what a hand leads.
+pub fn is_flight(tracks: &[Track], gravity_m_s2: f64, most_off: f64) -> bool {
+    let of = |scale| fit(tracks, gravity_m_s2, Free { scale, drag: true, spin: true });
+    let is_like = |found: &Trajectories| (found.scale[0] - 1.0).abs() < most_off;
+    [false, true].into_iter().filter_map(of).any(|found| is_like(&found) && flies(&flights(tracks), &found))
+}
+
+/// True if a model describes flights through air.
+fn flies(flights: &[Flight], found: &Trajectories) -> bool {
     let noise_m = flights.iter().filter_map(noise_m).fold(0.0, f64::max);
     let [drag, error] = found.drag_per_m;
     let bends = flights.iter().all(|flight| off_line_m(flight) > SIGNIFICANT * found.rms_m);
@@ -324,11 +342,26 @@ fn off_line_m(flight: &Flight) -> f64 {
     ((values.sum() - values.max()).max(0.0) / flight.points.len() as f64).sqrt()
 }
 
-/// Noise of a coordinate, m, from third differences: free flight hardly has any.
+/// Noise of a coordinate, m: residual RMS of a polynomial of fourth degree, which bends more than any flight. `None` for
+/// too few samples.
 fn noise_m(flight: &Flight) -> Option<f64> {
-    let third = |p: &[Vector3<f64>]| (p[3] - 3.0 * p[2] + 3.0 * p[1] - p[0]).norm();
-    let mut sizes: Vec<f64> = flight.points.windows(4).map(third).collect();
-    sizes.sort_by(f64::total_cmp);
-    // A third difference of white noise has 20 times its variance. Two coordinates move: median √(2 ln 2).
-    sizes.get(sizes.len() / 2).map(|median| median / (20.0_f64.sqrt() * 1.1774))
+    let (left, free) = polynomial(flight, 5)?.1;
+    (free > 0).then(|| (left / free as f64).sqrt())
+}
+
+/// Coefficients of the polynomials through a flight, a row for each power and a column for each axis, the sum of their
+/// squared residuals, m², and its degrees of freedom.
+fn polynomial(flight: &Flight, size: usize) -> Option<(DMatrix<f64>, (f64, usize))> {
+    let n = flight.time_s.len();
+    let span_s = flight.time_s[n - 1].max(f64::MIN_POSITIVE);
+    let powers = DMatrix::from_fn(n, size, |i, j| (0..j).map(|_| flight.time_s[i] / span_s).product());
+    let points = DMatrix::from_fn(n, 3, |i, axis| flight.points[i][axis]);
+    let mut solved = powers.clone().svd(true, true).solve(&points, 1e-12).ok()?;
+    let left = (&points - powers * &solved).norm_squared();
+    for (j, mut row) in solved.row_iter_mut().enumerate() {
+        (0..j).for_each(|_| row /= span_s);
+    }
+    // In a plane, the third axis has no noise.
+    let axes = (0..3).filter(|axis| points.column(*axis).variance() > 0.0).count();
+    Some((solved, (left, axes * n.saturating_sub(size))))
 }

@@ -1,6 +1,6 @@
 //! Drag of the air and spin, from the trajectories of all flights.
 
-use crate::diagnose::contract::{Cause, CauseParameter, Gain, parameter};
+use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parameter};
 use crate::diagnose::data::limits::CERTAIN;
 use crate::diagnose::hypotheses::{length_scale, quadratic_drag};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
@@ -8,11 +8,6 @@ use crate::diagnose::selection::rules::THRESHOLD;
 use estimation::identify::tossed::trajectory::{Air, Evidence};
 use foundation::words::amount;
 use haptics::law::Kind;
-
-/// True if drag or spin bends the flights: their parabolas then do not show the scale of the lengths.
-pub fn bends(air: &Air) -> bool {
-    air.drag.score.max(air.spin.score) > THRESHOLD
-}
 
 /// The causes that the trajectories show beside gravity.
 pub fn causes(air: &Air) -> Vec<Cause> {
@@ -27,8 +22,8 @@ pub fn causes(air: &Air) -> Vec<Cause> {
         "beside the drag of the air the flights fall with {scale:.4} times gravity: lengths are recorded {:+.2} % off",
         100.0 * (scale - 1.0)
     );
-    let drags = air.drag.score > THRESHOLD && drag > 0.0;
-    let scales = air.scale.score > THRESHOLD && (scale - 1.0).abs() > CERTAIN * scale_error;
+    let drags = air.drag.is_clear() && drag > 0.0;
+    let scales = air.scale.is_clear() && (scale - 1.0).abs() > CERTAIN * scale_error;
     let drag = drags.then(|| {
         let found = parameter("k/m", drag, drag_error, "1/m");
         named((&air.drag, air.best.rms_m), (quadratic_drag::ID, Kind::Plant), found, of_drag)
@@ -60,9 +55,21 @@ fn named((shown, rms_m): (&Evidence, f64), (id, kind): (&str, Kind), found: Caus
     }
 }
 
+/// Drag in the place of a scale of the lengths that the parabolas show, with its probability; `None` if the scale is
+/// beyond doubt beside drag and spin.
+pub fn instead_of_scale(air: &Air) -> Option<Alternative> {
+    let posterior = 1.0 / (1.0 + (0.5 * air.scale.score).exp());
+    (air.scale.score <= THRESHOLD).then(|| Alternative {
+        id: quadratic_drag::ID.to_owned(),
+        instead_of: length_scale::ID.to_owned(),
+        posterior,
+        why: "drag of the air bends these flights as much; throw it farther".to_owned(),
+    })
+}
+
 /// Sentence about a spin, for which the catalogue has no law.
 pub fn spin(air: &Air) -> Option<String> {
-    (air.spin.score > THRESHOLD).then(|| {
+    air.spin.is_clear().then(|| {
         format!(
             "the flights bend across their velocity, by up to {:.0} % of gravity: the body spins (Magnus force), which no law of the catalogue describes",
             100.0 * air.best.lift_share

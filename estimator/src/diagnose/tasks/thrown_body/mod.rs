@@ -34,7 +34,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)), mean_friction(seen))?;
     let half_width_m = meta.known.get("half_width_m").copied();
     let air = trajectory::air(&seen.tracks, meta.gravity());
-    let bent = air.as_ref().filter(|air| air::bends(air));
+    let bent = air.as_ref().filter(|air| air.bends());
     let is_compared = air.is_some();
     let scaled = if bent.is_some() { None } else { flight::scale(seen, meta.gravity()) };
     let recorded = if scaled.is_some() { seen.fall.down_m_s2 / meta.gravity() } else { 1.0 };
@@ -53,9 +53,11 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     }
     beside.causes.extend(bent.into_iter().flat_map(air::causes));
     beside.warnings.extend(bent.and_then(air::spin));
-    if let Some((cause, alternative)) = scaled {
+    if let Some((mut cause, alternative)) = scaled {
+        let drags = air.as_ref().and_then(air::instead_of_scale);
+        cause.posterior *= 1.0 - drags.as_ref().map_or(0.0, |drag| drag.posterior);
         beside.causes.push(cause);
-        beside.alternatives.push(alternative);
+        beside.alternatives.extend(std::iter::once(alternative).chain(drags));
     }
     let mut unseen = |id: &str, why: &str| beside.not_excited.push(NotExcited::new(id, why));
     if half_width_m.is_some() && blow.is_none() {
