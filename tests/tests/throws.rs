@@ -157,3 +157,34 @@ fn a_ball_through_air_is_a_throw_with_its_drag_and_its_spin_and_no_scale() {
         }
     }
 }
+
+/// Sets of one to three flights with a tracker of another rate and noise each, at most one effect of the air in each.
+#[test]
+fn of_sixty_sets_of_flights_nearly_all_show_their_drag_and_none_a_false_one() {
+    let (mut with_drag, mut named, mut misled) = (0, 0, Vec::new());
+    for set in 0..60 {
+        let mut chance = Chance::new(set, 7_700_001);
+        let (drag_per_m, spin_hz) = match set % 3 {
+            0 => (0.0, 0.0),
+            1 => (chance.between(0.04, 0.2), 0.0),
+            _ => (chance.between(0.04, 0.2), chance.between(0.3, 1.2)),
+        };
+        let (count, rate_hz) = (1 + set / 3 % 3, [100.0, 200.0][set as usize / 9 % 2]);
+        let throws: Vec<Recording> =
+            (0..count).map(|k| ball(drag_per_m, spin_hz, 1000 + 3 * set + k, rate_hz)).collect();
+        let found = diagnose(&throws, &Options::default()).expect("an answer");
+        let certain: Vec<&str> = found.causes.iter().filter(|c| c.posterior >= 0.95).map(|c| c.id.as_str()).collect();
+        with_drag += usize::from(drag_per_m > 0.0);
+        named += usize::from(drag_per_m > 0.0 && certain == ["quadratic-drag"]);
+        let false_ones = certain.iter().filter(|id| drag_per_m == 0.0 || **id != "quadratic-drag").count();
+        if false_ones > 0 {
+            misled.push(format!("{set}: {drag_per_m:.3} 1/m, {spin_hz:.2} 1/s: {certain:?}"));
+        }
+        if certain.is_empty() && drag_per_m > 0.0 {
+            println!("{set}: {count} at {rate_hz} Hz, {drag_per_m:.3} 1/m, {spin_hz:.2} 1/s: {:?}", found.causes);
+        }
+    }
+    println!("{named} of {with_drag} named; {misled:?}");
+    assert!(named as f64 >= 0.9 * with_drag as f64, "{named} of {with_drag}");
+    assert!(misled.is_empty(), "{misled:?}");
+}

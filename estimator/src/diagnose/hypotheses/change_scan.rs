@@ -8,6 +8,7 @@ use crate::diagnose::data::regression_data::{Place, Row, Track};
 use foundation::signal::noise::white_noise;
 
 /// Least-squares scan over the times of a step beside the model of one recording.
+#[derive(Clone)]
 pub(crate) struct Scan {
     time_s: Vec<f64>,
     /// Effect on each row of a unit of each component of the change.
@@ -27,13 +28,12 @@ impl Scan {
         let column = |of: &dyn Fn(usize) -> f64| own.iter().map(|i| of(*i)).collect::<Vec<f64>>();
         let axes = (0..axes).map(|axis| column(&|i| unit(i)[axis])).collect();
         let model = vec![column(&|i| data.predicted[i]), column(&|i| data.resisting[i]), column(&|i| slides(data, i))];
-        Self::beside(model, column(&|i| rows[i].motion.time_s), axes, column(&|i| rows[i].target))
+        Self::beside(model, column(&|i| rows[i].motion.time_s), column(&|i| rows[i].target)).along(axes)
     }
 
-    /// Scan of rows in the order of their times, beside a model's regressors. `axes`: effect on each row of a unit of each
-    /// component of the change, at most two.
-    pub(crate) fn beside(model: Vec<Vec<f64>>, time_s: Vec<f64>, axes: Vec<Vec<f64>>, target: Vec<f64>) -> Self {
-        let mut scan = Self { time_s, axes, basis: Vec::new(), residual: target };
+    /// The rows in the order of their times, beside a model's regressors.
+    pub(crate) fn beside(model: Vec<Vec<f64>>, time_s: Vec<f64>, target: Vec<f64>) -> Self {
+        let mut scan = Self { time_s, axes: Vec::new(), basis: Vec::new(), residual: target };
         let whole = dot(&scan.residual, &scan.residual);
         for column in model {
             scan.fit(column);
@@ -43,6 +43,11 @@ impl Scan {
             scan.time_s.clear();
         }
         scan
+    }
+
+    /// The same rows with these components of a change, at most two: the effect of a unit of each on each row.
+    pub(crate) fn along(&self, axes: Vec<Vec<f64>>) -> Self {
+        Self { axes, ..self.clone() }
     }
 
     /// Adds a regressor to the model.

@@ -104,22 +104,46 @@ pub(crate) struct Jumps<F> {
     pub share: F,
 }
 
+/// Jumps of the zeros of two fingers. `rows`: recording and time of each row, s; `share`: of a finger's axis in a row.
+pub(crate) fn jumps_of_fingers(
+    rows: impl Iterator<Item = (usize, f64)>,
+    share: impl Fn(usize, usize, usize) -> f64,
+) -> Jumps<impl Fn(&str, usize) -> f64> {
+    let (recording, time_s) = rows.unzip();
+    let of_channel =
+        move |name: &str, i: usize| share(usize::from(name.ends_with('2')), usize::from(name.starts_with("by")), i);
+    Jumps { recording, time_s, share: of_channel }
+}
+
 impl<F: Fn(&str, usize) -> f64> Jumps<F> {
     /// Steps of sets of channels, each at the time that explains most beside a model, and one row earlier and later.
     pub(crate) fn candidates(&self, sets: &[&[&'static str]], model: &[Vec<f64>], target: &[f64]) -> Vec<Candidate> {
         let recordings = self.recording.iter().max().map_or(0, |last| last + 1);
-        let of_recording = |recording| sets.iter().flat_map(move |set| self.best(recording, set, model, target));
-        (0..recordings).flat_map(of_recording).collect()
+        (0..recordings).flat_map(|recording| self.of_recording(recording, sets, model, target)).collect()
     }
 
-    fn best(&self, recording: usize, set: &[&'static str], model: &[Vec<f64>], target: &[f64]) -> Vec<Candidate> {
+    fn of_recording(
+        &self,
+        recording: usize,
+        sets: &[&[&'static str]],
+        model: &[Vec<f64>],
+        target: &[f64],
+    ) -> Vec<Candidate> {
         let mut own: Vec<usize> = (0..self.time_s.len()).filter(|i| self.recording[*i] == recording).collect();
         own.sort_by(|a, b| self.time_s[*a].total_cmp(&self.time_s[*b]));
         let of = |column: &dyn Fn(usize) -> f64| own.iter().map(|i| column(*i)).collect::<Vec<f64>>();
-        let scanned = set.iter().take(2).map(|name| of(&|i| (self.share)(name, i))).collect();
         let model = model.iter().map(|column| of(&|i| column[i])).collect();
-        let scan = Scan::beside(model, of(&|i| self.time_s[i]), scanned, of(&|i| target[i]));
-        let Some(best_s) = scan.best_time_s() else { return Vec::new() };
+        let scan = Scan::beside(model, of(&|i| self.time_s[i]), of(&|i| target[i]));
+        let best_s = |set: &[&'static str]| {
+            let axes = set.iter().take(2).map(|name| of(&|i| (self.share)(name, i))).collect();
+            scan.along(axes).best_time_s()
+        };
+        let steps = |set: &&[&'static str]| best_s(set).map_or_else(Vec::new, |at_s| self.near(recording, set, at_s));
+        sets.iter().flat_map(steps).collect()
+    }
+
+    /// Steps between the rows about a time.
+    fn near(&self, recording: usize, set: &[&'static str], best_s: f64) -> Vec<Candidate> {
         let times = self.times(recording, set);
         let at = times.partition_point(|time_s| *time_s < best_s);
         let between = times.windows(2).map(|pair| HALF * (pair[0] + pair[1]));
@@ -153,11 +177,6 @@ impl<F: Fn(&str, usize) -> f64> Jumps<F> {
         let times = self.times(step.part, &set);
         found.iter_mut().filter(|p| p.name == SYMBOLS[0].time).for_each(|time| widen_between(time, &times));
     }
-}
-
-/// Finger (0, 1) and axis (0, 1) of a channel of [`OF_FINGERS`].
-pub(crate) fn finger_and_axis(name: &str) -> (usize, usize) {
-    (usize::from(name.ends_with('2')), usize::from(name.starts_with("by")))
 }
 
 /// Sum of the steps of a candidate with two axes until a time, N. `values`: two for each step.

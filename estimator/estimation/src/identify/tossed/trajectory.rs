@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
 /// Evidence, 2 ln(likelihood ratio) less the price of the parameters, from which a part of a model is beyond doubt.
 /// Derived: below 1 in 20000 by chance.
-const CLEAR: f64 = 20.0;
+pub const CLEAR: f64 = 20.0;
 
 /// Free parameters of a model beside the initial states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::signals::Seen;
-use crate::diagnose::hypotheses::force_step::{Jumps, finger_and_axis};
+use crate::diagnose::hypotheses::force_step::{Jumps, jumps_of_fingers};
 use crate::diagnose::model_error::twin::{Force, Placed};
 use crate::diagnose::selection::layout::segments;
 use haptics::Vec2;
@@ -122,11 +122,8 @@ impl<'a> Rows<'a> {
 
     /// The rows as those in which a sensor's zero may have jumped.
     pub fn jumps(&self) -> Jumps<impl Fn(&str, usize) -> f64> {
-        let share = |name: &str, i: usize| {
-            let (finger, axis) = finger_and_axis(name);
-            Self::share(&self.all[i], finger, axis)
-        };
-        Jumps { recording: self.all.iter().map(|r| r.recording).collect(), time_s: self.column(|r| r.time_s), share }
+        let rows = self.all.iter().map(|row| (row.recording, row.time_s));
+        jumps_of_fingers(rows, |finger, axis, i| Self::share(&self.all[i], finger, axis))
     }
 
     pub fn blocks(&self) -> usize {

@@ -36,7 +36,8 @@ fn free_blocks(along: &[f64]) -> Vec<usize> {
 fn zero(free: &[usize], blocks: usize, noise_n: f64, of: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let column = |of: &dyn Fn(usize) -> f64| free.iter().map(|k| of(*k)).collect::<Vec<f64>>();
     let (ones, times, values) = (vec![1.0; free.len()], column(&|k| k as f64), column(of));
-    let mut scan = Scan::beside(vec![ones.clone(), times.clone()], times.clone(), vec![ones.clone()], values.clone());
+    let mut scan =
+        Scan::beside(vec![ones.clone(), times.clone()], times.clone(), values.clone()).along(vec![ones.clone()]);
     let power = dot(&scan.residual, &scan.residual);
     let jump = scan.next_step().filter(|(gain, _)| *gain > HALF * power).map(|(_, at)| at);
     let since = |k: usize, at: f64| f64::from(u8::from(k as f64 >= at));

@@ -11,7 +11,7 @@ use crate::diagnose::data::limits::LEAST_ROWS_OF_A_FIT;
 use crate::diagnose::experiment::separation::Imagined;
 use crate::diagnose::hypotheses::axis::Axis;
 use crate::diagnose::hypotheses::candidate::Candidate;
-use crate::diagnose::hypotheses::force_step::{Jumps, finger_and_axis};
+use crate::diagnose::hypotheses::force_step::{Jumps, jumps_of_fingers};
 use crate::diagnose::hypotheses::sensor_fault::{BIAS, DRIFT, of_fingers};
 use crate::diagnose::hypotheses::variable::Variable;
 use crate::diagnose::hypotheses::{force_bias, force_drift, force_step, friction_change, time_delay, viscous_friction};
@@ -207,15 +207,8 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
 
 /// The rows as those in which a sensor's zero may have jumped.
 fn jumps(rows: &[Row]) -> Jumps<impl Fn(&str, usize) -> f64> {
-    let share = |name: &str, i: usize| {
-        let (finger, axis) = finger_and_axis(name);
-        rows[i].share(finger, axis)
-    };
-    Jumps {
-        recording: rows.iter().map(|r| r.recording).collect(),
-        time_s: rows.iter().map(|r| r.time_s).collect(),
-        share,
-    }
+    let of_rows = rows.iter().map(|row| (row.recording, row.time_s));
+    jumps_of_fingers(of_rows, |finger, axis, i| rows[i].share(finger, axis))
 }
 
 impl Push {

@@ -4,8 +4,7 @@ use crate::diagnose::contract::{Alternative, Cause, CauseParameter, Gain, parame
 use crate::diagnose::data::limits::CERTAIN;
 use crate::diagnose::hypotheses::{length_scale, quadratic_drag};
 use crate::diagnose::selection::held_out_gain::chi_square_tail;
-use crate::diagnose::selection::rules::THRESHOLD;
-use estimation::identify::tossed::trajectory::{Air, Evidence};
+use estimation::identify::tossed::trajectory::{Air, CLEAR, Evidence};
 use foundation::words::amount;
 use haptics::law::Kind;
 
@@ -59,7 +58,7 @@ fn named((shown, rms_m): (&Evidence, f64), (id, kind): (&str, Kind), found: Caus
 /// beyond doubt beside drag and spin.
 pub fn instead_of_scale(air: &Air) -> Option<Alternative> {
     let posterior = 1.0 / (1.0 + (0.5 * air.scale.score).exp());
-    (air.scale.score <= THRESHOLD).then(|| Alternative {
+    (air.scale.score <= CLEAR).then(|| Alternative {
         id: quadratic_drag::ID.to_owned(),
         instead_of: length_scale::ID.to_owned(),
         posterior,
