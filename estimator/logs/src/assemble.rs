@@ -3,7 +3,7 @@
 use super::errors::LogError;
 use super::plan::{Plan, Use};
 use super::table::{Group, Table};
-use super::{checks, facts, sidecar, units};
+use super::{checks, clock, facts, repairs, sidecar, units};
 use haptics::recording::{Channel, Meta, Recording, Warning};
 use std::path::Path;
 
@@ -22,7 +22,9 @@ pub fn recordings(
     let left_out: Vec<usize> = table.text_columns.iter().chain(&table.gappy_columns).copied().collect();
     let mut recordings = Vec::with_capacity(groups.len());
     for (trial, mut group) in groups {
-        let time_s = time(&mut group, plan, meta, headers, path)?;
+        let mut about_time = clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers);
+        let (time_s, said_of_time) = clock::times(&mut group, plan, meta, headers, path)?;
+        about_time.extend(said_of_time);
         let mut recording = Recording {
             name: name(path, trial.as_deref().filter(|_| several)),
             trial,
@@ -40,8 +42,11 @@ pub fn recordings(
             return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
         }
         recording.warnings = said.to_vec();
+        recording.warnings.extend(about_time.into_iter().map(|text| note("clock", Some("t_s"), text)));
         recording.warnings.extend(notes(plan, &table, headers, &recording));
         recording.warnings.extend(facts::doubts(&recording));
+        let repairs = repairs::repair(&mut recording);
+        recording.warnings.extend(repairs);
         recording.warnings.extend(checks::warnings(&recording));
         recording.warnings.extend(checks::copied(&recording, plan, &copies));
         recordings.push(recording);
@@ -52,35 +57,6 @@ pub fn recordings(
 fn name(path: &Path, trial: Option<&str>) -> String {
     let file = path.file_name().map_or_else(|| path.display().to_string(), |f| f.to_string_lossy().into_owned());
     trial.map_or(file.clone(), |t| format!("{file}, trial {t}"))
-}
-
-/// Takes the time column out of the group and checks that it increases; made from `rate_hz` when there is none.
-fn time(
-    group: &mut Group,
-    plan: &Plan,
-    meta: &Meta,
-    headers: &[String],
-    path: &Path,
-) -> Result<Option<Vec<f64>>, LogError> {
-    let Some(column) = plan.time else {
-        let rows = group.rows();
-        return Ok(meta.rate_hz.map(|rate| (0..rows).map(|i| i as f64 / rate).collect()));
-    };
-    let time = std::mem::take(&mut group.columns[column]);
-    if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
-        let (row, line) = group.place(i + 1);
-        let how = if time[i + 1] < time[i] { "goes backwards" } else { "stands still" };
-        return Err(LogError::Time {
-            row,
-            line,
-            column: headers[column].clone(),
-            how,
-            previous: time[i],
-            time: time[i + 1],
-            path: path.to_path_buf(),
-        });
-    }
-    Ok(Some(time))
 }
 
 /// The channels: columns are moved, and copied only where two names share one.
@@ -101,14 +77,12 @@ fn channels(group: &mut Group, plan: &Plan, left_out: &[usize]) -> Vec<Channel> 
     made
 }
 
+fn note(kind: &str, column: Option<&str>, text: String) -> Warning {
+    Warning { kind: kind.to_owned(), column: column.map(str::to_owned), spans: Vec::new(), text }
+}
+
 /// Notes for the reader about the table itself.
 fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) -> Vec<Warning> {
-    let note = |kind: &str, column: Option<&str>, text: String| Warning {
-        kind: kind.to_owned(),
-        column: column.map(str::to_owned),
-        spans: Vec::new(),
-        text,
-    };
     let mut notes: Vec<Warning> = plan.notes.iter().map(|n| note("columns", None, n.clone())).collect();
     let named = |c: usize| !headers[c].is_empty() && !plan.select.iter().any(|w| w.column == c);
     for &column in table.text_columns.iter().filter(|&&c| named(c)) {

@@ -2,7 +2,7 @@
 
 use super::errors::LogError;
 use super::plan::{Plan, Use};
-use super::raw::{Cells, Raw, is_missing};
+use super::raw::{Cells, Raw};
 use super::table::{Group, Table};
 use csv::ByteRecord;
 use haptics::recording::Labels;
@@ -147,7 +147,7 @@ fn usable(
         let none_asked = !required && plan.label != Some(column) && plan.trial != Some(column);
         match cells {
             Cells::Text(_) if none_asked => table.text_columns.push(column),
-            Cells::Numbers(values) if none_asked && is_missing(values[row]) => table.gappy_columns.push(column),
+            Cells::Numbers(_) if none_asked => table.gappy_columns.push(column),
             _ => {
                 let what = complaint(cells, row);
                 if worst.as_ref().is_none_or(|(earlier, _, _)| row < *earlier) {

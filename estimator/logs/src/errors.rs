@@ -158,7 +158,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A unit the program cannot convert.
-    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted}, or map it and give its factor with \"scale\" in the sidecar: {path}", column = plain(column), unit = plain(unit), path = path.display())]
+    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted} and the like, or state its factor in the sidecar: {mended}: {path}", mended = plain(mended), column = plain(column), unit = plain(unit), path = path.display())]
     UnknownUnit {
         /// The column.
         column: String,
@@ -166,6 +166,8 @@ pub enum LogError {
         unit: String,
         /// Units that can be used.
         accepted: &'static str,
+        /// Lines of the sidecar that mend it.
+        mended: String,
         /// The file.
         path: PathBuf,
     },
@@ -210,7 +212,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Time does not increase.
-    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
+    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
     Time {
         /// Row of data, from 1.
         row: usize,
@@ -224,6 +226,8 @@ pub enum LogError {
         previous: f64,
         /// There, s.
         time: f64,
+        /// The way out.
+        advice: String,
         /// The file.
         path: PathBuf,
     },

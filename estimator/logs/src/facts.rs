@@ -1,11 +1,12 @@
 //! Facts that a sidecar may state: refusals in plain words, and doubts that become warnings.
 
+use super::repairs::{AS_RECORDED, KINDS};
 use super::units;
 use haptics::recording::{Meta, Recording, Task, Warning};
 use serde_json::Value;
 
 /// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "task",
     "rate_hz",
     "gravity_m_s2",
@@ -19,6 +20,7 @@ const KEYS: [&str; 13] = [
     "prior",
     "bounds",
     "simulated_object",
+    AS_RECORDED,
 ];
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
@@ -82,7 +84,9 @@ fn entry(key: &str, value: &Value) -> Option<String> {
         "rate_hz" | "gravity_m_s2" => must(key, value, value.is_number(), "a number"),
         "up" => must(key, value, value.is_string(), "a text like \"y\""),
         "hand" => members(key, value, &hand_member),
-        "columns" => members(key, value, &|k, v| must(k, v, v.is_string(), "a column's name in quotes")),
+        "columns" => members(key, value, &|k, v| {
+            must(k, v, v.is_string() || v.is_null(), "a column's name in quotes, or null for none")
+        }),
         "scale" | "sign" | "known" => members(key, value, &|k, v| must(k, v, v.is_number(), "a number")),
         "prior" => members(key, value, &|k, v| {
             let number = |part: &str| v.get(part).is_some_and(Value::is_number);
@@ -93,6 +97,11 @@ fn entry(key: &str, value: &Value) -> Option<String> {
             let pair = v.as_array().is_some_and(|a| a.len() == 2 && a.iter().all(side));
             must(k, v, pair, "two numbers in brackets, or null for a side that is open")
         }),
+        AS_RECORDED => {
+            let known = |list: &Vec<Value>| list.iter().all(|v| KINDS.iter().any(|kind| v == kind));
+            let wanted = format!("a list of some of {}", KINDS.join(", "));
+            must(key, value, value.as_array().is_some_and(known), &wanted)
+        }
         "select" => {
             let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
             members(key, value, &|k, v| must(k, v, simple(v), "a text or a number"))

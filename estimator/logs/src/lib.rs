@@ -6,6 +6,7 @@
 
 mod assemble;
 mod checks;
+mod clock;
 mod columnar;
 mod csv;
 mod errors;
@@ -20,12 +21,14 @@ mod plan;
 pub mod preview;
 pub mod pyramid;
 mod raw;
+mod repairs;
 mod rows;
 mod sidecar;
 mod table;
 pub mod units;
 mod watch;
 mod write;
+pub mod written_units;
 
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
@@ -38,6 +41,8 @@ pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as 
 pub use watch::Watch;
 pub use write::{write, write_csv};
 
+/// Kind of the warning about spikes of one sample, and about values that no hand reaches.
+pub const SPIKES: &str = "outlier";
 /// The kind of the warning that a log has no clock.
 pub const NO_CLOCK: &str = "no-clock";
 
@@ -156,15 +161,17 @@ fn read(
 
 fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let dialect = csv::sniff(path)?;
-    let plan = plan::plan(&dialect.headers, meta, path)?;
+    let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
+    plan.take_stamps(&dialect.headers, &dialect.first, meta);
     let table = csv::read(path, &dialect, &plan, size, watch)?;
-    assemble::recordings(table, &plan, meta, path, &dialect.headers, &[])
+    let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }
 
 /// From the columns of a container to recordings.
 fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
     let headers = raw.headers.clone();
-    let plan = plan::plan(&headers, &raw.resolved(meta), path)?;
+    let plan = plan::plan(&headers, &[], &raw.resolved(meta), path)?;
     let table = columnar::table(raw, &plan, path)?;
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }

@@ -1,7 +1,9 @@
 //! Use of each column of a file: decided from its header and the sidecar before a single number is read.
 
+use super::csv::stamps;
 use super::errors::LogError;
-use super::units::{self, Unit};
+use super::units::{self, Dimension, Unit};
+use super::written_units::{self, Written};
 use haptics::recording::Meta;
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
@@ -32,6 +34,11 @@ pub enum Use {
         required: bool,
         /// Unit conversion, scale and sign.
         factor: f64,
+    },
+    /// Parsed as times of the calendar or of the day, s since `origin_ns`.
+    Stamp {
+        /// Nanoseconds of the first row.
+        origin_ns: i64,
     },
     /// Not read as numbers.
     Ignore,
@@ -98,8 +105,36 @@ pub struct Plan {
     pub notes: Vec<String>,
 }
 
+impl Plan {
+    /// Reads the time column as times of the calendar if its first cell is one. Without a time column and a rate, a column
+    /// with such a name and cell becomes it.
+    pub fn take_stamps(&mut self, headers: &[String], first: &[String], meta: &Meta) {
+        let stamp = |column: usize| first.get(column).and_then(|cell| stamps::parse(cell));
+        let is_off = meta.columns.get("t_s").is_some_and(String::is_empty) || meta.rate_hz.is_some();
+        let is_clock = |name: &str| {
+            ["time", "timestamp", "datetime", "date_time", "date", "zeit"]
+                .iter()
+                .any(|word| name.eq_ignore_ascii_case(word))
+        };
+        let is_named = |column: &usize| is_clock(&headers[*column]) && stamp(*column).is_some();
+        if self.time.is_none()
+            && !is_off
+            && let Some(column) = (0..headers.len()).find(is_named)
+        {
+            self.targets.retain(|target| target.column != column);
+            self.notes.push(format!("the column `{}` is taken as the time t_s", headers[column]));
+            self.time = Some(column);
+        }
+        if let Some((column, origin_ns)) = self.time.and_then(|column| Some((column, stamp(column)?))) {
+            self.uses[column] = Use::Stamp { origin_ns };
+        }
+    }
+}
+
 struct Planner<'a> {
     headers: &'a [String],
+    /// Units that stand outside the names, if any.
+    units: &'a [String],
     meta: &'a Meta,
     path: &'a Path,
     plan: Plan,
@@ -107,14 +142,22 @@ struct Planner<'a> {
     taken: HashMap<String, usize>,
 }
 
-/// Decides the use of each column.
-pub fn plan(headers: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
+/// Decides the use of each column. `stated`: the text of each column's unit outside its name, or nothing.
+pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
     let empty = Plan { uses: vec![Use::Ignore; headers.len()], ..Plan::default() };
-    let mut planner = Planner { headers, meta, path, plan: empty, taken: HashMap::new() };
-    planner.refuse_repeated_headers()?;
+    let mut planner = Planner { headers, units: stated, meta, path, plan: empty, taken: HashMap::new() };
     let mapped: HashSet<usize> = planner.take_mapping()?.into_iter().collect();
+    let repeated = planner.repeated();
     for column in (0..headers.len()).filter(|c| !mapped.contains(c)) {
-        planner.take_own_name(column)?;
+        if repeated.contains(&column) && !planner.is_program_column(column) {
+            let name = &headers[column];
+            planner
+                .plan
+                .notes
+                .push(format!("the name `{name}` stands above several columns; column {} is not used", column + 1));
+        } else {
+            planner.take_own_name(column)?;
+        }
     }
     planner.guess_time();
     planner.take_select()?;
@@ -135,14 +178,16 @@ impl Planner<'_> {
         }
     }
 
-    fn refuse_repeated_headers(&self) -> Result<(), LogError> {
-        let mut known = HashMap::new();
-        for (column, name) in self.headers.iter().enumerate().filter(|(_, n)| !n.is_empty()) {
-            if let Some(first) = known.insert(name, column) {
-                return Err(self.duplicate(name, first, column));
-            }
-        }
-        Ok(())
+    /// Columns whose name an earlier one has.
+    fn repeated(&self) -> HashSet<usize> {
+        let mut known = HashSet::new();
+        (0..self.headers.len()).filter(|&c| !self.headers[c].is_empty() && !known.insert(&self.headers[c])).collect()
+    }
+
+    fn is_program_column(&self, column: usize) -> bool {
+        let header = self.headers[column].as_str();
+        let known = units::split(header).is_some_and(|(quantity, _)| units::quantity_dimensions(quantity).is_some());
+        known || matches!(header, "trial" | "label")
     }
 
     fn duplicate(&self, name: &str, first: usize, second: usize) -> LogError {
@@ -162,10 +207,13 @@ impl Planner<'_> {
     /// Puts the sidecar's `columns` in; returns the columns it used.
     fn take_mapping(&mut self) -> Result<Vec<usize>, LogError> {
         let mut used = Vec::new();
-        for (name, source) in &self.meta.columns {
+        for (name, source) in self.meta.columns.iter().filter(|(_, source)| !source.is_empty()) {
             let column = self
                 .position(source)
                 .ok_or_else(|| self.missing(source, format!("\"columns\" in the sidecar maps it to `{name}`")))?;
+            if let Some(other) = (column + 1..self.headers.len()).find(|&c| self.headers[c] == *source) {
+                return Err(self.duplicate(source, column, other));
+            }
             used.push(column);
             match name.as_str() {
                 "trial" => self.plan.trial = Some(column),
@@ -183,35 +231,62 @@ impl Planner<'_> {
             }
             return self.add(name.to_owned(), String::new(), column, 1.0, true);
         };
+        let factor = self.mapped_factor(name, target, column)?;
+        self.add(format!("{quantity}_{}", target.si), target.si.to_owned(), column, factor, true)
+    }
+
+    /// SI value over number of a mapped column. A unit in the program's name (`q_mm`) is a statement of the user's, and so
+    /// is a scale, which takes the place of any unit but those of the log format's own names.
+    fn mapped_factor(&self, name: &str, target: Unit, column: usize) -> Result<f64, LogError> {
         let header = &self.headers[column];
-        let own = units::split(header).map(|(_, unit)| unit);
         let scaled = self.meta.scale.contains_key(name) || self.meta.scale.contains_key(header);
-        let unit = match own {
-            Some(own) if own.dimension == target.dimension => own,
-            Some(own) if !scaled => {
-                return Err(LogError::WrongDimension {
-                    target: name.to_owned(),
-                    column: header.clone(),
-                    unit: own.symbol.to_owned(),
-                    path: self.path.to_path_buf(),
-                });
-            }
-            None if !scaled && foreign_unit(header).is_some() => {
-                let unit = foreign_unit(header).unwrap_or_default();
-                return Err(self.unknown_unit(header, unit, quantity));
-            }
-            // Its own name says nothing usable, or a scale states the conversion: the program's name sets the unit.
-            _ => target,
+        let wanted = [target.dimension];
+        let measures_else = |unit: &str| LogError::WrongDimension {
+            target: name.to_owned(),
+            column: header.clone(),
+            unit: unit.to_owned(),
+            path: self.path.to_path_buf(),
         };
-        let si = format!("{quantity}_{}", target.si);
-        self.add(si, target.si.to_owned(), column, unit.factor, true)
+        if target.factor != 1.0 {
+            return Ok(target.factor);
+        }
+        let own = units::split(header).map(|(_, unit)| unit).filter(|_| self.stated(column).is_empty());
+        let text = self.unit_text(column, &wanted);
+        match own {
+            Some(own) if own.dimension == target.dimension => Ok(own.factor),
+            _ if scaled || text.is_empty() => Ok(1.0),
+            Some(own) if own.dimension != Dimension::Other => Err(measures_else(own.symbol)),
+            _ => match written_units::parse(&text, &wanted) {
+                Written::Known(dimension, factor) if dimension == target.dimension => Ok(factor),
+                Written::Known(..) => Err(measures_else(&text)),
+                Written::Counts | Written::Unknown => {
+                    Err(self.unknown_unit(header, &text, name.split('_').next().unwrap_or(name)))
+                }
+            },
+        }
+    }
+
+    fn stated(&self, column: usize) -> &str {
+        self.units.get(column).map_or("", String::as_str)
+    }
+
+    /// Text of the unit of a column for a quantity of these dimensions; empty if none is stated.
+    fn unit_text(&self, column: usize, wanted: &[Dimension]) -> String {
+        let stated = self.stated(column);
+        if stated.is_empty() { written_units::in_header(&self.headers[column], wanted).1 } else { stated }.to_owned()
     }
 
     fn unknown_unit(&self, column: &str, unit: &str, quantity: &str) -> LogError {
+        let dimensions = units::quantity_dimensions(quantity).unwrap_or(&[]);
+        let name = match dimensions.first() {
+            Some(dimension) => format!("{quantity}_{}", units::si(*dimension)),
+            None => quantity.to_owned(),
+        };
         LogError::UnknownUnit {
             column: column.to_owned(),
             unit: unit.to_owned(),
-            accepted: units::accepted(units::quantity_dimensions(quantity).unwrap_or(&[])),
+            accepted: units::accepted(dimensions),
+            mended: format!("\"columns\": {{\"{name}\": \"{column}\"}}, \"scale\": {{\"{name}\": SI value of 1}}"),
             path: self.path.to_path_buf(),
         }
     }
@@ -230,38 +305,70 @@ impl Planner<'_> {
             }
             _ => {}
         }
-        let split = units::split(&header);
-        let known = split.and_then(|(quantity, unit)| Some((quantity, unit, units::quantity_dimensions(quantity)?)));
-        if let Some((quantity, unit, _)) = known.filter(|(_, unit, dimensions)| dimensions.contains(&unit.dimension)) {
-            let name = format!("{quantity}_{}", unit.si);
-            if self.mapped(&name) {
-                self.plan.notes.push(format!(
-                    "the column `{header}` is not used: \"columns\" in the sidecar maps another one to `{name}`"
-                ));
+        if let Some((name, si, factor)) = self.program_name(column)? {
+            if let Some(why) = self.is_unwanted(&name) {
+                self.plan.notes.push(format!("the column `{header}` is not used: {why}"));
                 return Ok(());
             }
-            return self.add(name, unit.si.to_owned(), column, unit.factor, true);
+            return self.add(name, si, column, factor, true);
         }
-        if split.is_none() {
-            self.refuse_unknown_unit(&header)?;
-        }
-        let (name, unit, factor) = match split {
+        let (name, unit, factor) = match units::split(&header) {
             Some((quantity, unit)) => (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor),
             None => (header.clone(), header.rsplit_once('_').map_or(String::new(), |(_, u)| u.to_owned()), 1.0),
         };
         self.add(name, unit, column, factor, false)
     }
 
-    /// `fx1_lbf`, `q_turns`, `x`: a quantity of the program in a unit that it cannot convert.
-    fn refuse_unknown_unit(&self, header: &str) -> Result<(), LogError> {
-        let mut parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
-        let found = parts.find(|(quantity, _)| units::quantity_dimensions(quantity).is_some());
-        let alone = units::quantity_dimensions(header).is_some().then_some((header, ""));
+    /// Name of the program, SI unit, and factor of a column that is named after one of its quantities: `q_mm`, `fx1_lbf`,
+    /// `x [mm]`. An error for a unit that is not known.
+    fn program_name(&self, column: usize) -> Result<Option<(String, String, f64)>, LogError> {
+        let header = self.headers[column].as_str();
+        if let Some((quantity, unit)) = units::split(header).filter(|_| self.stated(column).is_empty())
+            && units::quantity_dimensions(quantity).is_some_and(|dimensions| dimensions.contains(&unit.dimension))
+        {
+            return Ok(Some((format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor)));
+        }
+        let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
+        let alone = std::iter::once(match self.stated(column) {
+            "" => written_units::in_header(header, &[]),
+            stated => (header, stated),
+        });
+        let mut found = parts.chain(alone).filter_map(|(q, text)| Some((q, text, units::quantity_dimensions(q)?)));
         let word = header.split_once('_').filter(|(q, _)| ["force", "torque", "angle", "position"].contains(q));
-        let foreign = foreign_unit(header).and_then(|unit| word.map(|(quantity, _)| (quantity, unit)));
-        let Some((quantity, unit)) = found.or(alone).or(foreign) else { return Ok(()) };
-        let mapped = self.meta.columns.keys().any(|k| units::split(k).is_some_and(|(q, _)| q == quantity));
-        if mapped { Ok(()) } else { Err(self.unknown_unit(header, unit, quantity)) }
+        let Some((quantity, text, dimensions)) = found.next() else {
+            let is_counts = word.filter(|(_, text)| written_units::parse(text, &[]) == Written::Counts);
+            return is_counts.map_or(Ok(None), |(quantity, unit)| Err(self.unknown_unit(header, unit, quantity)));
+        };
+        match written_units::parse(text, dimensions) {
+            Written::Known(dimension, factor) if dimensions.contains(&dimension) => {
+                let si = units::si(dimension);
+                Ok(Some((format!("{quantity}_{si}"), si.to_owned(), factor)))
+            }
+            // A mapped column measures the quantity.
+            _ if self.meta.columns.keys().any(|k| units::split(k).is_some_and(|(q, _)| q == quantity)) => Ok(None),
+            // A word of another kind: `x_min`, `q_desired`.
+            Written::Known(..) if units::split(header).is_some() => Ok(None),
+            _ => Err(self.unknown_unit(header, text, quantity)),
+        }
+    }
+
+    /// Reason why a column with a name of the program's is not used: what the sidecar maps comes first.
+    fn is_unwanted(&self, name: &str) -> Option<String> {
+        if self.mapped(name) {
+            return Some(format!("\"columns\" in the sidecar maps another one to `{name}`"));
+        }
+        if self.meta.columns.iter().any(|(key, source)| source.is_empty() && canonical(key) == name) {
+            return Some(format!("\"columns\" in the sidecar says that the file has no `{name}`"));
+        }
+        let mut motions =
+            self.meta.columns.iter().filter(|(_, source)| !source.is_empty()).map(|(key, _)| canonical(key));
+        let motions: Vec<String> = motions.by_ref().filter(|key| is_motion(key)).collect();
+        let first = motions.first()?;
+        let is_mentioned = self.meta.scale.contains_key(name) || self.meta.sign.contains_key(name);
+        let is_apart =
+            !is_mentioned && !motions.iter().any(|motion| forms(motion).iter().any(|form| forms(name).contains(form)));
+        (is_apart && !forms(name).is_empty())
+            .then(|| format!("\"columns\" in the sidecar asks for another motion, `{first}`"))
     }
 
     fn mapped(&self, name: &str) -> bool {
@@ -298,14 +405,29 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// `time_s`, `time_ms`: the time, when nothing else claims to be it.
+    /// `time_s`, `Time [ms]`, `timestamp_ns`: the time, when nothing else claims to be it.
     fn guess_time(&mut self) {
-        if self.plan.time.is_some() || self.meta.rate_hz.is_some() {
+        let is_off = self.meta.columns.get("t_s").is_some_and(String::is_empty);
+        if self.plan.time.is_some() || self.meta.rate_hz.is_some() || is_off {
             return;
         }
-        if let Some(at) = self.plan.targets.iter().position(|t| t.name == "time_s" || t.name == "timestamp_s") {
+        let clock = |column: usize| {
+            let header = &self.headers[column];
+            let name = match self.stated(column) {
+                "" => written_units::in_header(header, &[Dimension::Time]).0,
+                _ => header,
+            };
+            let is_time = ["time", "timestamp", "zeit", "x_value"].iter().any(|word| name.eq_ignore_ascii_case(word));
+            match written_units::parse(&self.unit_text(column, &[Dimension::Time]), &[Dimension::Time]) {
+                Written::Known(Dimension::Time, factor) if is_time => Some(factor),
+                _ => None,
+            }
+        };
+        let found = (0..self.plan.targets.len()).find_map(|at| Some((at, clock(self.plan.targets[at].column)?)));
+        if let Some((at, factor)) = found {
             let target = self.plan.targets.remove(at);
             self.plan.time = Some(target.column);
+            self.plan.uses[target.column] = Use::Number { required: true, factor };
             self.plan.notes.push(format!("the column `{}` is taken as the time t_s", self.headers[target.column]));
         }
     }
@@ -368,13 +490,32 @@ fn canonical(name: &str) -> String {
         .map_or_else(|| name.to_owned(), |(quantity, unit): (&str, Unit)| format!("{quantity}_{}", unit.si))
 }
 
-/// A unit that people use and the program does not convert.
-fn foreign_unit(header: &str) -> Option<&str> {
-    const FOREIGN: [&str; 18] = [
-        "lbf", "lb", "kgf", "kp", "kN", "oz", "ozf", "dyn", "in", "inch", "ft", "mil", "grad", "gon", "turns", "rev",
-        "lbfin", "ozin",
-    ];
-    header.rsplit_once('_').map(|(_, unit)| unit).filter(|unit| FOREIGN.contains(unit))
+/// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and
+/// the joints of one finger or two. None for others.
+fn forms(name: &str) -> &'static [u8] {
+    let Some((quantity, unit)) = units::split(name) else { return &[] };
+    let stem = quantity.trim_end_matches(['1', '2']);
+    let fingered = stem.len() < quantity.len();
+    match (stem, fingered) {
+        ("q", false) if unit.dimension == Dimension::Length => &[0],
+        ("q", false) => &[1],
+        ("dq", false) if unit.dimension == Dimension::Velocity => &[0],
+        ("dq" | "tau", false) => &[1],
+        ("f", false) => &[0],
+        ("x" | "y" | "z" | "vx" | "vy" | "vz", false) => &[2],
+        ("x" | "y" | "vx" | "vy", true) => &[3],
+        ("qb" | "qt" | "dqb" | "dqt", false) => &[4],
+        ("qb" | "qt" | "dqb" | "dqt", true) => &[5],
+        ("fx" | "fy" | "fz", false) => &[2, 4],
+        ("fx" | "fy", true) => &[3, 5],
+        _ => &[],
+    }
+}
+
+/// True for positions and angles.
+fn is_motion(name: &str) -> bool {
+    let unit = units::split(name).map(|(_, unit)| unit.dimension);
+    !forms(name).is_empty() && matches!(unit, Some(Dimension::Length | Dimension::Angle))
 }
 
 /// The first names of a list, for a sentence.
@@ -402,7 +543,7 @@ mod tests {
     #[test]
     fn a_mapped_column_brings_its_own_unit() {
         let meta = meta(r#"{"columns":{"t_s":"time_ms","q_m":"position_mm","f_N":"pull"},"sign":{"f_N":-1}}"#);
-        let plan = plan(&headers("time_ms,position_mm,pull"), &meta, Path::new("a")).expect("plans");
+        let plan = plan(&headers("time_ms,position_mm,pull"), &[], &meta, Path::new("a")).expect("plans");
         assert_eq!(plan.uses[0], Use::Number { required: true, factor: 1e-3 });
         assert_eq!(plan.uses[1], Use::Number { required: true, factor: 1e-3 });
         assert_eq!(plan.uses[2], Use::Number { required: true, factor: -1.0 });
@@ -414,28 +555,30 @@ mod tests {
         let columns = headers("t_s,q_m,command_V");
         let scaled = meta(r#"{"columns":{"f_N":"command_V"},"scale":{"f_N":35.0}}"#);
         assert_eq!(
-            plan(&columns, &scaled, Path::new("a")).expect("plans").uses[2],
+            plan(&columns, &[], &scaled, Path::new("a")).expect("plans").uses[2],
             Use::Number { required: true, factor: 35.0 }
         );
-        let error = plan(&columns, &meta(r#"{"columns":{"f_N":"command_V"}}"#), Path::new("a")).expect_err("volts");
+        let error =
+            plan(&columns, &[], &meta(r#"{"columns":{"f_N":"command_V"}}"#), Path::new("a")).expect_err("volts");
         assert!(error.to_string().contains("`command_V`") && error.to_string().contains("scale"), "{error}");
     }
 
     #[test]
     fn unknown_units_of_known_quantities_are_named() {
-        for header in ["fx1_lbf", "q_turns", "x", "x_inch", "force_lbf"] {
-            let error = plan(&headers(&format!("t_s,{header}")), &Meta::default(), Path::new("a")).expect_err(header);
+        for header in ["fx1_stone", "q_counts", "x", "x [foo]", "force_counts"] {
+            let error =
+                plan(&headers(&format!("t_s,{header}")), &[], &Meta::default(), Path::new("a")).expect_err(header);
             assert!(error.to_string().contains(&format!("`{header}`")), "{error}");
         }
         // Extra channels may carry any unit.
-        let plan =
-            plan(&headers("t_s,q_m,load_percent,oil_degC,q1_rad"), &Meta::default(), Path::new("a")).expect("fine");
+        let plan = plan(&headers("t_s,q_m,load_percent,oil_degC,q1_rad"), &[], &Meta::default(), Path::new("a"))
+            .expect("fine");
         assert_eq!(names(&plan), ["q_m", "load_percent", "oil_degC", "q1_rad"]);
     }
 
     #[test]
     fn half_a_vector_and_a_clash_are_refused() {
-        let no = |text: &str| plan(&headers(text), &Meta::default(), Path::new("a")).expect_err(text).to_string();
+        let no = |text: &str| plan(&headers(text), &[], &Meta::default(), Path::new("a")).expect_err(text).to_string();
         assert!(no("t_s,x1_m,y1_m,x2_m,y2_m,fy1_N,fx2_N,fy2_N").contains("`fx1_N` is missing"));
         assert!(no("t_s,x_m,x_mm,y_m").contains("two columns give `x_m`"));
         assert!(no("t_s,q_m,q_m").contains("two columns give `q_m`"));

@@ -36,6 +36,10 @@ pub fn parse(text: &str, path: &Path) -> Result<Meta, LogError> {
     if let Some(why) = facts::wrong_type(&value) {
         return Err(malformed(why));
     }
+    // A name without a column.
+    if let Some(columns) = value.get_mut("columns").and_then(Value::as_object_mut) {
+        columns.values_mut().filter(|source| source.is_null()).for_each(|source| *source = "".into());
+    }
     let meta: Meta = serde_json::from_value(value).map_err(|error| malformed(error.to_string()))?;
     facts::complaint(&meta).map_or(Ok(meta), |why| Err(malformed(why)))
 }

@@ -23,6 +23,8 @@ pub struct Table {
     pub text_columns: Vec<usize>,
     /// Columns without a use that lack a value in some rows, left out too.
     pub gappy_columns: Vec<usize>,
+    /// Needed columns that have values in some rows only: each has a clock of its own.
+    pub sparse_columns: Vec<usize>,
     /// Contents of every trial, also of those not selected.
     pub fingerprints: Fingerprints,
 }

@@ -97,6 +97,11 @@ pub fn accepted(dimensions: &[Dimension]) -> &'static str {
     }
 }
 
+/// Symbol of the SI unit of a dimension, as it stands in a column's name.
+pub fn si(dimension: Dimension) -> &'static str {
+    UNITS.iter().find(|unit| unit.dimension == dimension).map_or("", |unit| unit.si)
+}
+
 /// The unit with this symbol.
 pub fn find(symbol: &str) -> Option<Unit> {
     UNITS.iter().copied().find(|u| u.symbol == symbol)

@@ -32,10 +32,10 @@ pub use experiment::strokes::{Stroke, Strokes};
 pub use experiment::waypoints::{Insertions, Throw, Throws};
 pub use findings::Findings;
 use foundation::estimate::EstimateError;
-use haptics::recording::{Recording, Task};
+use haptics::recording::{Recording, Task, Warning};
 pub use hypotheses::sensor_fault::{SensorFault, Step};
 pub use hypotheses::variable::Variable;
-use logs::{NO_CLOCK, UNIT};
+use logs::{NO_CLOCK, SPIKES, UNIT};
 pub use options::Options;
 pub use progress::Progress;
 pub use tasks::baseline_models::named;
@@ -48,30 +48,31 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
     let task = task_of(first, options.task)?;
-    let (repaired, spikes) = without_spikes(recordings);
+    let repaired = without_spikes(recordings);
     let recordings = repaired.as_deref().unwrap_or(recordings);
     let mut found = of_task(task, recordings, options)?;
-    found.warnings.extend(spikes);
     found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
-    let doubtful =
-        recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| [NO_CLOCK, UNIT].contains(&w.kind.as_str())));
+    let told = |w: &&Warning| [NO_CLOCK, UNIT, SPIKES].contains(&w.kind.as_str());
+    let doubtful = recordings.iter().flat_map(|r| r.warnings.iter().filter(told));
     found.warnings.extend(doubtful.map(|w| w.text.clone()));
     found.warnings.dedup();
     found.name_by_unit();
     Ok(found)
 }
 
-/// The recordings without spikes of single samples, if any has some, and a sentence for each channel that had. A spike
-/// is no bias, no drift and no catch.
-fn without_spikes(recordings: &[Recording]) -> (Option<Vec<Recording>>, Vec<String>) {
+/// The recordings without spikes of single samples, if any has some, each with a warning for every channel that had. A
+/// spike is no bias, no drift and no catch.
+fn without_spikes(recordings: &[Recording]) -> Option<Vec<Recording>> {
     let each: Vec<_> = recordings.iter().map(logs::repaired).collect();
-    if each.iter().all(Option::is_none) {
-        return (None, Vec::new());
-    }
-    let pairs = each.into_iter().zip(recordings);
-    let (all, said): (Vec<Recording>, Vec<Vec<String>>) =
-        pairs.map(|(other, recording)| other.unwrap_or_else(|| (recording.clone(), Vec::new()))).unzip();
-    (Some(all), said.concat())
+    let has_spikes = each.iter().any(Option::is_some);
+    let repaired = |(repaired, recording): (Option<(Recording, Vec<Warning>)>, &Recording)| match repaired {
+        Some((mut other, said)) => {
+            other.warnings.extend(said);
+            other
+        }
+        None => recording.clone(),
+    };
+    has_spikes.then(|| each.into_iter().zip(recordings).map(repaired).collect())
 }
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {

@@ -12,7 +12,7 @@ pub(super) fn about(kind: &str, channel: &Channel, spans: Vec<Span>, text: Strin
 }
 
 /// Place of a sample, for people.
-pub(super) fn place(recording: &Recording, sample: usize) -> String {
+pub(crate) fn place(recording: &Recording, sample: usize) -> String {
     match recording.time_s.as_ref().and_then(|t| t.get(sample)) {
         Some(time) => format!("{time:.3} s (sample {sample})"),
         None => format!("sample {sample}"),

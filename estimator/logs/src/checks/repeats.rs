@@ -5,6 +5,8 @@ use super::profile::{Profile, holds};
 use crate::plan::Plan;
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 /// More equal rows than this in a row are a rest or a stuck recorder, not a repeated sample.
 const MOST_REPEATS: usize = 5;
@@ -33,6 +35,36 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
             let (one, other) = (&recording.channels[a], &recording.channels[b]);
             found.extend(copy(recording, one, other, pairs.equal(k, j)));
         }
+    }
+    found.extend(copies_beside(recording, profiles, &known));
+    found
+}
+
+/// Channels that are equal over the whole recording, at least one of them without a name of the program's. A force or a
+/// torque of the program's is the one that was not measured: a position is often recorded twice.
+fn copies_beside(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Vec<Warning> {
+    let channels = &recording.channels;
+    let mut first_of: HashMap<u64, usize> = HashMap::new();
+    let mut found = Vec::new();
+    for k in (0..channels.len()).filter(|&k| !profiles[k].is_constant() && moves(&channels[k].values)) {
+        let mut hasher = DefaultHasher::new();
+        channels[k].values.iter().for_each(|value| value.to_bits().hash(&mut hasher));
+        let first = *first_of.entry(hasher.finish()).or_insert(k);
+        let is_told = known.contains(&first) && known.contains(&k);
+        if first == k || is_told || channels[first].values != channels[k].values {
+            continue;
+        }
+        let is_force = |k: usize| known.contains(&k) && matches!(channels[k].unit.as_str(), "N" | "Nm");
+        let (copy, source) = if is_force(first) { (first, k) } else { (k, first) };
+        found.push(Warning {
+            kind: "copied-channel".to_owned(),
+            column: Some(channels[copy].name.clone()),
+            spans: vec![Span { first: 0, end: recording.len() }],
+            text: format!(
+                "{} is the same as {} over the whole recording: one of the two was not measured; do not use it",
+                channels[copy].name, channels[source].name
+            ),
+        });
     }
     found
 }

@@ -4,6 +4,7 @@ use super::findings::{about, is_position, limited, place};
 use super::profile::Profile;
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
+use std::ops::Range;
 
 /// Distance of a value from the others, in multiples of their spread, from which it is no measurement.
 const OUTLIER_SPREADS: f64 = 1e6;
@@ -13,12 +14,16 @@ const IMPOSSIBLE: f64 = 1e9;
 const SPIKE_STEPS: f64 = 5.0;
 /// Number of samples on either side that are compared.
 const AROUND: usize = 32;
-/// Number of other steps that may be as large, for another spike or two.
-const FORGIVEN: usize = 4;
+/// Number of other steps that may be as large: junk comes in clusters of up to seven spikes within 64 samples.
+const FORGIVEN: usize = 12;
 /// Steps of less than this many times the mean of the steps around need no closer look.
 const WORTH_A_LOOK: f64 = 2.5;
 /// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
 const FELT_STEPS: f64 = 2.0;
+/// Rounds after which hardly any spike is left.
+const ROUNDS: usize = 3;
+/// Largest number of samples of a spike: junk falls on two neighbours now and then.
+const LONGEST: usize = 2;
 /// Largest distance to which a spike comes back, as a share of its height.
 const RETURN_SHARE: f64 = 0.3;
 /// Least height of a spike, as a share of the channel's usual range.
@@ -58,13 +63,10 @@ pub fn warning(
     // Impossible values have been reported already.
     found.retain(|&i| impossible.is_none_or(|w| w.spans.iter().all(|s| s.first != i)));
     let &first = found.first()?;
-    let leap = |i: usize| {
-        let (before, after) = (channel.values[i - 1], channel.values[i + 1]);
-        channel.values[i] - 0.5 * (before + after)
-    };
-    let largest = found.iter().map(|&i| leap(i).abs()).fold(0.0, f64::max);
+    let whole = bridged(&channel.values, &found);
+    let largest = found.iter().map(|&i| (channel.values[i] - whole[i]).abs()).fold(0.0, f64::max);
     let text = format!(
-        "{} has {} spike(s) of one sample, the first at {}, up to {largest:.4} {} away from its neighbours; leave them out or repair the channel",
+        "{} has {} sample(s) that are spikes, the first at {}, up to {largest:.4} {} away from their neighbours; leave them out or repair the channel",
         channel.name,
         found.len(),
         place(recording, first),
@@ -74,34 +76,54 @@ pub fn warning(
     Some(about("outlier", channel, limited(spans), text))
 }
 
-/// The recording with the mean of its neighbours in the place of every spike of one sample, and a sentence for each
-/// channel that had one. `None` if none had.
-pub fn repaired(recording: &Recording) -> Option<(Recording, Vec<String>)> {
-    let known = |channel: &&Channel| units::is_program_name(&channel.name);
-    let all: Vec<(&Channel, Vec<usize>)> = (recording.channels.iter().filter(known))
-        .map(|channel| (channel, places(recording, channel, &Profile::of(&channel.values))))
-        .filter(|(_, found)| !found.is_empty())
-        .collect();
-    let said = all.iter().map(|(channel, found)| {
-        format!(
-            "{} has {} spike(s) of one sample, the first at {}: the mean of its neighbours takes the place of each",
+/// The recording with a line between its neighbours in the place of every spike, and a warning for each channel that had
+/// one. `None` if none had.
+pub fn repaired(recording: &Recording) -> Option<(Recording, Vec<Warning>)> {
+    let mut other = recording.clone();
+    let mut said = Vec::new();
+    for (k, channel) in recording.channels.iter().enumerate().filter(|(_, c)| units::is_program_name(&c.name)) {
+        let mut found = Vec::new();
+        // A spike hides others beside it.
+        for _ in 0..ROUNDS {
+            let new = places(recording, &other.channels[k], &Profile::of(&other.channels[k].values));
+            if new.is_empty() {
+                break;
+            }
+            found.extend(new);
+            found.sort_unstable();
+            found.dedup();
+            other.channels[k].values = bridged(&channel.values, &found);
+        }
+        let Some(&first) = found.first() else { continue };
+        let off = found.iter().map(|&i| (channel.values[i] - other.channels[k].values[i]).abs()).fold(0.0, f64::max);
+        let text = format!(
+            "{} has {} sample(s) that are spikes, the first at {}, up to {off:.4} {} away from their neighbours, which take their place",
             channel.name,
             found.len(),
-            place(recording, found[0])
-        )
-    });
-    let said: Vec<String> = said.collect();
-    if said.is_empty() {
-        return None;
+            place(recording, first),
+            channel.unit
+        );
+        said.push(about(
+            "outlier",
+            channel,
+            limited(found.iter().map(|&i| Span { first: i, end: i + 1 }).collect()),
+            text,
+        ));
     }
-    let mut other = recording.clone();
-    for (channel, found) in all {
-        let Some(own) = other.channels.iter_mut().find(|c| c.name == channel.name) else { continue };
-        for i in found {
-            own.values[i] = 0.5 * (channel.values[i - 1] + channel.values[i + 1]);
+    (!said.is_empty()).then_some((other, said))
+}
+
+/// The values with lines in the place of some samples, none of which is the first or the last.
+fn bridged(values: &[f64], left_out: &[usize]) -> Vec<f64> {
+    let mut whole = values.to_vec();
+    for run in left_out.chunk_by(|a, b| a + 1 == *b) {
+        let (before, after) = (run[0] - 1, run[run.len() - 1] + 1);
+        for &i in run {
+            let share = (i - before) as f64 / (after - before) as f64;
+            whole[i] = values[before] + share * (values[after] - values[before]);
         }
     }
-    Some((other, said))
+    whole
 }
 
 /// Samples of the spikes of a channel. A leap that other channels feel too is a blow, and no fault of a sensor.
@@ -135,8 +157,12 @@ fn spikes(values: &[f64], position: bool, least: f64) -> Vec<usize> {
         }
         for (k, size) in block.windows(2).map(|w| (w[1] - w[0]).abs()).enumerate() {
             let at = first + k + 1;
-            if size >= floor && size > 0.0 && at < steps && is_spike(values, at, position, floor) {
-                found.push(at);
+            if size < floor || size <= 0.0 || found.last().is_some_and(|last| *last >= at) {
+                continue;
+            }
+            let fits = |length: &usize| at + length - 1 < steps && is_spike(values, at..at + length, position, floor);
+            if let Some(length) = (1..=LONGEST).find(fits) {
+                found.extend(at..at + length);
             }
         }
     }
@@ -157,10 +183,12 @@ fn steps_of(block: &[f64; AROUND + 1]) -> (f64, f64) {
     (sums.iter().sum(), largest.into_iter().fold(0.0, f64::max))
 }
 
-fn is_spike(values: &[f64], at: usize, position: bool, least: f64) -> bool {
-    let (there, back) = (values[at] - values[at - 1], values[at + 1] - values[at]);
+/// True if the samples `run` leap away together, and the next one is back.
+fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bool {
+    let (at, end) = (run.start, run.end);
+    let (there, back) = (values[at] - values[at - 1], values[end] - values[end - 1]);
     let height = there.abs().min(back.abs());
-    if there * back >= 0.0 || height < least || (values[at + 1] - values[at - 1]).abs() > RETURN_SHARE * height {
+    if there * back >= 0.0 || height < least || (values[end] - values[at - 1]).abs() > RETURN_SHARE * height {
         return false;
     }
     let usual = usual_step(values, at);
@@ -169,19 +197,23 @@ fn is_spike(values: &[f64], at: usize, position: bool, least: f64) -> bool {
     rest && height > SPIKE_STEPS * usual
 }
 
-/// Largest step around a sample, without the two steps at the sample itself and `FORGIVEN` others.
+/// Largest step around a sample, without the two steps at the sample itself and `FORGIVEN` others, but at least the
+/// smallest one that is a step.
 fn usual_step(values: &[f64], at: usize) -> f64 {
-    let mut others = [0.0; FORGIVEN + 1];
+    let (mut others, mut quantum) = ([0.0; FORGIVEN + 1], f64::INFINITY);
     let (first, end) = (at.saturating_sub(AROUND), (at + AROUND).min(values.len() - 1));
     for i in (first..end).filter(|&i| i + 1 != at && i != at) {
         let mut step = (values[i + 1] - values[i]).abs();
+        if step > 0.0 {
+            quantum = quantum.min(step);
+        }
         for slot in &mut others {
             if step > *slot {
                 std::mem::swap(slot, &mut step);
             }
         }
     }
-    others[FORGIVEN]
+    if quantum.is_finite() { others[FORGIVEN].max(quantum) } else { 0.0 }
 }
 
 /// True when another channel leaps at the same sample too.

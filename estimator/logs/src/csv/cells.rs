@@ -5,20 +5,99 @@ use memchr::{memchr, memchr2};
 /// Rows that are read before they are distributed to the columns.
 pub const BATCH: usize = 64;
 
-/// A number from the bytes of a cell; a decimal comma counts where the comma is not the delimiter. NaN and infinities come
-/// back as such. Correctly rounded.
-pub fn number(cell: &[u8], delimiter: u8) -> Option<f64> {
+/// Marks between and within the numbers of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Notation {
+    /// Between cells.
+    pub delimiter: u8,
+    /// Before decimals.
+    pub decimal: Decimal,
+}
+
+impl Default for Notation {
+    fn default() -> Self {
+        Self { delimiter: b',', decimal: Decimal::Point }
+    }
+}
+
+/// Decimal mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decimal {
+    /// A comma may stand between thousands, beside a point.
+    Point,
+    /// A point stands between thousands.
+    Comma,
+    /// The file shows both, or neither.
+    Either,
+}
+
+impl Decimal {
+    /// The mark that cells with this delimiter use, and true if the other one occurs, too.
+    pub fn of<'a>(cells: impl Iterator<Item = &'a str>, delimiter: u8) -> (Self, bool) {
+        let [mut points, mut commas, mut groups] = [false; 3];
+        for cell in cells {
+            let marks = cell.bytes().filter(|b| matches!(b, b'.' | b',')).count();
+            let Some(at) = cell.rfind(['.', ',']) else { continue };
+            let (before, after) = (cell[..at].trim_start_matches(['+', '-']), &cell[at + 1..]);
+            let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+            let decimals = after.split(['e', 'E']).next().unwrap_or(after);
+            if !is_digits(&before.replace(['.', ','], "")) || !is_digits(decimals) {
+                continue;
+            }
+            // Three digits may be a thousand, but not behind a zero, nor behind more than three others.
+            let certain =
+                decimals.len() != 3 || marks == 1 && (before.starts_with('0') || !(1..=3).contains(&before.len()));
+            let is_comma = cell.as_bytes()[at] == b',';
+            (points, commas) = (points || certain && !is_comma, commas || certain && is_comma);
+            groups |= !certain && !is_comma;
+        }
+        match (points, commas) {
+            _ if delimiter == b',' => (Self::Point, false),
+            (false, true) => (Self::Comma, groups),
+            (true, false) => (Self::Point, false),
+            (both, _) => (Self::Either, both),
+        }
+    }
+}
+
+/// A number from the bytes of a cell. NaN and infinities come back as such. Correctly rounded.
+pub fn number(cell: &[u8], notation: Notation) -> Option<f64> {
     let cell = cell.trim_ascii();
+    if notation.decimal == Decimal::Comma && cell.contains(&b'.') {
+        return grouped(cell, b'.', b',');
+    }
     if let Ok(value) = fast_float2::parse::<f64, _>(cell) {
         return Some(value);
     }
-    if delimiter == b',' || cell.contains(&b'.') {
+    if notation.decimal == Decimal::Point {
+        return if cell.contains(&b'.') { grouped(cell, b',', b'.') } else { None };
+    }
+    if cell.contains(&b'.') {
         return None;
     }
     let comma = memchr(b',', cell)?;
     let mut point = cell.to_vec();
     point[comma] = b'.';
     fast_float2::parse(&point).ok()
+}
+
+/// A number with marks between its thousands.
+fn grouped(cell: &[u8], between: u8, decimal: u8) -> Option<f64> {
+    let (whole, decimals) = match memchr(decimal, cell) {
+        Some(at) => (&cell[..at], &cell[at + 1..]),
+        None => (cell, &[][..]),
+    };
+    let digits = whole.strip_prefix(b"-").or_else(|| whole.strip_prefix(b"+")).unwrap_or(whole);
+    let mut groups = digits.split(|b| *b == between);
+    let is_digits = |text: &[u8]| text.iter().all(u8::is_ascii_digit);
+    let is_first = groups.next().is_some_and(|first| (1..=3).contains(&first.len()) && is_digits(first));
+    if !is_first || !groups.all(|group| group.len() == 3 && is_digits(group)) || !is_digits(decimals) {
+        return None;
+    }
+    let mut plain: Vec<u8> = whole.iter().copied().filter(|b| *b != between).collect();
+    plain.push(b'.');
+    plain.extend_from_slice(decimals);
+    fast_float2::parse(&plain).ok()
 }
 
 /// Place of a character of a record relative to its quotes.
@@ -124,10 +203,11 @@ impl Cells {
 /// The number at `bytes[at..]`, when nothing but its delimiter, a line end or the end of the bytes follows it, and the index
 /// behind it. `None` for whatever needs a closer look.
 #[inline]
-pub fn number_ahead(bytes: &[u8], at: usize, delimiter: u8) -> Option<(f64, usize)> {
-    let clean = |end: usize| bytes.get(end).is_none_or(|&b| b == delimiter || b == b'\n' || b == b'\r');
+pub fn number_ahead(bytes: &[u8], at: usize, notation: Notation) -> Option<(f64, usize)> {
+    let clean = |end: usize| bytes.get(end).is_none_or(|&b| b == notation.delimiter || b == b'\n' || b == b'\r');
     let (value, length) = fast_float2::parse_partial::<f64, _>(bytes.get(at..)?).ok()?;
-    (clean(at + length) && value.is_finite()).then_some((value, at + length))
+    let is_grouped = notation.decimal == Decimal::Comma && memchr(b'.', &bytes[at..at + length]).is_some();
+    (clean(at + length) && value.is_finite() && !is_grouped).then_some((value, at + length))
 }
 
 /// Length of the cell at the start of `bytes`, in a record without quotes.
@@ -169,10 +249,26 @@ mod tests {
 
     #[test]
     fn decimal_commas_count_where_the_comma_is_free() {
-        assert_eq!(number(b" 1,5 ", b';'), Some(1.5));
-        assert_eq!(number(b"1,5", b','), None);
-        assert_eq!(number(b"1.234,5", b';'), None);
-        assert_eq!(number(b"+2e0", b','), Some(2.0));
+        let of = |delimiter, decimal| Notation { delimiter, decimal };
+        let [point, comma, either] = [of(b',', Decimal::Point), of(b';', Decimal::Comma), of(b';', Decimal::Either)];
+        assert_eq!(number(b" 1,5 ", either), Some(1.5));
+        assert_eq!((number(b"1,5", point), number(b"1.234,5", either)), (None, None));
+        assert_eq!((number(b"+2e0", point), number(b"1,5e3", comma)), (Some(2.0), Some(1500.0)));
+        assert_eq!((number(b"-1.372", comma), number(b"51.262,5", comma)), (Some(-1372.0), Some(51262.5)));
+        assert_eq!(
+            (number(b"1.5", comma), number(b"12.3456", comma), number(b"1,234.5", point)),
+            (None, None, Some(1234.5))
+        );
+    }
+
+    #[test]
+    fn the_cells_of_a_file_show_its_decimal_mark() {
+        let of = |cells: &[&str]| Decimal::of(cells.iter().copied(), b';');
+        assert_eq!(of(&["0,000", "0,051263", "-1.372"]), (Decimal::Comma, true));
+        assert_eq!(of(&["0.000", "12"]), (Decimal::Point, false));
+        assert_eq!(of(&["0.5", "0,5"]), (Decimal::Either, true));
+        assert_eq!(of(&["1.234", "12"]), (Decimal::Either, false));
+        assert_eq!(Decimal::of(["1,5"].into_iter(), b','), (Decimal::Point, false));
     }
 
     proptest! {
@@ -181,7 +277,7 @@ mod tests {
         fn numbers_are_those_of_the_standard_library(bits in any::<u64>(), digits in "[+-]?[0-9]{0,25}\\.?[0-9]{0,25}([eE][+-]?[0-9]{1,3})?") {
             let value = f64::from_bits(bits);
             for text in [format!("{value:?}"), format!("{value}"), format!("{value:e}"), format!("{value:.3}"), digits] {
-                let own = number(text.as_bytes(), b',').map(f64::to_bits);
+                let own = number(text.as_bytes(), Notation::default()).map(f64::to_bits);
                 let reference = text.parse::<f64>().ok().map(f64::to_bits);
                 prop_assert!(own == reference || value.is_nan(), "{text}: {own:?} {reference:?}");
             }

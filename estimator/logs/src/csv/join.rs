@@ -6,12 +6,16 @@ use crate::errors::LogError;
 use crate::pages;
 use crate::plan::{Plan, Use};
 use crate::preview::Preview;
+use crate::raw::is_missing;
 use crate::table::{Group, Table};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Number of values of a selected column that a sentence lists.
 const SHOWN_VALUES: usize = 6;
+
+/// Fewer values than this are no samples of a slower clock.
+const LEAST_VALUES: usize = 8;
 
 /// Takes parts in any order and keeps those that are early.
 #[derive(Debug)]
@@ -67,7 +71,12 @@ impl<'a> Join<'a> {
     }
 
     fn join(&mut self, mut part: Part) -> Result<Vec<Vec<f64>>, LogError> {
-        self.table.text_columns.extend_from_slice(&part.text_columns);
+        let table = &mut self.table;
+        for (all, new) in
+            [(&mut table.text_columns, &part.text_columns), (&mut table.gappy_columns, &part.gappy_columns)]
+        {
+            new.iter().for_each(|column| all.extend((!all.contains(column)).then_some(*column)));
+        }
         self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
         for (all, seen) in self.seen.iter_mut().zip(&part.seen) {
             for text in seen {
@@ -125,7 +134,7 @@ impl<'a> Join<'a> {
             let expected = self.size * rows as u64 / bytes.max(1) as u64 * 101 / 100 + 16;
             let room = expected.min(self.size / (2 * widths) + 16) as usize;
             for (target, wanted) in group.columns.iter_mut().zip(&self.plan.uses) {
-                if matches!(wanted, Use::Number { .. }) {
+                if *wanted != Use::Ignore {
                     pages::reserve_exact(target, room);
                 }
             }
@@ -155,11 +164,37 @@ impl<'a> Join<'a> {
         if self.table.groups.is_empty() {
             return Err(self.nothing_selected());
         }
+        self.settle_blanks()?;
         for (_, group) in &mut self.table.groups {
             group.columns.iter_mut().for_each(Vec::shrink_to_fit);
             group.labels.shrink_to_fit();
         }
         Ok(self.table)
+    }
+
+    /// A needed column without a value in many rows has a clock of its own; one without a value in a few rows is faulty.
+    fn settle_blanks(&mut self) -> Result<(), LogError> {
+        let is_needed = |c: &usize| matches!(self.plan.uses[*c], Use::Number { required: true, .. });
+        let (needed, others): (Vec<usize>, Vec<usize>) = self.table.gappy_columns.iter().partition(|c| is_needed(c));
+        let mut worst: Option<(usize, u64, usize)> = None;
+        for &column in &needed {
+            let blanks = |group: &Group| group.columns[column].iter().filter(|v| is_missing(**v)).count();
+            let is_sparse = |group: &Group| {
+                let (all, blanks) = (group.columns[column].len(), blanks(group));
+                blanks == 0 || all - blanks >= LEAST_VALUES && 3 * blanks >= all
+            };
+            let groups = self.table.groups.iter().map(|(_, group)| group);
+            for group in groups.filter(|group| Some(column) == self.plan.time || !is_sparse(group)) {
+                let first = group.columns[column].iter().position(|v| is_missing(*v));
+                let place = first.map(|first| group.place(first));
+                let earlier = place.filter(|(row, _)| worst.is_none_or(|(other, ..)| *row < other));
+                worst = earlier.map(|(row, line)| (row, line, column)).or(worst);
+            }
+        }
+        self.table.gappy_columns = others;
+        self.table.sparse_columns = needed;
+        let fault = |column| Fault::Cell(column, "the cell is empty".to_owned());
+        worst.map_or(Ok(()), |(row, line, column)| Err(self.sentence(row, line, fault(column))))
     }
 
     fn nothing_selected(&self) -> LogError {

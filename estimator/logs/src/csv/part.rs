@@ -1,9 +1,11 @@
 //! One block of a table, parsed by itself: places count from its own start.
 
-use super::cells::{Cells, number, record_end};
+use super::cells::{Cells, Notation, number, record_end};
 use super::plain::{self, Plain};
+use super::stamps;
 use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::plan::{Plan, Use};
+use crate::raw::MISSING;
 use haptics::recording::Labels;
 use memchr::memchr;
 
@@ -13,8 +15,8 @@ const SEEN_VALUES: usize = 6;
 /// Information for every block.
 #[derive(Clone, Debug)]
 pub struct Layout<'a> {
-    /// Between cells.
-    pub delimiter: u8,
+    /// Marks between and within numbers.
+    pub notation: Notation,
     /// Cells in a row.
     pub width: usize,
     /// Use of each column.
@@ -72,6 +74,8 @@ pub struct Part {
     pub seen: Vec<Vec<String>>,
     /// Columns found to hold text while undecided.
     pub text_columns: Vec<usize>,
+    /// Columns with a cell without a value, or with no finite number if nobody needs it.
+    pub gappy_columns: Vec<usize>,
     /// The first thing wrong, with its row and line counted from 0 here; the rows before it are complete.
     pub fault: Option<(usize, u64, Fault)>,
 }
@@ -113,9 +117,12 @@ impl<'a, 'p> Reader<'a, 'p> {
             marks: Marks::default(),
             seen: vec![Vec::new(); plan.select.len()],
             text_columns: Vec::new(),
+            gappy_columns: Vec::new(),
             fault: None,
         };
-        let plain = plan.trial.is_none() && plan.select.is_empty() && plan.label.is_none() && plan.watched.is_empty();
+        let has_stamps = plan.uses.iter().any(|wanted| matches!(wanted, Use::Stamp { .. }));
+        let is_whole = plan.trial.is_none() && plan.select.is_empty() && plan.label.is_none();
+        let plain = is_whole && plan.watched.is_empty() && !has_stamps;
         Self { layout, part, cells: Cells::default(), plain, row: Vec::new() }
     }
 
@@ -141,13 +148,13 @@ impl<'a, 'p> Reader<'a, 'p> {
                 return at;
             }
         }
-        let end = record_end(bytes, at, self.layout.delimiter).unwrap_or(bytes.len());
+        let end = record_end(bytes, at, self.layout.notation.delimiter).unwrap_or(bytes.len());
         let mut record = &bytes[at..end];
         let lines = if memchr(b'"', record).is_some() { memchr::memchr_iter(b'\n', record).count() as u64 } else { 0 };
         while let Some(shorter) = record.strip_suffix(b"\r") {
             record = shorter;
         }
-        let delimiter = self.layout.delimiter;
+        let delimiter = self.layout.notation.delimiter;
         let blank = record.iter().all(|&b| b.is_ascii_whitespace() && b != delimiter);
         if !blank && record.first() != Some(&b'#') {
             self.careful_row(record);
@@ -159,14 +166,14 @@ impl<'a, 'p> Reader<'a, 'p> {
     fn find_ends(&mut self, bytes: &[u8]) {
         self.layout.ends.clear();
         if self.plain {
-            plain::find_ends(bytes, self.layout.delimiter, &mut self.layout.ends);
+            plain::find_ends(bytes, self.layout.notation.delimiter, &mut self.layout.ends);
         }
     }
 
     /// Reads the plain rows from `at` on; returns where the next one starts that is none.
     fn plain_rows(&mut self, bytes: &[u8], at: usize) -> usize {
-        let (delimiter, uses, ends) = (self.layout.delimiter, &self.layout.uses, &self.layout.ends);
-        let (rows, next) = Plain::new(delimiter, uses, &mut self.part.columns, ends).rows(bytes, at);
+        let (notation, uses, ends) = (self.layout.notation, &self.layout.uses, &self.layout.ends);
+        let (rows, next) = Plain::new(notation, uses, &mut self.part.columns, ends).rows(bytes, at);
         if rows > 0 {
             self.keep(None);
             self.part.kept += rows;
@@ -190,7 +197,7 @@ impl<'a, 'p> Reader<'a, 'p> {
 
     fn careful_row(&mut self, record: &[u8]) {
         let mut cells = std::mem::take(&mut self.cells);
-        cells.split(record, self.layout.delimiter);
+        cells.split(record, self.layout.notation.delimiter);
         if let Err(fault) = self.take(record, &cells) {
             self.part.fault = Some((self.part.rows, self.part.lines, fault));
         }
@@ -208,15 +215,17 @@ impl<'a, 'p> Reader<'a, 'p> {
         }
         self.row.clear();
         for column in 0..self.layout.width {
-            if let Use::Number { required, factor } = self.layout.uses[column] {
-                self.cell(column, cells.get(record, column), required, factor)?;
+            match self.layout.uses[column] {
+                Use::Number { required, factor } => self.cell(column, cells.get(record, column), required, factor)?,
+                Use::Stamp { origin_ns } => self.stamp(column, cells.get(record, column), origin_ns)?,
+                Use::Ignore => {}
             }
         }
         self.layout.undecided = false;
         self.keep(self.layout.plan.trial.map(|column| cells.get(record, column)));
         let mut values = self.row.iter();
         for (wanted, target) in self.layout.uses.iter().zip(&mut self.part.columns) {
-            if matches!(wanted, Use::Number { .. })
+            if *wanted != Use::Ignore
                 && let Some(&value) = values.next()
             {
                 target.push(value);
@@ -230,24 +239,46 @@ impl<'a, 'p> Reader<'a, 'p> {
     }
 
     fn cell(&mut self, column: usize, cell: &[u8], required: bool, factor: f64) -> Result<(), Fault> {
-        let value = number(cell, self.layout.delimiter);
+        let value = number(cell, self.layout.notation);
         if let Some(value) = value.filter(|v| v.is_finite()) {
             self.row.push(value * factor);
             return Ok(());
         }
-        if !required && self.layout.undecided && value.is_none() {
+        if !required && self.layout.undecided && value.is_none() && !cell.is_empty() {
             // The first cell is text: a text column without a use.
             self.layout.uses[column] = Use::Ignore;
             self.part.text_columns.push(column);
             return Ok(());
         }
+        if cell.is_empty() || !required {
+            // The whole column decides whether that is a fault.
+            let left_out = if cell.is_empty() || value.is_some() {
+                &mut self.part.gappy_columns
+            } else {
+                &mut self.part.text_columns
+            };
+            if !left_out.contains(&column) {
+                left_out.push(column);
+            }
+            self.row.push(MISSING);
+            return Ok(());
+        }
         let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
         let what = match value {
             Some(_) => format!("`{shown}` is not a finite number"),
-            None if shown.is_empty() => "the cell is empty".to_owned(),
             None => format!("`{shown}` is not a number"),
         };
         Err(Fault::Cell(column, what))
+    }
+
+    fn stamp(&mut self, column: usize, cell: &[u8], origin_ns: i64) -> Result<(), Fault> {
+        let shown = String::from_utf8_lossy(cell);
+        let Some(ns) = stamps::parse(&shown) else {
+            let what = format!("`{}` is not a time like the others", shown.chars().take(40).collect::<String>());
+            return Err(Fault::Cell(column, what));
+        };
+        self.row.push(1e-9 * ns.saturating_sub(origin_ns) as f64);
+        Ok(())
     }
 
     /// Leaves the marks for the comparison of trials.

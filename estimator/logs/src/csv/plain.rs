@@ -1,6 +1,6 @@
 //! Rows that hold nothing but plain numbers where numbers belong, straight into their columns.
 
-use super::cells::{BATCH, is_skippable, length_ahead, number_ahead};
+use super::cells::{BATCH, Decimal, Notation, is_skippable, length_ahead, number_ahead};
 #[cfg(target_arch = "x86_64")]
 use super::{batch::Batch, simd};
 use crate::plan::Use;
@@ -8,8 +8,8 @@ use crate::plan::Use;
 /// State for reading plain rows.
 #[derive(Debug)]
 pub struct Plain<'a> {
-    /// Between cells.
-    delimiter: u8,
+    /// Marks between and within numbers.
+    notation: Notation,
     /// Use of each column.
     uses: &'a [Use],
     /// One vector a column; all that are read have the same length.
@@ -37,13 +37,13 @@ pub fn find_ends(bytes: &[u8], delimiter: u8, ends: &mut Vec<u32>) {
 impl<'a> Plain<'a> {
     /// Reads into `columns`, one for each of `uses`; those that are read have the same length. `ends`: result of
     /// [`find_ends`] for the block.
-    pub fn new(delimiter: u8, uses: &'a [Use], columns: &'a mut [Vec<f64>], ends: &'a [u32]) -> Self {
+    pub fn new(notation: Notation, uses: &'a [Use], columns: &'a mut [Vec<f64>], ends: &'a [u32]) -> Self {
         #[cfg(target_arch = "x86_64")]
-        return Self { delimiter, uses, columns, ends, batch: None };
+        return Self { notation, uses, columns, ends, batch: None };
         #[cfg(not(target_arch = "x86_64"))]
         {
             let _ = ends;
-            Self { delimiter, uses, columns }
+            Self { notation, uses, columns }
         }
     }
 
@@ -66,7 +66,13 @@ impl<'a> Plain<'a> {
     fn quick_rows(&mut self, bytes: &[u8], at: usize) -> (usize, usize) {
         #[cfg(target_arch = "x86_64")]
         if simd::is_at_home() {
-            let comma = self.delimiter != b',';
+            let comma = match self.notation.decimal {
+                Decimal::Point => false,
+                Decimal::Either => true,
+                // The vector instructions take every point for a decimal one.
+                Decimal::Comma if memchr::memchr(b'.', &bytes[at..]).is_some() => return (0, at),
+                Decimal::Comma => true,
+            };
             // SAFETY: the processor has just been asked for every instruction that the function is compiled with.
             #[allow(unsafe_code, reason = "the only way to call a function that not every processor can run")]
             return unsafe {
@@ -105,12 +111,13 @@ impl<'a> Plain<'a> {
         for (column, (wanted, target)) in self.uses.iter().zip(self.columns.iter_mut()).enumerate() {
             match *wanted {
                 Use::Number { factor, .. } => {
-                    let (value, end) = number_ahead(bytes, at, self.delimiter)?;
+                    let (value, end) = number_ahead(bytes, at, self.notation)?;
                     target.push(value * factor);
                     at = end;
                 }
+                Use::Stamp { .. } => return None,
                 Use::Ignore => {
-                    let length = length_ahead(bytes.get(at..)?, self.delimiter);
+                    let length = length_ahead(bytes.get(at..)?, self.notation.delimiter);
                     if !is_skippable(&bytes[at..at + length]) {
                         return None;
                     }
@@ -118,7 +125,7 @@ impl<'a> Plain<'a> {
                 }
             }
             if column < last {
-                if bytes.get(at) != Some(&self.delimiter) {
+                if bytes.get(at) != Some(&self.notation.delimiter) {
                     return None;
                 }
                 at += 1;
@@ -134,7 +141,7 @@ impl<'a> Plain<'a> {
         let behind = self.ends.iter().position(|&end| (end as usize) >= at).unwrap_or(self.ends.len());
         self.ends = &self.ends[behind..];
         let Some(&line_end) = self.ends.get(width - 1) else { return (0, at) };
-        let mut batch = self.batch.take().unwrap_or_else(|| Batch::new(self.delimiter, self.uses));
+        let mut batch = self.batch.take().unwrap_or_else(|| Batch::new(self.notation.delimiter, self.uses));
         batch.set_line_end(bytes[..line_end as usize].last() == Some(&b'\r'));
         loop {
             let (filled, starts) = batch.fill::<COMMA>(bytes, at, self.ends);

@@ -134,7 +134,7 @@ fn read_as(drawn: &Drawn, split: Split) -> Result<Table, LogError> {
     let path = Path::new("log.csv");
     let dialect = dialect(bytes, path)?;
     let meta = serde_json::from_str(&drawn.meta).expect("a sidecar");
-    let plan = plan::plan(&dialect.headers, &meta, path)?;
+    let plan = plan::plan(&dialect.headers, &[], &meta, path)?;
     let rest = bytes.get(dialect.start as usize..).unwrap_or_default();
     Reading::new(rest, path, &dialect, &plan, bytes.len() as u64, Watch::none(), split).run()
 }
@@ -191,7 +191,7 @@ fn progress_rises_to_one_and_a_cancelled_read_leaves_nothing() {
     let text = format!("t_s,q_m\n{}", rows.concat());
     let path = Path::new("log.csv");
     let dialect = dialect(text.as_bytes(), path).expect("a table");
-    let plan = plan::plan(&dialect.headers, &haptics::recording::Meta::default(), path).expect("plans");
+    let plan = plan::plan(&dialect.headers, &[], &haptics::recording::Meta::default(), path).expect("plans");
     let run = |watch: Watch<'_>| {
         let rest = &text.as_bytes()[dialect.start as usize..];
         let split = Split { threads: 2, block_bytes: 1000 };

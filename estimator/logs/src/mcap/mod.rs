@@ -9,7 +9,7 @@ mod metadata;
 mod names;
 mod protobuf;
 pub mod records;
-mod resample;
+pub mod resample;
 mod rosmsg;
 mod schema;
 mod source;

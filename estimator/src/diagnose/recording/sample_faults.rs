@@ -17,18 +17,29 @@ pub struct Faults {
 }
 
 /// Kinds of warnings that are a fault of a channel.
-const CHANNEL: [&str; 7] =
-    ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
+const CHANNEL: [&str; 8] = [
+    "stuck-channel",
+    "copied-channel",
+    "duplicate-samples",
+    "dropped-samples",
+    "gap",
+    "clock-jump",
+    "quantised",
+    logs::SPIKES,
+];
 /// Kinds of them that concern all samples, so that none can be left out.
-const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
-/// Number of places with lost samples up to which the data remain usable.
+const WHOLE: [&str; 5] = ["dropped-samples", "gap", "clock-jump", "quantised", logs::SPIKES];
+/// Number of places with lost samples, or spikes, up to which the data remain usable.
 /// Choice: no case of the ablation reads it.
 const USABLE_GAPS: usize = 3;
 
 /// Looks at the raw samples.
 pub fn faults(recording: &Recording) -> Faults {
     let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
-    for warning in logs::check(recording) {
+    // Spikes were repaired: only the warning is left of them.
+    let is_spiky = |w: &&Warning| w.kind == logs::SPIKES && w.spans.len() >= USABLE_GAPS;
+    let repaired = recording.warnings.iter().filter(is_spiky).cloned();
+    for warning in logs::check(recording).into_iter().chain(repaired) {
         let id = match warning.kind.as_str() {
             "saturation" => force_saturation::ID,
             kind if CHANNEL.contains(&kind) && is_sensed(&warning) => channel_fault::ID,

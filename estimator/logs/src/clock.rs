@@ -1,0 +1,150 @@
+//! The times of a recording's rows: counters that ran over, epochs, and columns that have clocks of their own.
+
+use super::errors::LogError;
+use super::mcap::resample;
+use super::plan::{Plan, Use};
+use super::raw::{Cells, is_missing};
+use super::table::Group;
+use haptics::recording::{Labels, Meta};
+use std::path::Path;
+
+/// Times from which a number of seconds is none: three thousand years.
+const NO_SECONDS: f64 = 1e11;
+/// Seconds since 1970 of stamps that recordings have: 1990 to 2100.
+const EPOCHS: std::ops::Range<f64> = 6.3e8..4.1e9;
+/// Units that stamps since 1970 are counted in.
+const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
+/// Numbers at which counters of 16, 31 and 32 bits run over.
+const COUNTERS: [f64; 3] = [65_536.0, 2_147_483_648.0, 4_294_967_296.0];
+/// A step over the end of a counter is that of its neighbours to this share.
+const LIKE_OTHERS: f64 = 0.5;
+
+/// Times of a group's rows, s, with sentences about them; made from `rate_hz` where there is no column.
+pub fn times(
+    group: &mut Group,
+    plan: &Plan,
+    meta: &Meta,
+    headers: &[String],
+    path: &Path,
+) -> Result<(Option<Vec<f64>>, Vec<String>), LogError> {
+    let Some(column) = plan.time else {
+        let rows = group.rows();
+        return Ok((meta.rate_hz.map(|rate| (0..rows).map(|i| i as f64 / rate).collect()), Vec::new()));
+    };
+    let mut time = std::mem::take(&mut group.columns[column]);
+    let mut said = Vec::new();
+    let (factor, cycles) = match plan.uses[column] {
+        Use::Number { factor, .. } => (factor, COUNTERS.map(|count| count * factor).to_vec()),
+        _ => (1.0, vec![super::csv::stamps::DAY_S as f64]),
+    };
+    said.extend(unwrapped(&mut time, &cycles).map(|what| format!("the column `{}` {what}", headers[column])));
+    said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
+    if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
+        let (row, line) = group.place(i + 1);
+        let goes_back = time[i + 1] < time[i];
+        return Err(LogError::Time {
+            row,
+            line,
+            column: headers[column].clone(),
+            how: if goes_back { "goes backwards" } else { "stands still" },
+            previous: time[i],
+            time: time[i + 1],
+            advice: advice(&time, goes_back, meta.rate_hz),
+            path: path.to_path_buf(),
+        });
+    }
+    Ok((Some(time), said))
+}
+
+/// A way out for times that do not increase.
+fn advice(time: &[f64], goes_back: bool, rate_hz: Option<f64>) -> String {
+    let repeats = time.windows(2).filter(|w| w[1] == w[0]).count();
+    let no_clock = "\"columns\": {\"t_s\": null}";
+    match rate_hz {
+        Some(rate) => {
+            format!("if this column is no clock, state {no_clock} in the sidecar, and rate_hz ({rate}) holds")
+        }
+        None if 4 * repeats > time.len() => {
+            format!("the stamps are too coarse for a clock: state {no_clock} and the rate, \"rate_hz\", in the sidecar")
+        }
+        None if goes_back => {
+            "if several recordings stand one after the other, tell them apart with a `trial` column".to_owned()
+        }
+        None => format!("remove the repeated row, or state {no_clock} and \"rate_hz\" in the sidecar"),
+    }
+}
+
+/// Adds a cycle wherever a counter or the time of the day ran over.
+fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
+    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (mut added, mut times, mut first) = (0.0, 0, 0);
+    for i in 1..time.len() {
+        let step = time[i] + added - time[i - 1];
+        if step < 0.0 {
+            let cycle = cycles.iter().find(|cycle| (step + **cycle - usual).abs() <= LIKE_OTHERS * usual);
+            let Some(cycle) = cycle else { continue };
+            (added, times, first) = (added + cycle, times + 1, if first == 0 { i } else { first });
+        }
+        time[i] += added;
+    }
+    (times > 0).then(|| format!("runs over {times} time(s), first in row {}: its times go on from there", first + 1))
+}
+
+/// Turns stamps since 1970 that can be no seconds into seconds since the first row.
+fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
+    let first = *time.first()?;
+    if first.abs() < NO_SECONDS || factor != 1.0 {
+        return None;
+    }
+    let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| EPOCHS.contains(&(first * unit)))?;
+    time.iter_mut().for_each(|t| *t = (*t - first) * unit);
+    Some(format!("counts {name} since 1970, not seconds: its times are seconds since the first row"))
+}
+
+/// Puts needed columns that have values in some rows only on the clock of the one with fewest.
+pub fn on_one_clock(group: &mut Group, plan: &Plan, sparse: &[usize], headers: &[String]) -> Vec<String> {
+    let Some(time) = plan.time.map(|column| group.columns[column].clone()) else { return Vec::new() };
+    let needed: Vec<usize> = plan.targets.iter().map(|t| t.column).filter(|c| !group.columns[*c].is_empty()).collect();
+    let rows_of = |column: usize| -> Vec<usize> {
+        (0..time.len()).filter(|&row| !is_missing(group.columns[column][row])).collect()
+    };
+    let is_sparse = |column: &usize| sparse.contains(column) && group.columns[*column].iter().any(|v| is_missing(*v));
+    // Nothing is made up between the samples of the slowest channel.
+    let Some(base) = needed.iter().copied().min_by_key(|&column| rows_of(column).len()) else { return Vec::new() };
+    if !needed.iter().any(|column| is_sparse(column)) || time.windows(2).any(|w| w[1] <= w[0]) {
+        return Vec::new();
+    }
+    let at = |rows: &[usize]| rows.iter().map(|&row| time[row]).collect::<Vec<f64>>();
+    let clocks: Vec<(usize, Vec<usize>)> = needed.iter().map(|&column| (column, rows_of(column))).collect();
+    let first = clocks.iter().map(|(_, rows)| time[rows[0]]).fold(f64::NEG_INFINITY, f64::max);
+    let last = clocks.iter().map(|(_, rows)| time[rows[rows.len() - 1]]).fold(f64::INFINITY, f64::min);
+    let kept: Vec<usize> = rows_of(base).into_iter().filter(|&row| (first..=last).contains(&time[row])).collect();
+    let to = at(&kept);
+    let mut said = Vec::new();
+    let mut columns = vec![Vec::new(); group.columns.len()];
+    for (column, rows) in clocks {
+        let values = rows.iter().map(|&row| group.columns[column][row]).collect();
+        let from = at(&rows);
+        if rows != rows_of(base) {
+            said.push(resample::describe(&headers[column], &from, &to));
+        }
+        columns[column] = match resample::onto(&to, &from, &Cells::Numbers(values)) {
+            Cells::Numbers(values) => values,
+            Cells::Text(_) => Vec::new(),
+        };
+    }
+    if let Some(column) = plan.time {
+        columns[column] = to;
+    }
+    let base_name = &headers[base];
+    said.iter_mut().for_each(|text| *text = format!("the clock is that of `{base_name}`; {text}"));
+    let labels: Labels =
+        if group.labels.is_empty() { Labels::default() } else { group.labels.gathered(kept.iter().copied()) };
+    *group = Group::new(columns, labels);
+    said
+}

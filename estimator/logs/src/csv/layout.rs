@@ -1,0 +1,138 @@
+//! Place of the header and the first row: the rows of numbers decide.
+//!
+//! Exports have facts above the header, a row of units below it, and a summary behind the last row. The header is the
+//! last line of the table's width above the first row of numbers, unless that one holds nothing but units.
+
+use super::cells::{Cells, Notation, number, record_end};
+use crate::written_units::{self, Written};
+
+/// Records at the start of a file that are looked at.
+pub const LOOKED_AT: usize = 400;
+/// Share of the rows that hold numbers in a column of numbers.
+const MOSTLY: f64 = 0.9;
+/// Most records of a summary behind the table.
+const SUMMARY: usize = 50;
+
+/// One record of the text.
+#[derive(Debug)]
+pub struct Record {
+    /// Start and end, bytes.
+    pub start: usize,
+    pub end: usize,
+    /// Line, counted from 0 at the start of the text.
+    pub line: u64,
+    pub cells: Vec<String>,
+}
+
+/// The records of a text, without blank lines and comments.
+pub fn records(text: &[u8], delimiter: u8, most: usize) -> Vec<Record> {
+    let (mut found, mut at, mut line) = (Vec::new(), 0, 0);
+    let mut cells = Cells::default();
+    while at < text.len() && found.len() < most {
+        let end = record_end(text, at, delimiter).unwrap_or(text.len());
+        let record = &text[at..end];
+        let record = record.strip_suffix(b"\r").unwrap_or(record);
+        if !record.trim_ascii().is_empty() && record.first() != Some(&b'#') {
+            cells.split(record, delimiter);
+            let cells = (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(record, i)).into_owned()).collect();
+            found.push(Record { start: at, end, line, cells });
+        }
+        line += 1 + memchr::memchr_iter(b'\n', record).count() as u64;
+        at = end + 1;
+    }
+    found
+}
+
+/// Columns of numbers of a table.
+#[derive(Debug, Default)]
+pub struct Body {
+    width: usize,
+    numeric: Vec<usize>,
+}
+
+impl Body {
+    /// The body that most of the later records have in common; `None` without numbers.
+    fn of(records: &[Record], notation: Notation) -> Option<Self> {
+        let later = &records[records.len() / 2..];
+        let mut widths: Vec<usize> = later.iter().map(|r| r.cells.len()).collect();
+        widths.sort_unstable();
+        let width = *widths.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?.first()?;
+        let rows: Vec<&Record> = later.iter().filter(|r| r.cells.len() == width).collect();
+        let holds = |c: &usize| {
+            let numbers = rows.iter().filter(|r| is_number(&r.cells[*c], notation)).count();
+            let blanks = rows.iter().filter(|r| r.cells[*c].is_empty()).count();
+            numbers > 0 && (numbers + blanks) as f64 >= MOSTLY * rows.len() as f64
+        };
+        let numeric: Vec<usize> = (0..width).filter(holds).collect();
+        (!numeric.is_empty()).then_some(Self { width, numeric })
+    }
+
+    /// True for a record with numbers in more than half of the columns of numbers.
+    fn is_row(&self, record: &Record, notation: Notation) -> bool {
+        let cells = &record.cells;
+        let fits = |c: &&usize| cells[**c].is_empty() || is_number(&cells[**c], notation);
+        cells.len() == self.width
+            && 2 * self.numeric.iter().filter(fits).count() > self.numeric.len()
+            && self.numeric.iter().any(|c| is_number(&cells[*c], notation))
+    }
+}
+
+fn is_number(cell: &str, notation: Notation) -> bool {
+    number(cell.as_bytes(), notation).is_some()
+}
+
+/// Header and first row among the records.
+#[derive(Debug)]
+pub struct Layout {
+    /// Index of the header.
+    pub header: usize,
+    /// Index of the row of units.
+    pub units: Option<usize>,
+    /// Index of the first row.
+    pub first: usize,
+    /// Number of columns.
+    pub width: usize,
+    pub body: Body,
+}
+
+/// Layout of the records at the start of a file; `None` if they show none. Then the first record is the header.
+pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
+    let body = Body::of(records, notation)?;
+    let is_row = |k: usize| records.get(k).is_none_or(|r| body.is_row(r, notation));
+    let first = (1..records.len()).find(|&k| is_row(k) && is_row(k + 1))?;
+    let may_be_names = |k: usize| {
+        let cells = &records[k].cells;
+        let is_wide = cells.len() == body.width || is_one_more(cells, body.width);
+        let numbers = cells.iter().filter(|cell| is_number(cell, notation)).count();
+        is_wide && (numbers == 0 || k == 0 && numbers < cells.len())
+    };
+    let is_units = first >= 2 && holds_units(&records[first - 1].cells) && may_be_names(first - 2);
+    let header = if is_units { first - 2 } else { first - 1 };
+    let width = body.width;
+    may_be_names(header).then(|| Layout { header, units: is_units.then(|| first - 1), first, width, body })
+}
+
+/// True for a header with a last name above no cells, as LabVIEW's `Comment`.
+fn is_one_more(cells: &[String], width: usize) -> bool {
+    cells.len() == width + 1 && cells.last().is_some_and(|name| name.is_empty() || name == "Comment")
+}
+
+/// True for a row of units: each text is a unit or stands in brackets.
+fn holds_units(cells: &[String]) -> bool {
+    let bracketed =
+        |cell: &str| [('[', ']'), ('(', ')')].iter().any(|(a, b)| cell.starts_with(*a) && cell.ends_with(*b));
+    let is_unit = |cell: &str| bracketed(cell) || written_units::parse(cell, &[]) != Written::Unknown;
+    let mut texts = cells.iter().filter(|cell| !cell.is_empty() && cell.as_str() != "-").peekable();
+    texts.peek().is_some() && texts.all(|cell| is_unit(cell))
+}
+
+/// Start of a summary behind the last row, bytes, and its number of records: text that begins where numbers stood.
+/// `tail`: the last bytes of the file, from a line's start on.
+pub fn summary(tail: &[u8], body: &Body, notation: Notation) -> Option<(usize, usize)> {
+    let records = records(tail, notation.delimiter, usize::MAX);
+    let last = records.iter().rposition(|r| body.is_row(r, notation))?;
+    let behind = &records[last + 1..];
+    let begins = behind.first()?.cells.iter().position(|cell| !cell.is_empty())?;
+    let is_text = !is_number(&behind[0].cells[begins], notation) && body.numeric.contains(&begins);
+    (is_text && behind.len() <= SUMMARY).then(|| (records[last].end + 1, behind.len()))
+}

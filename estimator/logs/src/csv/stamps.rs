@@ -1,0 +1,123 @@
+//! Times of the calendar and of the day, as loggers write them.
+
+/// Nanoseconds of a second, and seconds of a day.
+const NS: i64 = 1_000_000_000;
+pub const DAY_S: i64 = 86_400;
+
+/// Nanoseconds since the start of 1970 of a date with a time, or since midnight of a time alone: `2025-04-17T17:00:08.12Z`,
+/// `17.04.2025 17:00:08,12`, `4/17/25 5:00:08 PM`, `17:00:08.12`. A zone is left out of account but for its offset.
+pub fn parse(text: &str) -> Option<i64> {
+    let text = text.trim();
+    let (rest, noon) = half_day(text);
+    let (rest, offset_s) = zone(rest);
+    match rest.split_once(['T', ' ']) {
+        Some((date, time)) => {
+            let day_ns = day(date)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
+            day_ns.checked_add(time_of_day(time.trim(), noon)?)
+        }
+        None => time_of_day(rest, noon),
+    }
+}
+
+/// The text without AM or PM, and true for PM.
+fn half_day(text: &str) -> (&str, Option<bool>) {
+    let upper = text.to_ascii_uppercase();
+    let ends = |end: &str| upper.ends_with(end).then(|| text[..text.len() - end.len()].trim_end());
+    match (ends("AM"), ends("PM")) {
+        (Some(rest), _) => (rest, Some(false)),
+        (_, Some(rest)) => (rest, Some(true)),
+        _ => (text, None),
+    }
+}
+
+/// The text without its zone, and the zone's offset, s.
+fn zone(text: &str) -> (&str, i64) {
+    if let Some(rest) = text.strip_suffix(['Z', 'z']) {
+        return (rest, 0);
+    }
+    // A date has hyphens, too: the sign of a zone stands behind a colon.
+    let clock = text.find(':').unwrap_or(text.len());
+    let sign = text[clock..].rfind(['+', '-']).map(|at| clock + at);
+    let parsed = sign.and_then(|at| {
+        let digits: String = text[at + 1..].chars().filter(char::is_ascii_digit).collect();
+        let value: i64 = digits.parse().ok()?;
+        let seconds = if digits.len() <= 2 { 3600 * value } else { 3600 * (value / 100) + 60 * (value % 100) };
+        Some((&text[..at], if text[at..].starts_with('-') { -seconds } else { seconds }))
+    });
+    parsed.unwrap_or((text, 0))
+}
+
+/// Days since the start of 1970 of `2025-04-17`, `2025/04/17`, `17.04.2025` or `4/17/2025`.
+fn day(date: &str) -> Option<i64> {
+    let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
+    let [a, b, c] = parts.as_slice() else { return None };
+    let number = |text: &str| text.parse::<i64>().ok().filter(|_| text.bytes().all(|b| b.is_ascii_digit()));
+    let (year, month, day) = match () {
+        () if a.len() == 4 => (number(a)?, number(b)?, number(c)?),
+        () if date.contains('/') && number(a)? <= 12 => (number(c)?, number(a)?, number(b)?),
+        () => (number(c)?, number(b)?, number(a)?),
+    };
+    let year = if year < 100 { 2000 + year } else { year };
+    if !(1900..2200).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    // Days of the proleptic Gregorian calendar, with years from March on (Hinnant 2013).
+    let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let (era, of_era) = (y.div_euclid(400), y.rem_euclid(400));
+    let of_year = (153 * m + 2) / 5 + day - 1;
+    Some(era * 146_097 + 365 * of_era + of_era / 4 - of_era / 100 + of_year - 719_468)
+}
+
+/// Nanoseconds since midnight of `17:00`, `17:00:08` or `17:00:08.123456`.
+fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
+    let mut parts = time.split(':');
+    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let (second, fraction) = match parts.next() {
+        None => ("0", ""),
+        Some(text) => text.split_once(['.', ',']).unwrap_or((text, "")),
+    };
+    let second = whole(second)?;
+    if parts.next().is_some() || hour > 23 || minute > 59 || second > 60 {
+        return None;
+    }
+    let hour = match afternoon {
+        Some(is_pm) => hour % 12 + if is_pm { 12 } else { 0 },
+        None => hour,
+    };
+    let digits = fraction.get(..fraction.len().min(9)).filter(|f| f.bytes().all(|b| b.is_ascii_digit()))?;
+    let ns = if digits.is_empty() { 0 } else { digits.parse::<i64>().ok()? * 10_i64.pow(9 - digits.len() as u32) };
+    Some((3600 * hour + 60 * minute + second) * NS + ns)
+}
+
+fn whole(text: &str) -> Option<i64> {
+    let is_short = (1..=2).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+    if is_short { text.parse().ok() } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_the_calendar_are_read_to_the_nanosecond() {
+        let base = 1_744_909_208_i64 * NS;
+        for (text, ns) in [
+            ("2025-04-17T17:00:08.120", base + 120_000_000),
+            ("2025-04-17 17:00:08.120000", base + 120_000_000),
+            ("2025-04-17T17:00:08Z", base),
+            ("2025-04-17T19:00:08+02:00", base),
+            ("2025-04-17T12:00:08.5-0500", base + NS / 2),
+            ("17.04.2025 17:00:08,120", base + 120_000_000),
+            ("4/17/25 5:00:08 PM", base),
+            ("2025/04/17 17:00:08.123456789", base + 123_456_789),
+            ("17:00:08.120", (17 * 3600 + 8) * NS + 120_000_000),
+            ("12:30 AM", 30 * 60 * NS),
+            ("1970-01-01T00:00:00", 0),
+        ] {
+            assert_eq!(parse(text), Some(ns), "{text}");
+        }
+        for text in ["", "17", "0.5", "2025-04-17", "25:00", "2025-13-01T00:00", "a:b", "12:00:00.x", "-1:00"] {
+            assert_eq!(parse(text), None, "{text}");
+        }
+    }
+}

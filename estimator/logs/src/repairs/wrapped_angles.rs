@@ -1,0 +1,58 @@
+//! Angles of an encoder that starts anew after a turn.
+
+use crate::checks::place;
+use crate::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+use std::f64::consts::{PI, TAU};
+
+/// Angles within a turn, with some room for rounding.
+const ONE_TURN: f64 = 1.001 * TAU;
+/// Largest distance of a leap from a whole turn, rad.
+const NEAR_A_TURN: f64 = 0.5 * PI;
+
+/// Puts the turns of the program's angles together.
+pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
+    let leaps: Vec<(usize, Vec<usize>)> = (0..recording.channels.len())
+        .map(|k| (k, leaps(&recording.channels[k])))
+        .filter(|(_, l)| !l.is_empty())
+        .collect();
+    let warnings = leaps.iter().map(|(k, leaps)| {
+        let channel = &recording.channels[*k];
+        let text = format!(
+            "{} leaps by a whole turn {} time(s), first at {}: its turns are put together",
+            channel.name,
+            leaps.len(),
+            place(recording, leaps[0])
+        );
+        let spans = leaps.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
+        Warning { kind: "wrapped-angle".to_owned(), column: Some(channel.name.clone()), spans, text }
+    });
+    let warnings: Vec<Warning> = warnings.collect();
+    for (k, leaps) in leaps {
+        let values = &mut recording.channels[k].values;
+        let mut turns = 0.0;
+        let mut leaps = leaps.into_iter().peekable();
+        let mut before = values[0];
+        for (i, value) in values.iter_mut().enumerate() {
+            let read = *value;
+            if leaps.next_if_eq(&i).is_some() {
+                turns -= (read - before).signum();
+            }
+            before = read;
+            *value = read + TAU * turns;
+        }
+    }
+    warnings
+}
+
+/// Samples at which an angle leaps by about a whole turn.
+fn leaps(channel: &Channel) -> Vec<usize> {
+    let is_angle = channel.unit == "rad" && units::is_program_name(&channel.name);
+    let (low, high) =
+        channel.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    if !is_angle || high - low > ONE_TURN || high - low < TAU - NEAR_A_TURN {
+        return Vec::new();
+    }
+    let leap = |i: &usize| ((channel.values[*i] - channel.values[*i - 1]).abs() - TAU).abs() < NEAR_A_TURN;
+    (1..channel.values.len()).filter(leap).collect()
+}

@@ -1,0 +1,424 @@
+//! Units as people write them: `kN`, `[mm]`, `N·cm`, `deg/s`, `lbf in`, `um_s`.
+//!
+//! A unit is a product and quotient of atoms with prefixes and exponents. Its dimension follows from theirs.
+
+use super::units::{Dimension, Unit, split};
+
+/// Meaning of the text of a unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Written {
+    /// A known unit: SI value = number × factor.
+    Known(Dimension, f64),
+    /// Counts of a converter, an encoder, or a scale without a unit.
+    Counts,
+    /// Not known.
+    Unknown,
+}
+
+/// Standard gravity, m/s² (exact, CGPM 1901): turns a mass on a scale into its weight.
+const GRAVITY_M_S2: f64 = 9.806_65;
+/// One inch, m, and one pound, kg (both exact, 1959).
+const INCH_M: f64 = 0.0254;
+const POUND_KG: f64 = 0.453_592_37;
+const TURN_RAD: f64 = std::f64::consts::TAU;
+
+/// Exponents of length, time, force, mass, angle; units of other kinds have none.
+type Exponents = [i32; 5];
+const LENGTH: Exponents = [1, 0, 0, 0, 0];
+const TIME: Exponents = [0, 1, 0, 0, 0];
+const FORCE: Exponents = [0, 0, 1, 0, 0];
+const MASS: Exponents = [0, 0, 0, 1, 0];
+const ANGLE: Exponents = [0, 0, 0, 0, 1];
+const PRESSURE: Exponents = [-2, 0, 1, 0, 0];
+const TURN_RATE: Exponents = [0, -1, 0, 0, 1];
+const SPEED: Exponents = [1, -1, 0, 0, 0];
+/// Voltage, current, temperature, frequency: no mechanical dimension.
+const OTHER: Exponents = [0, 0, 0, 0, 9];
+
+/// A base unit: spellings, exponents, factor. A spelling of one letter or with capitals keeps its case.
+type Atom = (&'static [&'static str], Exponents, f64);
+
+/// Units that take the prefixes of [`PREFIXES`].
+const PREFIXED: [Atom; 9] = [
+    (&["m", "meter", "meters", "metre", "metres"], LENGTH, 1.0),
+    (&["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden"], TIME, 1.0),
+    (&["rad", "radian", "radians"], ANGLE, 1.0),
+    (&["N", "newton", "newtons"], FORCE, 1.0),
+    (&["g", "gram", "grams"], MASS, 1e-3),
+    (&["Pa", "pascal"], PRESSURE, 1.0),
+    (&["bar"], PRESSURE, 1e5),
+    (&["V", "volt", "volts"], OTHER, 1.0),
+    (&["A", "amp", "amps", "ampere"], OTHER, 1.0),
+];
+
+const PLAIN: [Atom; 30] = [
+    (&["in", "inch", "inches", "zoll", "\""], LENGTH, INCH_M),
+    (&["ft", "foot", "feet"], LENGTH, 12.0 * INCH_M),
+    (&["mil", "mils", "thou"], LENGTH, 1e-3 * INCH_M),
+    (&["micron", "microns"], LENGTH, 1e-6),
+    (&["min", "minute", "minutes"], TIME, 60.0),
+    (&["h", "hr", "hour", "hours"], TIME, 3600.0),
+    (&["micros"], TIME, 1e-6),
+    (&["millis"], TIME, 1e-3),
+    (&["nanos"], TIME, 1e-9),
+    (&["deg", "degs", "degree", "degrees"], ANGLE, TURN_RAD / 360.0),
+    (&["gon"], ANGLE, TURN_RAD / 400.0),
+    (&["arcmin"], ANGLE, TURN_RAD / 21_600.0),
+    (&["arcsec"], ANGLE, TURN_RAD / 1_296_000.0),
+    (&["rev", "revs", "revolution", "revolutions", "turn", "turns", "umdr"], ANGLE, TURN_RAD),
+    (&["gf", "pond"], FORCE, 1e-3 * GRAVITY_M_S2),
+    (&["kgf", "kp"], FORCE, GRAVITY_M_S2),
+    (&["lbf", "lbsf"], FORCE, POUND_KG * GRAVITY_M_S2),
+    (&["ozf"], FORCE, POUND_KG / 16.0 * GRAVITY_M_S2),
+    (&["dyn", "dyne", "dynes"], FORCE, 1e-5),
+    (&["kip", "kips"], FORCE, 1e3 * POUND_KG * GRAVITY_M_S2),
+    (&["lb", "lbs", "pound", "pounds"], MASS, POUND_KG),
+    (&["oz", "ounce", "ounces"], MASS, POUND_KG / 16.0),
+    (&["psi"], PRESSURE, POUND_KG * GRAVITY_M_S2 / (INCH_M * INCH_M)),
+    (&["atm"], PRESSURE, 101_325.0),
+    (&["rpm"], TURN_RATE, TURN_RAD / 60.0),
+    (&["rps"], TURN_RATE, TURN_RAD),
+    (&["dps"], TURN_RATE, TURN_RAD / 360.0),
+    (&["mps"], SPEED, 1.0),
+    (&["ips"], SPEED, INCH_M),
+    (&["degc", "celsius", "K", "kelvin", "Hz", "hertz", "W", "watt"], OTHER, 1.0),
+];
+
+const PREFIXES: [(&[&str], f64); 8] = [
+    (&["n", "nano"], 1e-9),
+    (&["u", "micro"], 1e-6),
+    (&["m", "milli"], 1e-3),
+    (&["c", "centi"], 1e-2),
+    (&["d", "deci"], 1e-1),
+    (&["h", "hecto"], 1e2),
+    (&["k", "kilo"], 1e3),
+    (&["M", "mega"], 1e6),
+];
+
+/// Numbers without a unit of their own.
+const COUNTS: [&str; 16] = [
+    "count", "counts", "cts", "cnt", "tick", "ticks", "lsb", "raw", "adc", "digit", "digits", "step", "steps", "pulse",
+    "pulses", "inc",
+];
+
+/// Texts that mean a unit only for quantities of some dimensions.
+const HABITS: [(&str, Dimension, f64); 8] = [
+    ("g", Dimension::Acceleration, GRAVITY_M_S2),
+    ("G", Dimension::Acceleration, GRAVITY_M_S2),
+    ("1/s", Dimension::AngularVelocity, 1.0),
+    ("s-1", Dimension::AngularVelocity, 1.0),
+    ("1/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
+    ("U/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
+    ("r/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
+    ("r/s", Dimension::AngularVelocity, TURN_RAD),
+];
+
+/// Meaning of a unit's text for a quantity of one of these dimensions, or of any if there are none. A mass stands for its
+/// weight where a force is wanted.
+pub fn parse(text: &str, wanted: &[Dimension]) -> Written {
+    let text = tidied(text);
+    let habit = HABITS.iter().find(|(habit, dimension, _)| *habit == text && wanted.contains(dimension));
+    if let Some(&(_, dimension, factor)) = habit {
+        return Written::Known(dimension, factor);
+    }
+    let readings = [Case::Kept, Case::Free, Case::FreeProduct].map(|case| product(&text, case));
+    let mut named = readings.into_iter().flatten().map(|found| named(found, wanted));
+    let first = named.clone().next();
+    let fitting = named.find(|(dimension, _)| wanted.is_empty() || wanted.contains(dimension));
+    match fitting.or(first) {
+        Some((dimension, factor)) => Written::Known(dimension, factor),
+        None if COUNTS.contains(&text.to_lowercase().as_str()) => Written::Counts,
+        None => Written::Unknown,
+    }
+}
+
+/// Brackets and blanks taken off, one spelling for each sign.
+fn tidied(text: &str) -> String {
+    let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}', '<', '>']).trim();
+    let inner = inner.strip_prefix("in ").unwrap_or(inner).trim();
+    let signs = [("µ", "u"), ("μ", "u"), ("·", "."), ("⋅", "."), ("×", "."), ("*", "."), ("²", "2"), ("⁻¹", "-1")];
+    let signs =
+        signs.into_iter().chain([("⁻²", "-2"), ("°C", "degc"), ("°", "deg"), ("º", "deg"), ("^", ""), (" per ", "/")]);
+    signs.fold(inner.to_owned(), |text, (from, to)| text.replace(from, to))
+}
+
+/// Regard to capitals.
+#[derive(Clone, Copy, PartialEq)]
+enum Case {
+    /// `mN` is no `MN`.
+    Kept,
+    /// `MM` is `mm`.
+    Free,
+    /// `nm` is `N m`.
+    FreeProduct,
+}
+
+/// Exponents and factor of a product of units.
+fn product(text: &str, case: Case) -> Option<(Exponents, f64)> {
+    let mut parts: Vec<&str> = text.split('/').map(str::trim).collect();
+    // In a column's name, a rate is written `mm_s`.
+    if let ([only], Some((above, below))) = (parts.as_slice(), text.split_once('_'))
+        && factor_of(below, case).is_some_and(|(exponents, _)| exponents[1] > 0 && exponents[0] == 0)
+        && !only.is_empty()
+    {
+        parts = vec![above, below];
+    }
+    let mut whole = ([0; 5], 1.0);
+    for (k, part) in parts.iter().enumerate() {
+        if k == 0 && *part == "1" && parts.len() > 1 {
+            continue;
+        }
+        let (exponents, factor) = factor_of(part, case)?;
+        let sign = if k == 0 { 1 } else { -1 };
+        (0..5).for_each(|i| whole.0[i] += sign * exponents[i]);
+        whole.1 *= factor.powi(sign);
+    }
+    Some(whole)
+}
+
+/// A product without a quotient: `N.m`, `N m`, `lbf-in`, `Nm`.
+fn factor_of(text: &str, case: Case) -> Option<(Exponents, f64)> {
+    let mut whole = ([0; 5], 1.0);
+    let mut join = |(exponents, factor): (Exponents, f64), power: i32| {
+        (0..5).for_each(|i| whole.0[i] += power * exponents[i]);
+        whole.1 *= factor.powi(power);
+    };
+    let is_joint = |c: char| matches!(c, '.' | ' ' | '_');
+    // A hyphen before a digit is the sign of an exponent.
+    let hyphens = text
+        .char_indices()
+        .filter(|&(at, c)| c == '-' && text[at + 1..].chars().next().is_some_and(|next| !next.is_ascii_digit()));
+    let hyphens: Vec<usize> = hyphens.map(|(at, _)| at).collect();
+    let tokens = text.char_indices().filter(|&(at, c)| is_joint(c) || hyphens.contains(&at));
+    let cuts: Vec<usize> = tokens.map(|(at, _)| at).collect();
+    let starts = std::iter::once(0).chain(cuts.iter().map(|at| at + 1));
+    let ends = cuts.iter().copied().chain(std::iter::once(text.len()));
+    for (start, end) in starts.zip(ends).filter(|(start, end)| start < end) {
+        let token = &text[start..end];
+        let digits = token.find(|c: char| c.is_ascii_digit() || c == '-').unwrap_or(token.len());
+        let (name, power) = token.split_at(digits);
+        let power: i32 =
+            if power.is_empty() { 1 } else { power.parse().ok().filter(|p| (-3..=3).contains(p) && *p != 1)? };
+        let atoms = atoms(name, case)?;
+        let last = atoms.len() - 1;
+        atoms.into_iter().enumerate().for_each(|(k, atom)| join(atom, if k == last { power } else { 1 }));
+    }
+    (!text.trim().is_empty()).then_some(whole)
+}
+
+/// The atoms of a word: one if it can be, otherwise two or three in a row.
+fn atoms(word: &str, case: Case) -> Option<Vec<(Exponents, f64)>> {
+    if let Some(one) = atom(word, case).filter(|_| case != Case::FreeProduct || word.len() < 2) {
+        return Some(vec![one]);
+    }
+    let cuts: Vec<usize> = word.char_indices().map(|(at, _)| at).skip(1).collect();
+    let cuts = cuts.into_iter().rev().find_map(|at| {
+        let first = atom(&word[..at], case)?;
+        // Only products of a force, or a weight, and lengths are written together.
+        let rest = atom(&word[at..], case)?;
+        let is_moment = |a: Exponents, b: Exponents| (a == FORCE || a == MASS) && b == LENGTH;
+        (is_moment(first.0, rest.0) || is_moment(rest.0, first.0)).then(|| vec![first, rest])
+    });
+    cuts.or_else(|| (case == Case::FreeProduct).then(|| atom(word, Case::Free)).flatten().map(|one| vec![one]))
+}
+
+fn atom(word: &str, case: Case) -> Option<(Exponents, f64)> {
+    let is = |spelling: &str, word: &str| {
+        let words = spelling.len() > 2 && word.eq_ignore_ascii_case(spelling);
+        spelling == word || words || case != Case::Kept && spelling.eq_ignore_ascii_case(word)
+    };
+    let find = |atoms: &[Atom], word: &str| {
+        atoms.iter().find(|(spellings, ..)| spellings.iter().any(|s| is(s, word))).map(|&(_, e, f)| (e, f))
+    };
+    let prefixed = |(prefixes, by): &(&[&str], f64)| {
+        prefixes.iter().find_map(|prefix| {
+            // Megas keep their capital: `mn` is a millinewton.
+            let rest = word
+                .get(..prefix.len())
+                .filter(|start| is(prefix, start) && (*by < 1e6 || start == prefix))
+                .map(|_| &word[prefix.len()..])?;
+            let (exponents, factor) = find(&PREFIXED, rest)?;
+            // A mega of a length, a time or an angle is a capital that a spreadsheet made.
+            let fits = *by < 1e6 || exponents == FORCE || exponents == PRESSURE || exponents == OTHER;
+            let spelled = prefix.len() == 1 || rest.len() > 2;
+            (fits && spelled).then_some((exponents, by * factor))
+        })
+    };
+    find(&PLAIN, word).or_else(|| find(&PREFIXED, word)).or_else(|| PREFIXES.iter().find_map(prefixed))
+}
+
+/// Dimension and factor of a product for a quantity of these dimensions.
+fn named((exponents, factor): (Exponents, f64), wanted: &[Dimension]) -> (Dimension, f64) {
+    let dimension = match exponents {
+        [1, 0, 0, 0, 0] => Dimension::Length,
+        [0, 1, 0, 0, 0] => Dimension::Time,
+        [0, 0, 1, 0, 0] | [1, -2, 0, 1, 0] => Dimension::Force,
+        [0, 0, 0, 0, 1] => Dimension::Angle,
+        [1, 0, 1, 0, 0] => Dimension::Torque,
+        [1, -1, 0, 0, 0] => Dimension::Velocity,
+        [0, -1, 0, 0, 1] => Dimension::AngularVelocity,
+        [1, -2, 0, 0, 0] => Dimension::Acceleration,
+        [0, -2, 0, 0, 1] => Dimension::AngularAcceleration,
+        // A mass that stands for its weight.
+        [0, 0, 0, 1, 0] if wanted.contains(&Dimension::Force) => return (Dimension::Force, factor * GRAVITY_M_S2),
+        [1, 0, 0, 1, 0] if wanted.contains(&Dimension::Torque) => return (Dimension::Torque, factor * GRAVITY_M_S2),
+        _ => Dimension::Other,
+    };
+    (dimension, factor)
+}
+
+/// Name and unit text of a column's header: `Fx1 [N]`, `Weg (mm)`, `Kraft in kN`, `speed/rpm`, `load lbf`, `torque_Ncm`.
+/// The text is empty if the header states no unit.
+pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str) {
+    let header = header.trim();
+    if let Some((quantity, Unit { symbol, .. })) = split(header) {
+        return (quantity, &header[header.len() - symbol.len()..]);
+    }
+    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
+        let inside = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
+        let Some((name, inside)) = inside.filter(|(name, _)| !name.trim().is_empty()) else { continue };
+        // `position[elbow]` and `q[0]` are items of lists.
+        let is_item = open == '[' && !name.ends_with(' ') && parse(inside, wanted) == Written::Unknown;
+        return if is_item { (header, "") } else { (name.trim(), inside.trim()) };
+    }
+    let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
+    let spoken = [" in ", " / ", "/", ", ", ",", "_in_"].iter().find_map(|mark| {
+        let mut places = header.match_indices(mark);
+        places.find_map(|(at, _)| (at > 0 && is_unit(&header[at + mark.len()..])).then_some((at, at + mark.len())))
+    });
+    let loose = || {
+        let mut places = header.match_indices(['_', ' ', '.', '-']);
+        places.find_map(|(at, _)| (at > 0 && is_suffix(&header[at + 1..], wanted)).then_some((at, at + 1)))
+    };
+    spoken.or_else(loose).map_or((header, ""), |(at, from)| (header[..at].trim(), header[from..].trim()))
+}
+
+/// True for a unit behind a mere blank, point or underscore. Numbers, single letters, and the words *in* and *min* are more
+/// likely part of a name, unless they fit the quantity.
+fn is_suffix(text: &str, wanted: &[Dimension]) -> bool {
+    let is_short = text.len() == 1 || matches!(text.to_lowercase().as_str(), "in" | "min" | "step" | "inc" | "digit");
+    let is_rate = ["_s", "/s", "s2"].iter().any(|end| text.ends_with(end));
+    match parse(text, wanted) {
+        Written::Known(dimension, _) if text.contains(|c: char| c.is_ascii_digit()) => {
+            is_rate && dimension != Dimension::Other
+        }
+        Written::Known(dimension, _) if is_short => wanted.contains(&dimension),
+        Written::Known(dimension, _) => dimension != Dimension::Other,
+        Written::Counts => !is_short,
+        Written::Unknown => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Dimension::{Acceleration, Angle, AngularVelocity, Force, Length, Other, Time, Torque, Velocity};
+
+    fn close(written: Written, dimension: Dimension, factor: f64) -> bool {
+        matches!(written, Written::Known(d, f) if d == dimension && (f / factor - 1.0).abs() < 1e-12)
+    }
+
+    #[test]
+    fn units_are_read_as_people_write_them() {
+        for (text, dimension, factor) in [
+            ("mm", Length, 1e-3),
+            ("MM", Length, 1e-3),
+            ("[mm]", Length, 1e-3),
+            ("µm", Length, 1e-6),
+            ("nm", Length, 1e-9),
+            ("Millimeter", Length, 1e-3),
+            ("inches", Length, 0.0254),
+            ("kN", Force, 1e3),
+            ("KN", Force, 1e3),
+            ("mN", Force, 1e-3),
+            ("MN", Force, 1e6),
+            ("Newton", Force, 1.0),
+            ("lbf", Force, 4.448_221_615_260_5),
+            ("kgf", Force, 9.806_65),
+            ("kg m/s²", Force, 1.0),
+            ("Nm", Torque, 1.0),
+            ("N*m", Torque, 1.0),
+            ("N·cm", Torque, 1e-2),
+            ("Ncm", Torque, 1e-2),
+            ("mN·m", Torque, 1e-3),
+            ("mNm", Torque, 1e-3),
+            ("N-mm", Torque, 1e-3),
+            ("ozf·in", Torque, 0.007_061_551_814_226_043),
+            ("lbf.ft", Torque, 1.355_817_948_331_400_4),
+            ("in-lbf", Torque, 0.112_984_829_027_616_7),
+            ("kgf.cm", Torque, 0.098_066_5),
+            ("°", Angle, std::f64::consts::PI / 180.0),
+            ("turns", Angle, TURN_RAD),
+            ("m/s", Velocity, 1.0),
+            ("mm/min", Velocity, 1e-3 / 60.0),
+            ("um_s", Velocity, 1e-6),
+            ("km/h", Velocity, 1.0 / 3.6),
+            ("m s^-1", Velocity, 1.0),
+            ("rpm", AngularVelocity, TURN_RAD / 60.0),
+            ("deg/s", AngularVelocity, TURN_RAD / 360.0),
+            ("°/s", AngularVelocity, TURN_RAD / 360.0),
+            ("rev/min", AngularVelocity, TURN_RAD / 60.0),
+            ("mm/s^2", Acceleration, 1e-3),
+            ("ns", Time, 1e-9),
+            ("sec", Time, 1.0),
+            ("MSEC", Time, 1e-3),
+            ("Minutes", Time, 60.0),
+            ("kPa", Other, 1e3),
+            ("N/mm2", Other, 1e6),
+            ("psi", Other, 6_894.757_293_168_361),
+        ] {
+            let found = parse(text, &[]);
+            assert!(close(found, dimension, factor), "{text}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_wanted_quantity_decides_between_two_meanings() {
+        assert!(close(parse("g", &[Force]), Force, 9.806_65e-3));
+        assert!(close(parse("g", &[Acceleration]), Acceleration, 9.806_65));
+        assert!(close(parse("kg", &[Force]), Force, 9.806_65));
+        assert!(close(parse("kg·cm", &[Torque]), Torque, 0.098_066_5));
+        assert!(close(parse("oz-in", &[Torque]), Torque, 0.007_061_551_814_226_043));
+        assert!(close(parse("nm", &[Torque]), Torque, 1.0));
+        assert!(close(parse("NM", &[Torque]), Torque, 1.0));
+        assert!(close(parse("1/min", &[AngularVelocity]), AngularVelocity, TURN_RAD / 60.0));
+        assert_eq!(parse("counts", &[Force]), Written::Counts);
+        assert_eq!(
+            (parse("stone", &[]), parse("hex", &[]), parse("", &[])),
+            (Written::Unknown, Written::Unknown, Written::Unknown)
+        );
+    }
+
+    #[test]
+    fn units_are_found_in_headers() {
+        for (header, name, unit) in [
+            ("Fx1 [N]", "Fx1", "N"),
+            ("Weg (mm)", "Weg", "mm"),
+            ("Kraft in kN", "Kraft", "kN"),
+            ("theta_deg", "theta", "deg"),
+            ("speed/rpm", "speed", "rpm"),
+            ("v/m/s", "v", "m/s"),
+            ("vx_mm_s", "vx", "mm_s"),
+            ("Load, lbf", "Load", "lbf"),
+            ("torque_Ncm", "torque", "Ncm"),
+            ("load.kN", "load", "kN"),
+            ("Winkel [°]", "Winkel", "°"),
+            ("load lbf", "load", "lbf"),
+            ("Load [stone]", "Load", "stone"),
+            ("pos.x", "pos.x", ""),
+            ("position[elbow]", "position[elbow]", ""),
+            ("action[1]", "action[1]", ""),
+            ("actual_TCP_pose_2", "actual_TCP_pose_2", ""),
+            ("force_left_x", "force_left_x", ""),
+            ("Force A", "Force A", ""),
+            ("sensor V2", "sensor V2", ""),
+            ("x_min", "x_min", ""),
+            ("motor_t_s", "motor_t", "s"),
+        ] {
+            assert_eq!(in_header(header, &[]), (name, unit), "{header}");
+        }
+        assert_eq!(in_header("load_g", &[Force]), ("load", "g"));
+        assert_eq!(in_header("x_in", &[Length]), ("x", "in"));
+        assert_eq!(in_header("x_in", &[]), ("x_in", ""));
+    }
+}
