@@ -98,6 +98,18 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// Sound, but packed in a way that is not read.
+    #[error("the {format} file is compressed with {codec}, which is not read; write it with {instead}: {path}", codec = plain(codec), path = path.display())]
+    Packed {
+        /// `MCAP`, `Parquet`, …
+        format: &'static str,
+        /// Name of the compression.
+        codec: String,
+        /// Compressions that are read.
+        instead: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
     /// A container without anything that can be read as columns of numbers.
     #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", why = plain(why), path = path.display())]
     NoColumns {
@@ -113,6 +125,24 @@ pub enum LogError {
     Clocks {
         /// Conflict of the clocks.
         why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// No clock of a container runs on.
+    #[error("no clock of the file can be used ({why}); give \"rate_hz\" in the sidecar, or map the field that holds the time to t_s: {path}", why = plain(why), path = path.display())]
+    NoClock {
+        /// Fault of the clock, and its topic.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// An item of a list that is chosen by its place, although other items stand there later.
+    #[error("the column `{column}` is an item by its place in the list, and the names at that place change; map it by its name ({names}): {path}", column = plain(column), names = plain(names), path = path.display())]
+    ByPlace {
+        /// The column.
+        column: String,
+        /// Columns by name that it could be.
+        names: String,
         /// The file.
         path: PathBuf,
     },
