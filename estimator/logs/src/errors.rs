@@ -212,7 +212,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; correct that cell or remove the row: {path}", at = place(*row, *line), column = plain(column), what = plain(what), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), advice = cell_advice(*line), column = plain(column), what = plain(what), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -240,7 +240,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Time does not increase.
-    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
+    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", at = place(*row, *line), advice = time_advice(*line), column = plain(column), path = path.display())]
     Time {
         /// Row of data, from 1.
         row: usize,
@@ -290,4 +290,22 @@ pub enum LogError {
 /// `row 3 (line 4)`, or without the line where the format has none.
 fn place(row: usize, line: u64) -> String {
     if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
+}
+
+/// Advice about a cell: nobody corrects one of an MCAP or Parquet file, which have no lines.
+fn cell_advice(line: u64) -> &'static str {
+    if line == 0 {
+        "map another column in the sidecar, or record that channel again"
+    } else {
+        "correct that cell or remove the row"
+    }
+}
+
+/// Advice about a clock: nobody sorts the rows of an MCAP or Parquet file, which have no lines.
+fn time_advice(line: u64) -> &'static str {
+    if line == 0 {
+        "map another clock to `t_s`, or the column that tells the recordings apart to `trial`"
+    } else {
+        "sort the rows, or split the recordings with a `trial` column"
+    }
 }

@@ -24,6 +24,9 @@ pub fn name_items(topic: &mut Topic, said: &mut Vec<String>) -> Vec<Place> {
     for list in lists(topic) {
         let names = columns(topic, &list);
         let parallel = parallel(topic, &list, names.len());
+        if parallel.is_empty() {
+            continue;
+        }
         let Some(order) = Order::of(topic, &names, &parallel) else { continue };
         said.extend(order.moves(&list));
         places.extend(order.places(&parallel));
@@ -91,7 +94,7 @@ struct Order {
     names: Vec<String>,
     /// Number of the name at each place; none where a message lists fewer.
     kinds: Vec<Vec<Option<usize>>>,
-    /// Which of `kinds` a row has.
+    /// Number of the kind of every row.
     rows: Vec<usize>,
 }
 

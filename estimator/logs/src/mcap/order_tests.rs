@@ -141,6 +141,21 @@ fn publishers_of_different_joints_are_sources_of_their_own() {
 }
 
 #[test]
+fn a_topic_may_carry_positions_and_forces_in_turn() {
+    let mut out = Out::new(None);
+    let topic = out.json("/log");
+    for row in 0..100_u64 {
+        let value = if row % 2 == 0 { format!(r#""place_m": {row}"#) } else { format!(r#""f_N": {row}"#) };
+        out.put(topic, row, format!(r#"{{"t_s": {}, {value}}}"#, row as f64 * 0.01).as_bytes());
+    }
+    let log = out.load(r#"{"columns": {"q_m": "place_m"}}"#).expect("loads");
+    // Both rise by one a row; the first position has no force before it.
+    let (place, force) = (log.channel("q_m").expect("mapped"), log.channel("f_N").expect("there"));
+    assert_eq!((log.len(), place[0]), (49, 2.0));
+    assert!(place.iter().zip(force).all(|(a, b)| (a - b).abs() < 1e-9), "{force:?}");
+}
+
+#[test]
 fn of_publishers_that_talk_at_the_same_time_the_one_with_most_messages_is_read() {
     let mut out = Out::new(None);
     let (one, two) = (out.json("/joints"), out.channel("/joints", "json", ("y", "jsonschema", b"{}")));

@@ -134,12 +134,11 @@ impl Topic {
     pub fn part(&self, rows: &[usize]) -> Self {
         let mut part = Self {
             fields: self.fields.clone(),
-            columns: self.columns.clone(),
-            log_ns: self.log_ns.clone(),
-            channels: self.channels.clone(),
+            columns: self.columns.iter().map(|c| c.gathered(rows)).collect(),
+            log_ns: rows.iter().map(|&i| self.log_ns[i]).collect(),
+            channels: rows.iter().map(|&i| self.channels[i]).collect(),
             ..Self::default()
         };
-        part.keep(rows);
         let filled: HashMap<String, bool> =
             part.fields.iter().cloned().zip(part.columns.iter().map(has_value)).collect();
         part.forget(|field| filled.get(field) == Some(&false));
