@@ -31,14 +31,17 @@ pub fn count_once(topic: &mut Topic, clock: Option<&str>) -> Option<String> {
 /// The time of every message, to the bit; none if no two messages can be equal in it, or if it does not tell them apart.
 fn time(topic: &Topic, clock: Option<&str>) -> Option<Vec<u64>> {
     let column = clock.and_then(|field| topic.find(field)).or_else(|| stamps::time_column(topic));
-    let own: Option<Vec<u64>> = match (stamps::raw(topic), column) {
-        (_, Some(Cells::Numbers(values))) => Some(values.iter().map(|v| v.to_bits()).collect()),
-        (Some(stamps), _) => Some(stamps.iter().map(|s| s.cast_unsigned()).collect()),
-        _ => None,
+    let own: Option<Vec<u64>> = match column {
+        // Before anything is copied: most files are in order.
+        Some(Cells::Numbers(values)) if stamps::is_increasing(values) => return None,
+        Some(Cells::Numbers(values)) => Some(values.iter().map(|v| v.to_bits()).collect()),
+        _ => stamps::raw(topic).map(|stamps| stamps.iter().map(|s| s.cast_unsigned()).collect()),
     };
-    let tells = |time: &Vec<u64>| time.iter().any(|t| Some(t) != time.first());
-    let time = own.filter(tells).or_else(|| Some(topic.log_ns.clone()).filter(tells))?;
-    (!time.is_sorted_by(|a, b| a < b)).then_some(time)
+    let tells = |time: &[u64]| time.iter().any(|t| Some(t) != time.first());
+    match own.filter(|time| tells(time)) {
+        Some(time) => (!stamps::is_increasing(&time)).then_some(time),
+        None => (tells(&topic.log_ns) && !stamps::is_increasing(&topic.log_ns)).then(|| topic.log_ns.clone()),
+    }
 }
 
 fn content(topic: &Topic, row: usize) -> u64 {
