@@ -49,7 +49,7 @@ pub fn times(
             how: if goes_back { "goes backwards" } else { "stands still" },
             previous: time[i],
             time: time[i + 1],
-            advice: advice(&time, goes_back, meta.rate_hz),
+            advice: advice(&time, (goes_back, line == 0), meta.rate_hz),
             path: path.to_path_buf(),
         });
     }
@@ -57,7 +57,7 @@ pub fn times(
 }
 
 /// A way out for times that do not increase.
-fn advice(time: &[f64], goes_back: bool, rate_hz: Option<f64>) -> String {
+fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option<f64>) -> String {
     let repeats = time.windows(2).filter(|w| w[1] == w[0]).count();
     let no_clock = "\"columns\": {\"t_s\": null}";
     match rate_hz {

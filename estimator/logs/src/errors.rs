@@ -98,6 +98,18 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// Sound, but packed in a way that is not read.
+    #[error("the {format} file is compressed with {codec}, which is not read; write it with {instead}: {path}", codec = plain(codec), path = path.display())]
+    Packed {
+        /// `MCAP`, `Parquet`, …
+        format: &'static str,
+        /// Name of the compression.
+        codec: String,
+        /// Compressions that are read.
+        instead: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
     /// A container without anything that can be read as columns of numbers.
     #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", why = plain(why), path = path.display())]
     NoColumns {
@@ -113,6 +125,24 @@ pub enum LogError {
     Clocks {
         /// Conflict of the clocks.
         why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// No clock of a container runs on.
+    #[error("no clock of the file can be used ({why}); give \"rate_hz\" in the sidecar, or map the field that holds the time to t_s: {path}", why = plain(why), path = path.display())]
+    NoClock {
+        /// Fault of the clock, and its topic.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// An item of a list that is chosen by its place, although other items stand there later.
+    #[error("the column `{column}` is an item by its place in the list, and the names at that place change; map it by its name ({names}): {path}", column = plain(column), names = plain(names), path = path.display())]
+    ByPlace {
+        /// The column.
+        column: String,
+        /// Columns by name that it could be.
+        names: String,
         /// The file.
         path: PathBuf,
     },
@@ -184,7 +214,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; correct that cell or remove the row: {path}", at = place(*row, *line), column = plain(column), what = plain(what), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), advice = cell_advice(*line), column = plain(column), what = plain(what), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -264,4 +294,13 @@ pub enum LogError {
 /// `row 3 (line 4)`, or without the line where the format has none.
 fn place(row: usize, line: u64) -> String {
     if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
+}
+
+/// Advice about a cell: nobody corrects one of an MCAP or Parquet file, which have no lines.
+fn cell_advice(line: u64) -> &'static str {
+    if line == 0 {
+        "map another column in the sidecar, or record that channel again"
+    } else {
+        "correct that cell or remove the row"
+    }
 }

@@ -349,3 +349,22 @@ fn a_preview_grows_while_a_log_is_read() {
         assert!(partial || name == "parquet", "{name}: {seen:?}");
     }
 }
+
+#[test]
+fn nobody_is_told_to_sort_or_correct_a_container() {
+    let folder = folder();
+    let mut recording = sample("{}");
+    recording.channels[2].name = "clock_s".to_owned();
+    recording.channels[2].values[7] = recording.channels[2].values[6];
+    recording.labels = Some((0..50).map(|_| "wide").collect());
+    for format in FORMATS {
+        let path = folder.path().join(format!("x.{format}"));
+        write(std::slice::from_ref(&recording), &path, &[]).expect("writes");
+        for json in [r#"{"columns": {"t_s": "clock_s"}}"#, r#"{"columns": {"f_N": "label"}}"#] {
+            let meta: Meta = serde_json::from_str(json).expect("a sidecar");
+            let text = load_with_meta(&path, &meta).expect_err("refused").to_string();
+            let edits = text.contains("sort the rows") || text.contains("correct that cell");
+            assert!(edits == (*format == "csv") && text.contains("row "), "{format}: {text}");
+        }
+    }
+}

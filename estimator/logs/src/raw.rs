@@ -63,6 +63,8 @@ pub struct Raw {
     pub aliases: Vec<String>,
     /// The columns.
     pub columns: Vec<Cells>,
+    /// Full names of items of lists by place, and by the name of the item.
+    pub renamed: Vec<(String, String)>,
 }
 
 impl Raw {
@@ -78,13 +80,24 @@ impl Raw {
             let alias = self.aliases.iter().position(|a| !known && a == name);
             alias.map_or_else(|| name.clone(), |at| self.headers[at].clone())
         };
-        let mut meta = meta.clone();
-        for value in meta.columns.values_mut() {
-            *value = header(value);
-        }
-        meta.select = meta.select.into_iter().map(|(k, v)| (header(&k), v)).collect();
-        meta.scale = meta.scale.into_iter().map(|(k, v)| (header(&k), v)).collect();
-        meta.sign = meta.sign.into_iter().map(|(k, v)| (header(&k), v)).collect();
-        meta
+        with_names(&renamed(meta, &self.renamed), &header)
     }
+}
+
+/// The sidecar with every name of the first kind put as the second.
+pub fn renamed(meta: &Meta, names: &[(String, String)]) -> Meta {
+    let name = |name: &String| names.iter().find(|(from, _)| from == name).map_or(name, |(_, to)| to).clone();
+    if names.is_empty() { meta.clone() } else { with_names(meta, &name) }
+}
+
+/// The sidecar with other names for the columns of the file.
+fn with_names(meta: &Meta, name: &dyn Fn(&String) -> String) -> Meta {
+    let mut meta = meta.clone();
+    for value in meta.columns.values_mut() {
+        *value = name(value);
+    }
+    meta.select = meta.select.into_iter().map(|(k, v)| (name(&k), v)).collect();
+    meta.scale = meta.scale.into_iter().map(|(k, v)| (name(&k), v)).collect();
+    meta.sign = meta.sign.into_iter().map(|(k, v)| (name(&k), v)).collect();
+    meta
 }

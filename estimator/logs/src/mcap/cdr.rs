@@ -203,7 +203,7 @@ mod tests {
     fn read(data: &[u8]) -> Result<Topic, String> {
         let types = Definitions::parse("x/msg/W", WRENCH).expect("parses");
         let mut topic = Topic::default();
-        topic.begin(0);
+        topic.begin(0, 0);
         decode(&types, data, &mut topic, &mut String::new())?;
         topic.end();
         Ok(topic)

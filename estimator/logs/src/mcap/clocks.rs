@@ -1,110 +1,33 @@
 //! Clock of the table, and resampling of topics with different clocks onto it.
 
-use super::names::{self, Name};
+use super::names;
+use super::parts::{self, Clock, Part, seconds};
 use super::resample;
 use super::source::{Source, note};
-use super::topic::Topic;
+use super::stamps::is_increasing;
 use crate::errors::LogError;
 use crate::raw::{Cells, Raw};
 use haptics::recording::{Meta, Warning};
 use std::path::Path;
 
-/// Fields of a stamp in a message: seconds and nanoseconds (ROS, Foxglove's schemas in JSON and in protobuf).
-const STAMPS: [(&str, &str); 6] = [
-    ("header.stamp.sec", "header.stamp.nanosec"),
-    ("header.stamp.sec", "header.stamp.nsec"),
-    ("timestamp.sec", "timestamp.nsec"),
-    ("timestamp.seconds", "timestamp.nanos"),
-    ("stamp.sec", "stamp.nanosec"),
-    ("stamp.sec", "stamp.nsec"),
-];
 /// An extra topic may shorten the recording by this share; one that shortens it more is left out.
 const MAX_CUT: f64 = 0.05;
 
-/// A topic, with its names and its possible clocks.
-struct Part {
-    source: Source,
-    names: Vec<Name>,
-    /// Stamps in the messages, ns.
-    stamps_ns: Option<Vec<i64>>,
-    needed: bool,
-}
-
-/// A kind of clock.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Clock {
-    /// A field `t_s` (or `t_ms`, …).
-    Field,
-    /// The stamp in the message's header.
-    Stamp,
-    /// Time at which the recorder wrote the message.
-    Log,
-}
-
 /// Makes one table of all topics.
-pub fn one_table(
-    mut sources: Vec<Source>,
-    meta: &Meta,
-    notes: &mut Vec<Warning>,
-    path: &Path,
-) -> Result<Raw, LogError> {
-    let mut stamps = Vec::new();
-    for source in &mut sources {
-        source.topic.sort();
-        source.topic.name_items();
-        stamps.push(take_stamps(&mut source.topic));
-    }
-    let names = names::of(&sources);
-    let mut parts: Vec<Part> = Vec::new();
-    for ((source, names), stamps_ns) in sources.into_iter().zip(names).zip(stamps) {
-        let needed = names.iter().any(|n| is_needed(n, meta));
-        parts.push(Part { source, names, stamps_ns, needed });
-    }
-    // Topics that are not needed are dropped; if none is needed, all are shown.
-    if parts.iter().all(|p| !p.needed) {
-        for part in &mut parts {
-            part.needed = true;
+pub fn one_table(sources: Vec<Source>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) -> Result<Raw, LogError> {
+    let parts::Prepared { mut parts, meta, renamed } = parts::of(sources, meta, notes, path)?;
+    let raw = match (parts.pop(), parts.is_empty()) {
+        (Some(part), true) => single(part, &meta, notes, path)?,
+        (part, _) => {
+            parts.extend(part);
+            several(parts, &meta, notes, path)?
         }
-    }
-    if parts.len() == 1 {
-        return Ok(parts.pop().map(|part| single(part, meta, notes)).unwrap_or_default());
-    }
-    several(parts, meta, notes, path)
-}
-
-/// True for a column that the program or the sidecar asks for.
-fn is_needed(name: &Name, meta: &Meta) -> bool {
-    let asked = |wanted: &str| wanted == name.short || wanted == name.full;
-    names::quantity(&name.short).is_some_and(|q| q != "t")
-        || meta.columns.values().any(|v| asked(v))
-        || meta.select.keys().any(|k| asked(k))
-}
-
-/// The stamps of the messages; their fields are taken out of the columns.
-fn take_stamps(topic: &mut Topic) -> Option<Vec<i64>> {
-    for (seconds, nanos) in STAMPS {
-        let (Some(Cells::Numbers(s)), Some(Cells::Numbers(n))) = (topic.find(seconds), topic.find(nanos)) else {
-            continue;
-        };
-        // Whole numbers below 2^53 are exact.
-        let both = s.iter().zip(n).map(|(s, n)| {
-            let whole = s.fract() == 0.0 && n.fract() == 0.0 && s.abs() < 9e9 && (0.0..1e9).contains(n);
-            whole.then(|| *s as i64 * 1_000_000_000 + *n as i64)
-        });
-        let stamps: Option<Vec<i64>> = both.collect();
-        topic.forget(|field| field == seconds || field == nanos);
-        // Stamps that were never set are all zero.
-        return stamps.filter(|s| is_increasing(s));
-    }
-    None
-}
-
-fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
-    values.len() > 1 && values.windows(2).all(|w| w[0] < w[1])
+    };
+    Ok(Raw { renamed, ..raw })
 }
 
 /// A file with one topic: its rows as they are, on its own clock.
-fn single(part: Part, meta: &Meta, notes: &mut Vec<Warning>) -> Raw {
+fn single(mut part: Part, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) -> Result<Raw, LogError> {
     let timed = part.names.iter().any(|n| {
         names::time_factor(&n.short).is_some()
             || meta.columns.get("t_s").is_some_and(|t| *t == n.short || *t == n.full)
@@ -112,101 +35,56 @@ fn single(part: Part, meta: &Meta, notes: &mut Vec<Warning>) -> Raw {
     });
     let mut raw = Raw::default();
     if !timed && !part.source.clockless {
-        let clock = if part.stamps_ns.is_some() { Clock::Stamp } else { Clock::Log };
-        let stamps = part.stamps(clock);
-        let base = stamps.first().copied().unwrap_or(0);
-        raw.headers.push("t_s".to_owned());
-        raw.aliases.push(String::new());
-        raw.columns.push(Cells::Numbers(seconds(&stamps, base)));
-        notes.push(note(
-            "clock",
-            format!("the time is {} of {}, from the first message on", clock.words(), part.source.name),
-        ));
+        let clock = if part.offers(Clock::Stamp) { Clock::Stamp } else { Clock::Log };
+        match (part.settle(clock, notes), meta.rate_hz) {
+            (Ok(()), _) => {
+                let stamps = part.stamps(clock);
+                let base = stamps.first().copied().unwrap_or(0);
+                raw.headers.push("t_s".to_owned());
+                raw.aliases.push(String::new());
+                raw.columns.push(Cells::Numbers(seconds(&stamps, base)));
+                let text = format!("the time is {} of {}, from the first message on", clock.words(), part.source.name);
+                notes.push(note("clock", text));
+            }
+            (Err(why), Some(rate)) => {
+                notes.push(note("clock", format!("{why}; the time is made from the sidecar's rate_hz, {rate}")));
+            }
+            (Err(why), None) => return Err(LogError::NoClock { why, path: path.to_path_buf() }),
+        }
     }
     for (name, cells) in part.names.into_iter().zip(part.source.topic.columns) {
         raw.headers.push(name.short);
         raw.aliases.push(name.full);
         raw.columns.push(cells);
     }
-    raw
-}
-
-impl Clock {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Field => "the field t_s",
-            Self::Stamp => "the stamp in the messages",
-            Self::Log => "the log time",
-        }
-    }
-}
-
-fn seconds(ns: &[i64], base: i64) -> Vec<f64> {
-    ns.iter().map(|&t| t.wrapping_sub(base) as f64 / 1e9).collect()
-}
-
-impl Part {
-    /// Times of the rows in ns, by a clock that is not a field.
-    fn stamps(&self, clock: Clock) -> Vec<i64> {
-        match (clock, &self.stamps_ns) {
-            (Clock::Stamp, Some(stamps)) => stamps.clone(),
-            _ => self.source.topic.log_ns.iter().map(|&t| t.cast_signed()).collect(),
-        }
-    }
-
-    /// The column that is a time of the program.
-    fn time_field(&self) -> Option<usize> {
-        self.source.topic.fields.iter().position(|f| names::time_factor(f).is_some())
-    }
-
-    fn offers(&self, clock: Clock) -> bool {
-        match clock {
-            Clock::Field => self.time_field().is_some(),
-            Clock::Stamp => self.stamps_ns.is_some(),
-            Clock::Log => true,
-        }
-    }
-
-    /// Times of the rows, s; `base` is the zero of clocks that are not a field.
-    fn time_s(&self, clock: Clock, base: i64) -> Vec<f64> {
-        let field = self.time_field().filter(|_| clock == Clock::Field);
-        match field.map(|at| (&self.source.topic.columns[at], &self.source.topic.fields[at])) {
-            Some((Cells::Numbers(values), name)) => {
-                let factor = names::time_factor(name).unwrap_or(1.0);
-                values.iter().map(|v| v * factor).collect()
-            }
-            _ => seconds(&self.stamps(clock), base),
-        }
-    }
-
-    fn has_motion(&self, meta: &Meta) -> bool {
-        self.names.iter().any(|n| {
-            let mapped = meta.columns.iter().filter(|(_, v)| **v == n.short || **v == n.full);
-            names::is_motion(&n.short) || mapped.clone().any(|(k, _)| names::is_motion(k))
-        })
-    }
+    Ok(raw)
 }
 
 /// Files with several topics: all that are needed come onto the clock of the motion.
 fn several(parts: Vec<Part>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) -> Result<Raw, LogError> {
     let refused = |why: String| LogError::Clocks { why, path: path.to_path_buf() };
     if let Some(time) = meta.columns.get("t_s") {
-        return one_with_mapped_time(parts, time, meta, notes, &refused);
+        return one_with_mapped_time(parts, time, meta, notes, &refused, path);
     }
     let needed = || parts.iter().filter(|p| p.needed);
     let clock = [Clock::Field, Clock::Stamp, Clock::Log]
         .into_iter()
         .find(|&c| needed().all(|p| p.offers(c)))
         .unwrap_or(Clock::Log);
+    if meta.rate_hz.is_some() && needed().count() == 1 && !needed().all(|p| p.runs(clock)) {
+        return one_at_a_rate(parts, meta, notes, path);
+    }
     let base = needed().filter_map(|p| p.stamps(clock).first().copied()).min().unwrap_or(0);
     let mut timed = Vec::new();
-    for part in parts {
-        let time = if part.offers(clock) { part.time_s(clock, base) } else { part.time_s(Clock::Log, base) };
+    for mut part in parts {
+        let settled = if part.offers(clock) { part.settle(clock, notes) } else { Err(String::new()) };
+        let time = part.time_s(clock, base);
         let name = &part.source.name;
-        if is_increasing(&time) && time.iter().all(|t| t.is_finite()) && part.offers(clock) {
+        if settled.is_ok() && time.len() > 1 && is_increasing(&time) && time.iter().all(|t| t.is_finite()) {
             timed.push((part, time));
         } else if part.needed {
-            return Err(refused(format!("{} of {name} stands still or goes backwards", clock.words())));
+            let why = format!("{} stands still or goes backwards in {name}", clock.words());
+            return Err(refused(settled.err().filter(|why| !why.is_empty()).unwrap_or(why)));
         } else {
             let text = format!("the topic {name} is not used: it has no {} that runs on", clock.words());
             notes.push(note("topic", text));
@@ -224,6 +102,7 @@ fn one_with_mapped_time(
     meta: &Meta,
     notes: &mut Vec<Warning>,
     refused: &dyn Fn(String) -> LogError,
+    path: &Path,
 ) -> Result<Raw, LogError> {
     let (mut needed, others): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|p| p.needed);
     let (Some(part), true) = (needed.pop(), needed.is_empty()) else {
@@ -235,7 +114,16 @@ fn one_with_mapped_time(
         let text = format!("the topic {} is not used: `{time}` is no clock of it", other.source.name);
         notes.push(note("topic", text));
     }
-    Ok(single(part, meta, notes))
+    single(part, meta, notes, path)
+}
+
+/// The one topic that is needed, where its clock stands still and the sidecar gives a rate.
+fn one_at_a_rate(parts: Vec<Part>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) -> Result<Raw, LogError> {
+    let (mut needed, others): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|p| p.needed);
+    for other in others {
+        notes.push(note("topic", format!("the topic {} is not used: rate_hz is no clock of it", other.source.name)));
+    }
+    needed.pop().map_or_else(|| Ok(Raw::default()), |part| single(part, meta, notes, path))
 }
 
 /// The topic whose clock is kept: the slowest that has motion; without motion the slowest of the needed ones.

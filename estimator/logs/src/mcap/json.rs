@@ -6,9 +6,45 @@ use std::fmt::{self, Write as _};
 
 /// Puts one message into the current row of `topic`.
 pub fn decode(data: &[u8], topic: &mut Topic, path: &mut String) -> Result<(), String> {
+    let error = match read(data, topic, path) {
+        Ok(()) => return Ok(()),
+        Err(error) => error,
+    };
+    // Fields that were met before the fault keep their values: the first one counts.
+    let Some(data) = without_nan(data) else { return Err(error) };
+    read(&data, topic, path).map_err(|_| error)
+}
+
+fn read(data: &[u8], topic: &mut Topic, path: &mut String) -> Result<(), String> {
     path.clear();
     let mut reader = serde_json::Deserializer::from_slice(data);
     Value { topic, path }.deserialize(&mut reader).and_then(|()| reader.end()).map_err(|e| e.to_string())
+}
+
+/// The message with `null` for `NaN` and `Infinity`, which Python and JavaScript write although JSON has no such words;
+/// none if there are none.
+fn without_nan(data: &[u8]) -> Option<Vec<u8>> {
+    const WORDS: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
+    let mut made = Vec::with_capacity(data.len());
+    let (mut rest, mut in_text, mut any) = (data, false, false);
+    while let Some((&first, after)) = rest.split_first() {
+        if in_text && first == b'\\' {
+            let (pair, after) = rest.split_at(rest.len().min(2));
+            made.extend(pair);
+            rest = after;
+            continue;
+        }
+        in_text ^= first == b'"';
+        if let Some(word) = WORDS.iter().find(|word| !in_text && rest.starts_with(word)) {
+            made.extend(b"null");
+            rest = &rest[word.len()..];
+            any = true;
+            continue;
+        }
+        made.push(first);
+        rest = after;
+    }
+    any.then_some(made)
 }
 
 struct Value<'a> {
@@ -131,7 +167,7 @@ mod tests {
     #[test]
     fn every_kind_of_value_finds_its_column() {
         let mut topic = Topic::default();
-        topic.begin(0);
+        topic.begin(0, 0);
         let text = br#"{"t_s": 0.1, "tip": {"x": -3, "on": true}, "list": [1, 2.5], "state": "a\"b", "none": null}"#;
         decode(text, &mut topic, &mut String::new()).expect("decodes");
         topic.end();
@@ -141,15 +177,28 @@ mod tests {
     }
 
     #[test]
+    fn words_for_no_number_are_no_value() {
+        let mut topic = Topic::default();
+        topic.begin(0, 0);
+        let text = br#"{"effort": [NaN, 2], "text": "a \"NaN\" b", "far": -Infinity}"#;
+        decode(text, &mut topic, &mut String::new()).expect("decodes");
+        topic.end();
+        let cells: Vec<(String, String)> =
+            topic.fields.iter().cloned().zip(topic.columns.iter().map(|c| c.text(0))).collect();
+        let wanted = [("effort[1]", "2"), ("text", "a \"NaN\" b")].map(|(f, c)| (f.to_owned(), c.to_owned()));
+        assert_eq!(cells, wanted);
+    }
+
+    #[test]
     fn half_a_message_is_refused() {
-        for text in ["", "{", "{\"a\":1", "{\"a\":1}x", "[1,", "nul", "{1:2}"] {
+        for text in ["", "{", "{\"a\":1", "{\"a\":1}x", "[1,", "nul", "{1:2}", "{\"a\":NaN", "{\"a\":Nan}"] {
             let mut topic = Topic::default();
-            topic.begin(0);
+            topic.begin(0, 0);
             assert!(decode(text.as_bytes(), &mut topic, &mut String::new()).is_err(), "{text}");
         }
         let deep = "[".repeat(100_000);
         let mut topic = Topic::default();
-        topic.begin(0);
+        topic.begin(0, 0);
         assert!(decode(deep.as_bytes(), &mut topic, &mut String::new()).is_err());
     }
 }

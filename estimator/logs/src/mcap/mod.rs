@@ -3,16 +3,21 @@
 pub mod attached;
 mod cdr;
 mod clocks;
+mod items;
 mod json;
+mod kinds;
 mod lengths;
 mod metadata;
 mod names;
+mod parts;
 mod protobuf;
 pub mod records;
+mod repeats;
 pub mod resample;
 mod rosmsg;
 mod schema;
 mod source;
+mod stamps;
 pub mod stream;
 mod topic;
 pub mod write;
@@ -219,7 +224,7 @@ impl<'a> Reading<'a> {
         if matches!(source.decoder, Decoder::None(_)) {
             return Ok(());
         }
-        source.topic.begin(log_ns);
+        source.topic.begin(log_ns, channel);
         let done = match &mut source.decoder {
             Decoder::Json => json::decode(data, &mut source.topic, &mut self.field),
             Decoder::Protobuf(shape) => protobuf::decode(shape, data, &mut source.topic),
@@ -262,5 +267,7 @@ impl<'a> Reading<'a> {
     }
 }
 
+#[cfg(test)]
+mod order_tests;
 #[cfg(test)]
 mod tests;

@@ -23,7 +23,9 @@ pub fn of(sources: &[Source]) -> Vec<Vec<Name>> {
         *count.entry(field).or_default() += 1;
     }
     let flat = |field: &str| !field.is_empty() && !field.contains(['.', '[']);
-    let table = sources.len() == 1 && sources.iter().all(|s| s.topic.fields.iter().all(|f| flat(f)));
+    // Kinds of messages of one topic are sources of one name.
+    let one_topic = sources.windows(2).all(|two| two[0].name == two[1].name);
+    let table = one_topic && sources.iter().all(|s| s.topic.fields.iter().all(|f| flat(f)));
     sources
         .iter()
         .map(|source| {

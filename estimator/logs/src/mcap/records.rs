@@ -194,7 +194,10 @@ impl Walk<'_> {
                 decoder.take(claimed + 1).read_to_end(into).map_err(failed)?;
                 into
             }
-            other => return Err(self.damaged(&format!("a block packed with `{other}`, which is not known"))),
+            other => {
+                let (codec, path) = (format!("`{other}`"), self.path.to_path_buf());
+                return Err(LogError::Packed { format: "MCAP", codec, instead: "zstd or lz4", path });
+            }
         };
         if records.len() as u64 != claimed {
             return Err(self.damaged(&format!("a block of {} bytes that claims {claimed}", records.len())));

@@ -22,30 +22,30 @@ const WRENCH_STAMPED: &str = "std_msgs/Header header\nWrench wrench\n\
     ================================================================================\nMSG: std_msgs/Header\n\
     builtin_interfaces/Time stamp\nstring frame_id\n";
 
-struct Out {
+pub(super) struct Out {
     folder: tempfile::TempDir,
     writer: Writer<BufWriter<File>>,
 }
 
 impl Out {
-    fn new(compression: Option<Compression>) -> Self {
+    pub(super) fn new(compression: Option<Compression>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = BufWriter::new(File::create(folder.path().join("log.mcap")).expect("creates"));
         let writer = WriteOptions::new().compression(compression).chunk_size(Some(4096)).create(file).expect("an MCAP");
         Self { folder, writer }
     }
 
-    fn channel(&mut self, topic: &str, encoding: &str, schema: (&str, &str, &[u8])) -> u16 {
+    pub(super) fn channel(&mut self, topic: &str, encoding: &str, schema: (&str, &str, &[u8])) -> u16 {
         let (name, kind, data) = schema;
         let id = if kind.is_empty() { 0 } else { self.writer.add_schema(name, kind, data).expect("a schema") };
         self.writer.add_channel(id, topic, encoding, &BTreeMap::new()).expect("a channel")
     }
 
-    fn json(&mut self, topic: &str) -> u16 {
+    pub(super) fn json(&mut self, topic: &str) -> u16 {
         self.channel(topic, "json", ("x", "jsonschema", br#"{"type":"object"}"#))
     }
 
-    fn put(&mut self, channel_id: u16, log_time: u64, data: &[u8]) {
+    pub(super) fn put(&mut self, channel_id: u16, log_time: u64, data: &[u8]) {
         let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time: log_time };
         self.writer.write_to_known_channel(&header, data).expect("a message");
     }
@@ -57,19 +57,19 @@ impl Out {
         (self.folder, path)
     }
 
-    fn load(self, meta: &str) -> Result<Recording, LogError> {
+    pub(super) fn load(self, meta: &str) -> Result<Recording, LogError> {
         let (_folder, path) = self.end();
         let meta: Meta = serde_json::from_str(meta).expect("a sidecar");
         load_with_meta(&path, &meta).map(|mut r| r.remove(0))
     }
 }
 
-fn names(recording: &Recording) -> Vec<&str> {
+pub(super) fn names(recording: &Recording) -> Vec<&str> {
     recording.channels.iter().map(|c| c.name.as_str()).collect()
 }
 
 /// A CDR message: a stamp, a frame, then whatever `body` appends (aligned by itself to 8).
-struct Cdr(Vec<u8>);
+pub(super) struct Cdr(Vec<u8>);
 
 impl Cdr {
     fn stamped(ns: u64) -> Self {

@@ -20,6 +20,8 @@ pub struct Topic {
     pub columns: Vec<Cells>,
     /// Log time of every row, ns.
     pub log_ns: Vec<u64>,
+    /// Channel of the file that every row came through: publishers of one topic may have one each.
+    pub channels: Vec<u16>,
     /// True once a list was too long to be kept.
     pub long_lists: bool,
     /// Parts of the schema seen so far, for the limit on wild nesting.
@@ -32,9 +34,10 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// Starts the row of a message.
-    pub fn begin(&mut self, log_ns: u64) {
+    /// Starts the row of a message that came through `channel`.
+    pub fn begin(&mut self, log_ns: u64, channel: u16) {
         self.log_ns.push(log_ns);
+        self.channels.push(channel);
         self.next = 0;
     }
 
@@ -117,38 +120,35 @@ impl Topic {
         }
         let mut order: Vec<usize> = (0..self.log_ns.len()).collect();
         order.sort_by_key(|&i| self.log_ns[i]);
-        self.log_ns = order.iter().map(|&i| self.log_ns[i]).collect();
-        self.columns = self.columns.iter().map(|c| c.gathered(&order)).collect();
+        self.keep(&order);
     }
 
-    /// Names the elements of lists beside a list `name` of constant texts after them: `position[0]` of a `JointState` becomes
-    /// `position[shoulder]`.
-    pub fn name_items(&mut self) {
-        let mut names: HashMap<(String, String), String> = HashMap::new();
-        for (field, cells) in self.fields.iter().zip(&self.columns) {
-            if let (Some((list, item)), Cells::Text(texts)) = (split_item(field), cells)
-                && let Some(prefix) = list.strip_suffix("name")
-                && (prefix.is_empty() || prefix.ends_with('.'))
-                && let Some(name) = texts.constant().filter(|n| !n.is_empty())
-            {
-                names.insert((prefix.to_owned(), item.to_owned()), name.to_owned());
-            }
-        }
-        if names.is_empty() {
-            return;
-        }
-        for field in &mut self.fields {
-            let Some((list, item)) = split_item(field) else { continue };
-            let prefix = list.rfind('.').map_or("", |dot| &list[..=dot]);
-            if let Some(name) = names.get(&(prefix.to_owned(), item.to_owned())).filter(|_| !list.ends_with("name")) {
-                *field = format!("{list}[{name}]");
-            }
-        }
-        self.forget(|field| {
-            split_item(field).is_some_and(|(list, item)| {
-                list.strip_suffix("name").is_some_and(|p| names.contains_key(&(p.to_owned(), item.to_owned())))
-            })
-        });
+    /// Keeps the rows `keep`, in that order.
+    pub fn keep(&mut self, keep: &[usize]) {
+        self.log_ns = keep.iter().map(|&i| self.log_ns[i]).collect();
+        self.channels = keep.iter().map(|&i| self.channels[i]).collect();
+        self.columns = self.columns.iter().map(|c| c.gathered(keep)).collect();
+    }
+
+    /// A copy of the rows `rows`, without the columns that have no value there.
+    pub fn part(&self, rows: &[usize]) -> Self {
+        let mut part = Self {
+            fields: self.fields.clone(),
+            columns: self.columns.iter().map(|c| c.gathered(rows)).collect(),
+            log_ns: rows.iter().map(|&i| self.log_ns[i]).collect(),
+            channels: rows.iter().map(|&i| self.channels[i]).collect(),
+            ..Self::default()
+        };
+        let filled: HashMap<String, bool> =
+            part.fields.iter().cloned().zip(part.columns.iter().map(has_value)).collect();
+        part.forget(|field| filled.get(field) == Some(&false));
+        part
+    }
+
+    /// Puts other columns in place of all that are there.
+    pub fn replace(&mut self, columns: Vec<(String, Cells)>) {
+        (self.fields, self.columns) = columns.into_iter().unzip();
+        self.lookup.clear();
     }
 
     /// Drops the columns whose field `unwanted` names.
@@ -168,8 +168,16 @@ impl Topic {
 }
 
 /// `a.b[3]` → (`a.b`, `3`).
-fn split_item(field: &str) -> Option<(&str, &str)> {
+pub fn split_item(field: &str) -> Option<(&str, &str)> {
     field.strip_suffix(']')?.rsplit_once('[')
+}
+
+/// True for a column with a value in any row.
+fn has_value(cells: &Cells) -> bool {
+    match cells {
+        Cells::Numbers(values) => values.iter().any(|&v| !is_missing(v)),
+        Cells::Text(texts) => texts.iter().any(|text| !text.is_empty()),
+    }
 }
 
 fn pad(cells: &mut Cells, rows: usize) {
@@ -184,13 +192,14 @@ fn pad(cells: &mut Cells, rows: usize) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn topic(rows: &[&[(&str, &str)]]) -> Topic {
+    /// A topic with these rows of fields.
+    pub fn topic(rows: &[&[(&str, &str)]]) -> Topic {
         let mut topic = Topic::default();
         for (i, row) in rows.iter().enumerate() {
-            topic.begin(i as u64);
+            topic.begin(i as u64, 0);
             for (field, value) in *row {
                 if let Ok(number) = value.parse() {
                     let column = topic.column(field, false).expect("few");
@@ -212,18 +221,5 @@ mod tests {
         assert!(a[0] == 1.0 && a[1] == 3.0 && is_missing(a[2]));
         let b = topic.find("b").expect("there");
         assert_eq!([b.text(0), b.text(1), b.text(2)], ["", "2", "x"]);
-    }
-
-    #[test]
-    fn lists_beside_constant_names_are_named_after_them() {
-        let row: &[(&str, &str)] =
-            &[("name[0]", "hip"), ("name[1]", "knee"), ("position[0]", "1"), ("position[1]", "2")];
-        let mut one = topic(&[row, row]);
-        one.name_items();
-        assert_eq!(one.fields, ["position[hip]", "position[knee]"]);
-        let swapped: &[(&str, &str)] = &[("name[0]", "knee"), ("name[1]", "hip"), ("position[0]", "1")];
-        let mut two = topic(&[row, swapped]);
-        two.name_items();
-        assert!(two.fields.contains(&"position[0]".to_owned()), "names that change name nothing: {:?}", two.fields);
     }
 }

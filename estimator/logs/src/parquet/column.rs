@@ -1,7 +1,6 @@
 //! One column of a Parquet file as numbers or text.
 
 use crate::raw::{Cells, MISSING};
-use haptics::recording::Labels;
 use parquet::basic::{LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -18,21 +17,33 @@ pub enum Meaning {
     Number,
     /// Whole numbers without a sign.
     Unsigned,
+    /// Whole numbers, this many times too large: decimals.
+    Scaled(f64),
+    /// Numbers of two bytes.
+    Half,
     /// Points in time: this many of them make a second.
     Time(f64),
     /// Text.
     Text,
 }
 
+/// Digits of a decimal that a double can be scaled by without rounding twice.
+const MAX_SCALE: i32 = 22;
+
 /// Content of a column, or the reason for not reading it.
 pub fn meaning(column: &ColumnDescriptor) -> Result<Meaning, &'static str> {
-    if column.max_rep_level() > 0 {
-        return Err("it holds lists");
-    }
     let logical = column.logical_type_ref();
     let converted = format!("{:?}", column.converted_type());
+    let decimal = matches!(logical, Some(LogicalType::Decimal(_))) || converted == "DECIMAL";
     match (column.physical_type(), logical) {
-        (_, Some(LogicalType::Decimal(_))) => Err("it holds decimals"),
+        (Type::INT32 | Type::INT64 | Type::FIXED_LEN_BYTE_ARRAY, _)
+            if decimal && (0..=MAX_SCALE).contains(&column.type_scale()) && column.type_length() <= 16 =>
+        {
+            Ok(Meaning::Scaled(10_f64.powi(column.type_scale())))
+        }
+        _ if decimal => Err("it holds decimals of more digits than a number has here"),
+        (Type::FIXED_LEN_BYTE_ARRAY, Some(LogicalType::Float16)) if column.type_length() == 2 => Ok(Meaning::Half),
+        (Type::INT96, _) => Ok(Meaning::Time(1e9)),
         (Type::INT64, Some(LogicalType::Timestamp(of))) => Ok(Meaning::Time(match of.unit {
             TimeUnit::MILLIS => 1e3,
             TimeUnit::MICROS => 1e6,
@@ -49,39 +60,105 @@ pub fn meaning(column: &ColumnDescriptor) -> Result<Meaning, &'static str> {
     }
 }
 
-/// Appends `rows` values of a column to `cells`. `base` is the first point in time of the column, from which the others count.
+/// Receiver of the values of a column, row by row or item by item.
+pub trait Sink {
+    /// Takes all values of a column of numbers.
+    fn numbers<T: DataType>(
+        &mut self,
+        reader: ColumnReaderImpl<T>,
+        convert: impl FnMut(&T::T) -> f64,
+    ) -> Result<(), ParquetError>;
+
+    /// Takes all values of a column of text.
+    fn texts<T: DataType<T = ByteArray>>(&mut self, reader: ColumnReaderImpl<T>) -> Result<(), ParquetError>;
+}
+
+/// Hands the values of a column to `sink`. `base` is the first point in time of the column, from which the others count.
 pub fn append(
     reader: ColumnReader,
-    column: &ColumnDescriptor,
     meaning: Meaning,
-    rows: usize,
     base: &mut Option<i64>,
-    cells: &mut Cells,
+    sink: &mut impl Sink,
 ) -> Result<(), ParquetError> {
-    let levels = column.max_def_level();
-    match (reader, cells) {
-        (ColumnReader::BoolColumnReader(r), Cells::Numbers(to)) => {
-            numbers(r, levels, rows, to, |v| f64::from(u8::from(*v)))
+    // Seconds since 1970 in a double are good to 0.2 µs only: count from the first one.
+    let mut since = |v: i64, per_second: f64| v.wrapping_sub(*base.get_or_insert(v)) as f64 / per_second;
+    match (reader, meaning) {
+        (ColumnReader::BoolColumnReader(r), _) => sink.numbers(r, |v| f64::from(u8::from(*v))),
+        (ColumnReader::Int32ColumnReader(r), Meaning::Unsigned) => sink.numbers(r, |v| f64::from(v.cast_unsigned())),
+        (ColumnReader::Int32ColumnReader(r), Meaning::Scaled(by)) => sink.numbers(r, |v| f64::from(*v) / by),
+        (ColumnReader::Int32ColumnReader(r), _) => sink.numbers(r, |v| f64::from(*v)),
+        (ColumnReader::Int64ColumnReader(r), Meaning::Unsigned) => sink.numbers(r, |v| v.cast_unsigned() as f64),
+        (ColumnReader::Int64ColumnReader(r), Meaning::Scaled(by)) => sink.numbers(r, |v| *v as f64 / by),
+        (ColumnReader::Int64ColumnReader(r), Meaning::Time(per_second)) => sink.numbers(r, |v| since(*v, per_second)),
+        (ColumnReader::Int64ColumnReader(r), _) => sink.numbers(r, |v| *v as f64),
+        (ColumnReader::Int96ColumnReader(r), Meaning::Time(per_second)) => {
+            sink.numbers(r, |v| since(v.to_nanos(), per_second))
         }
-        (ColumnReader::Int32ColumnReader(r), Cells::Numbers(to)) if meaning == Meaning::Unsigned => {
-            numbers(r, levels, rows, to, |v| f64::from(v.cast_unsigned()))
+        (ColumnReader::FloatColumnReader(r), _) => sink.numbers(r, |v| f64::from(*v)),
+        (ColumnReader::DoubleColumnReader(r), _) => sink.numbers(r, |v| *v),
+        (ColumnReader::FixedLenByteArrayColumnReader(r), Meaning::Half) => sink.numbers(r, |v| half(v.data())),
+        (ColumnReader::FixedLenByteArrayColumnReader(r), Meaning::Scaled(by)) => {
+            sink.numbers(r, |v| whole(v.data()) as f64 / by)
         }
-        (ColumnReader::Int32ColumnReader(r), Cells::Numbers(to)) => numbers(r, levels, rows, to, |v| f64::from(*v)),
-        (ColumnReader::Int64ColumnReader(r), Cells::Numbers(to)) if meaning == Meaning::Unsigned => {
-            numbers(r, levels, rows, to, |v| v.cast_unsigned() as f64)
-        }
-        (ColumnReader::Int64ColumnReader(r), Cells::Numbers(to)) => match meaning {
-            Meaning::Time(per_second) => {
-                // Seconds since 1970 in a double are good to 0.2 µs only: count from the first one.
-                numbers(r, levels, rows, to, |v| v.wrapping_sub(*base.get_or_insert(*v)) as f64 / per_second)
-            }
-            _ => numbers(r, levels, rows, to, |v| *v as f64),
-        },
-        (ColumnReader::FloatColumnReader(r), Cells::Numbers(to)) => numbers(r, levels, rows, to, |v| f64::from(*v)),
-        (ColumnReader::DoubleColumnReader(r), Cells::Numbers(to)) => numbers(r, levels, rows, to, |v| *v),
-        (ColumnReader::ByteArrayColumnReader(r), Cells::Text(to)) => texts(r, levels, rows, to),
-        _ => Err(ParquetError::General("a column is not of the kind that the schema says".to_owned())),
+        (ColumnReader::ByteArrayColumnReader(r), Meaning::Text) => sink.texts(r),
+        _ => Err(another_kind()),
     }
+}
+
+/// A number of two bytes (IEEE 754 binary16, little endian): one bit of sign, five of exponent, ten of fraction.
+fn half(bytes: &[u8]) -> f64 {
+    let bits = u16::from_le_bytes([bytes.first().copied().unwrap_or(0), bytes.get(1).copied().unwrap_or(0)]);
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    let size = match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+/// A whole number with a sign, the highest byte first; of at most 16 bytes.
+fn whole(bytes: &[u8]) -> i128 {
+    let sign = bytes.first().map_or(0, |first| i128::from(first.cast_signed() >> 7));
+    bytes.iter().fold(sign, |value, byte| value << 8 | i128::from(*byte))
+}
+
+/// A column with one value a row.
+pub struct Flat<'a> {
+    /// Number of rows to read.
+    pub rows: usize,
+    /// Level of a value that is there.
+    pub level: i16,
+    /// The column.
+    pub cells: &'a mut Cells,
+}
+
+impl Sink for Flat<'_> {
+    fn numbers<T: DataType>(
+        &mut self,
+        reader: ColumnReaderImpl<T>,
+        mut convert: impl FnMut(&T::T) -> f64,
+    ) -> Result<(), ParquetError> {
+        let Cells::Numbers(to) = &mut *self.cells else { return Err(another_kind()) };
+        each(reader, self.level, self.rows, |value| {
+            to.push(value.map_or(MISSING, &mut convert));
+            Ok(())
+        })
+    }
+
+    fn texts<T: DataType<T = ByteArray>>(&mut self, reader: ColumnReaderImpl<T>) -> Result<(), ParquetError> {
+        let Cells::Text(to) = &mut *self.cells else { return Err(another_kind()) };
+        each(reader, self.level, self.rows, |value| {
+            to.push(value.map_or(Ok(""), |v| v.as_utf8())?);
+            Ok(())
+        })
+    }
+}
+
+/// Error of a column that is not what its schema says.
+pub fn another_kind() -> ParquetError {
+    ParquetError::General("a column is not of the kind that the schema says".to_owned())
 }
 
 /// Reads batch by batch; `take` gets `Some(value)` or `None` for every row.
@@ -113,27 +190,20 @@ fn each<T: DataType>(
     Ok(())
 }
 
-fn numbers<T: DataType>(
-    reader: ColumnReaderImpl<T>,
-    levels: i16,
-    rows: usize,
-    to: &mut Vec<f64>,
-    mut convert: impl FnMut(&T::T) -> f64,
-) -> Result<(), ParquetError> {
-    each(reader, levels, rows, |value| {
-        to.push(value.map_or(MISSING, &mut convert));
-        Ok(())
-    })
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn texts<T: DataType<T = ByteArray>>(
-    reader: ColumnReaderImpl<T>,
-    levels: i16,
-    rows: usize,
-    to: &mut Labels,
-) -> Result<(), ParquetError> {
-    each(reader, levels, rows, |value| {
-        to.push(value.map_or(Ok(""), |v| v.as_utf8())?);
-        Ok(())
-    })
+    #[test]
+    fn numbers_of_two_bytes() {
+        let of = |bits: u16| half(&bits.to_le_bytes());
+        assert_eq!([of(0x3c00), of(0xc000), of(0x3555), of(0x0001)], [1.0, -2.0, 0.333_251_953_125, 2_f64.powi(-24)]);
+        assert_eq!([of(0x7bff), of(0xfc00)], [65504.0, f64::NEG_INFINITY]);
+        assert!(of(0x7e00).is_nan() && of(0x8000).is_sign_negative());
+    }
+
+    #[test]
+    fn whole_numbers_keep_their_sign() {
+        assert_eq!([whole(&[0x01, 0x00]), whole(&[0xff, 0xfe]), whole(&[0x80]), whole(&[])], [256, -2, -128, 0]);
+    }
 }
