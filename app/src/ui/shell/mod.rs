@@ -6,6 +6,7 @@ pub mod command_palette;
 pub mod dialogs;
 pub mod dispatch;
 pub mod dock;
+pub mod fit;
 pub mod keys;
 pub mod menu;
 pub mod message_list;

@@ -7,6 +7,7 @@ use crate::ui::kit::theme;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
 use crate::ui::shell::app;
+use crate::ui::shell::fit;
 use crate::ui::shell::workspace;
 use crate::ui::train::recorder;
 use crate::ui::train::trainees;
@@ -36,7 +37,7 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
         .with_title("Touchstone")
         .with_app_id("touchstone")
         .with_inner_size([1480.0, 920.0])
-        .with_min_inner_size([1120.0, 680.0])
+        .with_min_inner_size(fit::LEAST)
         .with_drag_and_drop(true);
     let native = eframe::NativeOptions {
         viewport,
