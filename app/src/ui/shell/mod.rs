@@ -16,6 +16,7 @@ pub mod panel;
 pub mod panel_id;
 pub mod panel_list;
 pub mod run;
+pub mod start;
 pub mod tour;
 pub mod tour_progress;
 pub mod window;
