@@ -134,7 +134,7 @@ fn no_window_on_x(name: &str, server: &XServer) -> String {
             lacks.join(" and ")
         ),
         XServer::Answering { .. } => format!(
-            "no window opens on the X server {name}; install libX11, libXcursor, libXi, libX11-xcb and libxkbcommon-x11"
+            "no window opens on the X server {name}; install libX11, libXcursor, libXi, libX11-xcb, libxkbcommon-x11 and xkb-data"
         ),
     }
 }
