@@ -296,7 +296,7 @@ fn open_app(args: AppArgs) -> ExitCode {
 
 /// Starts the log messages on standard error: warnings by default, more with `RUST_LOG`.
 fn start_log(quiet: bool) {
-    let default = if quiet { "error" } else { "warn,wgpu_hal=off,wgpu_core=error,zbus=error" };
+    let default = if quiet { "error" } else { "warn,winit=error,wgpu_hal=off,wgpu_core=error,zbus=error" };
     let filter = tracing_subscriber::EnvFilter::try_from_default_env()
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(default));
     let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();

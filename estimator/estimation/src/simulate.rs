@@ -23,6 +23,13 @@ use prediction::rms;
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
+/// Most parts of a way between two samples: a reading that leaps would ask for work by its metres.
+/// Derived: a metre of way.
+const MOST_PARTS: f64 = 1.0 / STEP_M;
+/// Longest time between two samples that is stepped, s. Over more, nothing is known of the fingers' motion, and a clock with a wrong
+/// unit would ask for work by its seconds.
+/// Derived: a hand's strokes last about a second.
+const LONGEST_STEPPED_S: f64 = 1.0;
 /// Longest way between two updates of a sheet's memory, m.
 const STEP_M: f64 = 5e-5;
 /// The wish to end is looked at so often, samples.
@@ -99,7 +106,7 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
     for i in 0..position.len() {
         // The memory of a place is moved in steps as fine as the servo's way.
         let from = position[i.saturating_sub(1)];
-        let parts = (((position[i] - from).norm() / STEP_M).ceil().max(1.0)) as usize;
+        let parts = ((position[i] - from).norm() / STEP_M).ceil().clamp(1.0, MOST_PARTS) as usize;
         let mut out_n = 0.0;
         for part in 1..=parts {
             let at = from + (position[i] - from) * (part as f64 / parts as f64);
@@ -244,7 +251,7 @@ pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: 
         return;
     }
     let tip = |finger: usize, i: usize| tips[finger].position[i];
-    let gap_above_s = gap_above_s(&time_s[..n]).unwrap_or(f64::INFINITY);
+    let gap_above_s = gap_above_s(&time_s[..n]).unwrap_or(f64::INFINITY).min(LONGEST_STEPPED_S);
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
     see(time_s[0], &state);
     for i in 1..n {

@@ -67,6 +67,10 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
         None if 4 * repeats > time.len() => {
             format!("the stamps are too coarse for a clock: state {no_clock} and the rate, \"rate_hz\", in the sidecar")
         }
+        // Nobody removes a row of an MCAP or Parquet file.
+        None if in_container => {
+            format!("map another clock to `t_s`, or state {no_clock} and \"rate_hz\" in the sidecar")
+        }
         None if goes_back => {
             "if several recordings stand one after the other, tell them apart with a `trial` column".to_owned()
         }

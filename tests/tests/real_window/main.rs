@@ -6,6 +6,7 @@ mod drop;
 mod lessons;
 mod mapping;
 mod screen;
+mod starts;
 
 use app::ui::kit::theme;
 use drop::drop_file;

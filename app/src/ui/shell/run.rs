@@ -7,10 +7,12 @@ use crate::ui::kit::theme;
 use crate::ui::scene::callback;
 use crate::ui::session::Session;
 use crate::ui::shell::app;
+use crate::ui::shell::fit;
+use crate::ui::shell::start::failure::{self, Failure, Next, Surroundings};
+use crate::ui::shell::start::{again, graphics, quietly, scale, wayland_socket, x_server};
 use crate::ui::shell::workspace;
 use crate::ui::train::recorder;
 use crate::ui::train::trainees;
-use anyhow::Context as _;
 use std::path::PathBuf;
 
 /// Options that the window opens with.
@@ -32,56 +34,79 @@ pub struct RunOptions {
 
 /// Opens the window; returns when it is closed.
 pub fn run(options: RunOptions) -> anyhow::Result<()> {
+    let drawing = drawing()?;
+    let unusable = unusable();
+    if !unusable.is_empty() {
+        return again::start(&unusable, &[]);
+    }
     let viewport = egui::ViewportBuilder::default()
         .with_title("Touchstone")
         .with_app_id("touchstone")
         .with_inner_size([1480.0, 920.0])
-        .with_min_inner_size([1120.0, 680.0])
+        .with_min_inner_size(fit::LEAST)
         .with_drag_and_drop(true);
     let native = eframe::NativeOptions {
         viewport,
         renderer: eframe::Renderer::Wgpu,
-        wgpu_options: graphics(),
+        wgpu_options: drawing,
         ..Default::default()
     };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
         let app = create(cc, &options);
         Ok(if options.until_first_picture { Box::new(first_picture::UntilFirstPicture::new(app)) } else { Box::new(app) })
     };
-    match eframe::run_native("touchstone", native, Box::new(start)) {
-        Err(eframe::Error::Wgpu(_)) if std::env::var_os(BACKEND).is_none() => with_open_gl(),
-        opened => opened.map_err(|error| {
-            anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?")
-        }),
+    // The libraries below take variables away.
+    let surroundings =
+        Surroundings::of(|name| std::env::var_os(name).map(|value| value.to_string_lossy().into_owned()));
+    let opened = quietly::opening(|| eframe::run_native("touchstone", native, Box::new(start)));
+    let failure = match opened {
+        Some(Ok(())) => return Ok(()),
+        _ if quietly::is_open() => anyhow::bail!("the screen is gone, and the window with it; start again"),
+        Some(Err(eframe::Error::Wgpu(_))) => Failure::NoGraphics,
+        Some(Err(_)) | None => Failure::NoWindow,
+    };
+    go_on_after(failure, &surroundings)
+}
+
+/// Environment variables that the libraries below would panic at.
+fn unusable() -> Vec<&'static str> {
+    let mut found = Vec::new();
+    if let Some(complaint) = std::env::var(scale::VARIABLE).ok().and_then(|text| scale::complaint(&text)) {
+        eprintln!("{complaint}");
+        found.push(scale::VARIABLE);
+    }
+    if std::env::var(wayland_socket::VARIABLE).is_ok_and(|text| !wayland_socket::is_open(&text)) {
+        found.push(wayland_socket::VARIABLE);
+    }
+    found
+}
+
+/// Another start, if it may open a window; otherwise a sentence.
+fn go_on_after(failure: Failure, surroundings: &Surroundings) -> anyhow::Result<()> {
+    // Other systems have one window system and no variables that choose it.
+    anyhow::ensure!(
+        cfg!(all(unix, not(target_os = "macos"))) || failure == Failure::NoGraphics,
+        "no window could be opened; start this where a user is logged in to a desktop"
+    );
+    match surroundings.after(failure, x_server::ask) {
+        Next::WithoutWayland => again::start(&failure::WAYLAND, &[]),
+        Next::AtUsualScale => again::start(&[], &[failure::AT_USUAL_SCALE]),
+        Next::WithOpenGl => again::start(&[], &failure::OPEN_GL),
+        Next::Refuse(sentence) => anyhow::bail!(sentence),
     }
 }
 
-/// Environment variable that chooses the graphics interface of wgpu.
-const BACKEND: &str = "WGPU_BACKEND";
-
 /// The system's own interface alone: to look for OpenGL as well takes a tenth of a second on every start.
-fn graphics() -> egui_wgpu::WgpuConfiguration {
+fn drawing() -> anyhow::Result<egui_wgpu::WgpuConfiguration> {
+    let list = std::env::var_os(graphics::VARIABLE).unwrap_or_default();
+    let chosen = graphics::chosen(&list, wgpu::Instance::enabled_backend_features())?;
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
-    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
-}
-
-/// Starts again with OpenGL, where there is nothing else: a window system can be opened once a process.
-fn with_open_gl() -> anyhow::Result<()> {
-    let again = std::process::Command::new(std::env::current_exe()?)
-        .args(std::env::args_os().skip(1))
-        .env(BACKEND, "gl")
-        .status()
-        .context("the window could not be opened, and neither with OpenGL")?;
-    // The child process has printed its own error.
-    anyhow::ensure!(
-        again.success(),
-        "there is no graphics driver but OpenGL's, and the window did not stay open with that one"
-    );
-    Ok(())
+    setup.instance_descriptor.backends = chosen.unwrap_or(wgpu::Backends::PRIMARY);
+    Ok(egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() })
 }
 
 fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
+    quietly::opened();
     theme::install(&cc.egui_ctx);
     if let Some(dark) = options.dark {
         cc.egui_ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });

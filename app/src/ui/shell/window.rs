@@ -15,6 +15,7 @@ use crate::ui::shell::command_palette::CommandPalette;
 use crate::ui::shell::dispatch;
 use crate::ui::shell::dock::arrangement::Dock;
 use crate::ui::shell::dock::panes::Panels;
+use crate::ui::shell::fit;
 use crate::ui::shell::message_list::Tone;
 use crate::ui::shell::tour_progress::Tour;
 use crate::ui::shell::workspace::Workspace;
@@ -244,6 +245,7 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        fit::follow(ui.ctx());
         self.show(ui);
     }
 

@@ -2,6 +2,7 @@
 
 use super::super::plan;
 use super::super::table::Group;
+use super::sniff::dialect;
 use super::*;
 use proptest::prelude::*;
 use rand::rngs::StdRng;

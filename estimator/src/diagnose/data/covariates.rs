@@ -42,7 +42,8 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2) else { return Vec::new() };
     let start_s = time_s[0];
     let span_s = time_s[time_s.len() - 1] - start_s;
-    let bins = (span_s / (0.5 * SLOW_S)).floor() as usize;
+    // No more than samples, however far the clock runs.
+    let bins = ((span_s / (0.5 * SLOW_S)).floor() as usize).min(time_s.len());
     if bins < 8 {
         return Vec::new();
     }
@@ -122,6 +123,16 @@ mod tests {
             let error = found[0].at(t) - wave(100.0 + t);
             assert!(error.abs() < 0.01, "{error} at {t} s");
         }
+    }
+
+    #[test]
+    fn a_clock_that_leaps_asks_for_no_memory_by_its_seconds() {
+        let mut made = recording(&[("temperature_degC", &|t: f64| 20.0 + 2.0 * (0.3 * t).sin())]);
+        for time in made.time_s.iter_mut().flatten().skip(2000) {
+            *time += 1e15;
+        }
+        // One bin for each half of the recording is too little for a slow channel.
+        assert_eq!(of(&made), []);
     }
 
     #[test]

@@ -8,6 +8,9 @@ use haptics::Vec2;
 /// Approximate rate of the points, Hz: a hand's motion is nearly linear between them.
 /// Choice: halved, 3 of 63 answers change; doubled, 1 of 63 answers change.
 pub const FINE_HZ: f64 = 400.0;
+/// Most points for one sample. Without it, a clock with a wrong unit would ask for memory by its seconds.
+/// Derived: recordings of 6.25 Hz and more have points at [`FINE_HZ`].
+const MOST_POINTS: f64 = 64.0;
 /// Averaging time of velocities, s.
 /// Choice: halved, 1 of 48 answers change; doubled, 1 of 48 answers change.
 const CALM_S: f64 = 0.012;
@@ -68,7 +71,7 @@ pub fn calmed_line(values: &[f64], period_s: f64) -> (Vec<f64>, f64) {
 
 /// Number of points for one sample, and number of samples for one point, at this time step. One of them is 1.
 pub fn points_and_samples(period_s: f64) -> (usize, usize) {
-    let fill = (FINE_HZ * period_s).round().max(1.0) as usize;
+    let fill = (FINE_HZ * period_s).round().clamp(1.0, MOST_POINTS) as usize;
     (fill, (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize)
 }
 
@@ -119,6 +122,15 @@ pub fn offsets(every: usize, period_s: f64) -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slow_clock_has_a_bounded_number_of_points_for_a_sample() {
+        assert_eq!(points_and_samples(0.01), (4, 1));
+        assert_eq!(points_and_samples(0.16), (64, 1));
+        for period_s in [10.0, 1e6, 1e300, f64::INFINITY] {
+            assert_eq!(points_and_samples(period_s), (64, 1), "{period_s}");
+        }
+    }
 
     #[test]
     fn points_lie_evenly_about_the_middle_of_their_row() {

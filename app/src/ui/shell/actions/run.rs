@@ -16,6 +16,7 @@ use crate::ui::shell::app::App;
 use crate::ui::shell::dialogs;
 use crate::ui::shell::dispatch;
 use crate::ui::shell::dock::name_field::Naming;
+use crate::ui::shell::fit;
 use crate::ui::shell::message_list::Tone;
 use crate::ui::shell::workspace::Workspace;
 use crate::ui::train::lessons::practising;
@@ -43,7 +44,7 @@ impl Action {
             }
             Self::Larger => resize(ctx, SIZE_STEP),
             Self::Smaller => resize(ctx, -SIZE_STEP),
-            Self::UsualSize => ctx.set_zoom_factor(1.0),
+            Self::UsualSize => ctx.set_zoom_factor(fit::applied(ctx)),
             Self::FullScreen => {
                 let full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));

@@ -143,8 +143,11 @@ impl Plan {
         };
         let by_rate =
             |block: usize| rate_noise.map(|noise| (2.0 / block as f64).sqrt() * noise / (block as f64 * period_s));
+        // A block is no longer than a piece, however fast the clock.
+        let most = pieces.iter().map(|p| p.position.len()).max().unwrap_or(0);
         let shortest_quiet = |noise: &dyn Fn(usize) -> f64| {
-            (shortest..=longest).step_by(step).find(|b| noise(*b) < QUIET * acceleration).unwrap_or(longest)
+            let mut blocks = (shortest..=longest).step_by(step);
+            blocks.find(|b| noise(*b) < QUIET * acceleration).unwrap_or(longest).min(most)
         };
         let block = shortest_quiet(&by_place);
         let mut plan = Self {

@@ -1,6 +1,8 @@
 //! Use of each column of a file: decided from its header and the sidecar before a single number is read.
 
-use super::csv::stamps;
+mod clock_column;
+mod own_names;
+
 use super::errors::LogError;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
@@ -103,32 +105,6 @@ pub struct Plan {
     pub trial_keys: Vec<usize>,
     /// Sentences for the reader.
     pub notes: Vec<String>,
-}
-
-impl Plan {
-    /// Reads the time column as times of the calendar if its first cell is one. Without a time column and a rate, a column
-    /// with such a name and cell becomes it.
-    pub fn take_stamps(&mut self, headers: &[String], first: &[String], meta: &Meta) {
-        let stamp = |column: usize| first.get(column).and_then(|cell| stamps::parse(cell));
-        let is_off = meta.columns.get("t_s").is_some_and(String::is_empty) || meta.rate_hz.is_some();
-        let is_clock = |name: &str| {
-            ["time", "timestamp", "datetime", "date_time", "date", "zeit"]
-                .iter()
-                .any(|word| name.eq_ignore_ascii_case(word))
-        };
-        let is_named = |column: &usize| is_clock(&headers[*column]) && stamp(*column).is_some();
-        if self.time.is_none()
-            && !is_off
-            && let Some(column) = (0..headers.len()).find(is_named)
-        {
-            self.targets.retain(|target| target.column != column);
-            self.notes.push(format!("the column `{}` is taken as the time t_s", headers[column]));
-            self.time = Some(column);
-        }
-        if let Some((column, origin_ns)) = self.time.and_then(|column| Some((column, stamp(column)?))) {
-            self.uses[column] = Use::Stamp { origin_ns };
-        }
-    }
 }
 
 struct Planner<'a> {
@@ -291,86 +267,6 @@ impl Planner<'_> {
         }
     }
 
-    /// A column that the sidecar does not mention.
-    fn take_own_name(&mut self, column: usize) -> Result<(), LogError> {
-        let header = self.headers[column].clone();
-        match header.as_str() {
-            "trial" if self.plan.trial.is_none() => {
-                self.plan.trial = Some(column);
-                return Ok(());
-            }
-            "label" if self.plan.label.is_none() => {
-                self.plan.label = Some(column);
-                return Ok(());
-            }
-            _ => {}
-        }
-        if let Some((name, si, factor)) = self.program_name(column)? {
-            if let Some(why) = self.is_unwanted(&name) {
-                self.plan.notes.push(format!("the column `{header}` is not used: {why}"));
-                return Ok(());
-            }
-            return self.add(name, si, column, factor, true);
-        }
-        let (name, unit, factor) = match units::split(&header) {
-            Some((quantity, unit)) => (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor),
-            None => (header.clone(), header.rsplit_once('_').map_or(String::new(), |(_, u)| u.to_owned()), 1.0),
-        };
-        self.add(name, unit, column, factor, false)
-    }
-
-    /// Name of the program, SI unit, and factor of a column that is named after one of its quantities: `q_mm`, `fx1_lbf`,
-    /// `x [mm]`. An error for a unit that is not known.
-    fn program_name(&self, column: usize) -> Result<Option<(String, String, f64)>, LogError> {
-        let header = self.headers[column].as_str();
-        if let Some((quantity, unit)) = units::split(header).filter(|_| self.stated(column).is_empty())
-            && units::quantity_dimensions(quantity).is_some_and(|dimensions| dimensions.contains(&unit.dimension))
-        {
-            return Ok(Some((format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor)));
-        }
-        let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
-        let alone = std::iter::once(match self.stated(column) {
-            "" => written_units::in_header(header, &[]),
-            stated => (header, stated),
-        });
-        let mut found = parts.chain(alone).filter_map(|(q, text)| Some((q, text, units::quantity_dimensions(q)?)));
-        let word = header.split_once('_').filter(|(q, _)| ["force", "torque", "angle", "position"].contains(q));
-        let Some((quantity, text, dimensions)) = found.next() else {
-            let is_counts = word.filter(|(_, text)| written_units::parse(text, &[]) == Written::Counts);
-            return is_counts.map_or(Ok(None), |(quantity, unit)| Err(self.unknown_unit(header, unit, quantity)));
-        };
-        match written_units::parse(text, dimensions) {
-            Written::Known(dimension, factor) if dimensions.contains(&dimension) => {
-                let si = units::si(dimension);
-                Ok(Some((format!("{quantity}_{si}"), si.to_owned(), factor)))
-            }
-            // A mapped column measures the quantity.
-            _ if self.meta.columns.keys().any(|k| units::split(k).is_some_and(|(q, _)| q == quantity)) => Ok(None),
-            // A word of another kind: `x_min`, `q_desired`.
-            Written::Known(..) if units::split(header).is_some() => Ok(None),
-            _ => Err(self.unknown_unit(header, text, quantity)),
-        }
-    }
-
-    /// Reason why a column with a name of the program's is not used: what the sidecar maps comes first.
-    fn is_unwanted(&self, name: &str) -> Option<String> {
-        if self.mapped(name) {
-            return Some(format!("\"columns\" in the sidecar maps another one to `{name}`"));
-        }
-        if self.meta.columns.iter().any(|(key, source)| source.is_empty() && canonical(key) == name) {
-            return Some(format!("\"columns\" in the sidecar says that the file has no `{name}`"));
-        }
-        let mut motions =
-            self.meta.columns.iter().filter(|(_, source)| !source.is_empty()).map(|(key, _)| canonical(key));
-        let motions: Vec<String> = motions.by_ref().filter(|key| is_motion(key)).collect();
-        let first = motions.first()?;
-        let is_mentioned = self.meta.scale.contains_key(name) || self.meta.sign.contains_key(name);
-        let is_apart =
-            !is_mentioned && !motions.iter().any(|motion| forms(motion).iter().any(|form| forms(name).contains(form)));
-        (is_apart && !forms(name).is_empty())
-            .then(|| format!("\"columns\" in the sidecar asks for another motion, `{first}`"))
-    }
-
     fn mapped(&self, name: &str) -> bool {
         self.taken.contains_key(name) && self.meta.columns.keys().any(|k| canonical(k) == name)
             || name == "t_s" && self.plan.time.is_some()
@@ -403,33 +299,6 @@ impl Planner<'_> {
             self.plan.targets.push(Target { name, unit, column });
         }
         Ok(())
-    }
-
-    /// `time_s`, `Time [ms]`, `timestamp_ns`: the time, when nothing else claims to be it.
-    fn guess_time(&mut self) {
-        let is_off = self.meta.columns.get("t_s").is_some_and(String::is_empty);
-        if self.plan.time.is_some() || self.meta.rate_hz.is_some() || is_off {
-            return;
-        }
-        let clock = |column: usize| {
-            let header = &self.headers[column];
-            let name = match self.stated(column) {
-                "" => written_units::in_header(header, &[Dimension::Time]).0,
-                _ => header,
-            };
-            let is_time = ["time", "timestamp", "zeit", "x_value"].iter().any(|word| name.eq_ignore_ascii_case(word));
-            match written_units::parse(&self.unit_text(column, &[Dimension::Time]), &[Dimension::Time]) {
-                Written::Known(Dimension::Time, factor) if is_time => Some(factor),
-                _ => None,
-            }
-        };
-        let found = (0..self.plan.targets.len()).find_map(|at| Some((at, clock(self.plan.targets[at].column)?)));
-        if let Some((at, factor)) = found {
-            let target = self.plan.targets.remove(at);
-            self.plan.time = Some(target.column);
-            self.plan.uses[target.column] = Use::Number { required: true, factor };
-            self.plan.notes.push(format!("the column `{}` is taken as the time t_s", self.headers[target.column]));
-        }
     }
 
     fn take_select(&mut self) -> Result<(), LogError> {
@@ -490,34 +359,6 @@ fn canonical(name: &str) -> String {
         .map_or_else(|| name.to_owned(), |(quantity, unit): (&str, Unit)| format!("{quantity}_{}", unit.si))
 }
 
-/// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and
-/// the joints of one finger or two. None for others.
-fn forms(name: &str) -> &'static [u8] {
-    let Some((quantity, unit)) = units::split(name) else { return &[] };
-    let stem = quantity.trim_end_matches(['1', '2']);
-    let fingered = stem.len() < quantity.len();
-    match (stem, fingered) {
-        ("q", false) if unit.dimension == Dimension::Length => &[0],
-        ("q", false) => &[1],
-        ("dq", false) if unit.dimension == Dimension::Velocity => &[0],
-        ("dq" | "tau", false) => &[1],
-        ("f", false) => &[0],
-        ("x" | "y" | "z" | "vx" | "vy" | "vz", false) => &[2],
-        ("x" | "y" | "vx" | "vy", true) => &[3],
-        ("qb" | "qt" | "dqb" | "dqt", false) => &[4],
-        ("qb" | "qt" | "dqb" | "dqt", true) => &[5],
-        ("fx" | "fy" | "fz", false) => &[2, 4],
-        ("fx" | "fy", true) => &[3, 5],
-        _ => &[],
-    }
-}
-
-/// True for positions and angles.
-fn is_motion(name: &str) -> bool {
-    let unit = units::split(name).map(|(_, unit)| unit.dimension);
-    !forms(name).is_empty() && matches!(unit, Some(Dimension::Length | Dimension::Angle))
-}
-
 /// The first names of a list, for a sentence.
 fn list(names: &[String]) -> String {
     let shown: Vec<String> = names.iter().take(12).map(|n| format!("`{n}`")).collect();
@@ -525,71 +366,4 @@ fn list(names: &[String]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn headers(text: &str) -> Vec<String> {
-        text.split(',').map(str::to_owned).collect()
-    }
-
-    fn meta(json: &str) -> Meta {
-        serde_json::from_str(json).expect("a sidecar")
-    }
-
-    fn names(plan: &Plan) -> Vec<&str> {
-        plan.targets.iter().map(|t| t.name.as_str()).collect()
-    }
-
-    #[test]
-    fn a_mapped_column_brings_its_own_unit() {
-        let meta = meta(r#"{"columns":{"t_s":"time_ms","q_m":"position_mm","f_N":"pull"},"sign":{"f_N":-1}}"#);
-        let plan = plan(&headers("time_ms,position_mm,pull"), &[], &meta, Path::new("a")).expect("plans");
-        assert_eq!(plan.uses[0], Use::Number { required: true, factor: 1e-3 });
-        assert_eq!(plan.uses[1], Use::Number { required: true, factor: 1e-3 });
-        assert_eq!(plan.uses[2], Use::Number { required: true, factor: -1.0 });
-        assert_eq!((names(&plan), plan.time), (vec!["q_m", "f_N"], Some(0)));
-    }
-
-    #[test]
-    fn a_scale_turns_volts_into_newtons_and_without_it_they_are_refused() {
-        let columns = headers("t_s,q_m,command_V");
-        let scaled = meta(r#"{"columns":{"f_N":"command_V"},"scale":{"f_N":35.0}}"#);
-        assert_eq!(
-            plan(&columns, &[], &scaled, Path::new("a")).expect("plans").uses[2],
-            Use::Number { required: true, factor: 35.0 }
-        );
-        let error =
-            plan(&columns, &[], &meta(r#"{"columns":{"f_N":"command_V"}}"#), Path::new("a")).expect_err("volts");
-        assert!(error.to_string().contains("`command_V`") && error.to_string().contains("scale"), "{error}");
-    }
-
-    #[test]
-    fn unknown_units_of_known_quantities_are_named() {
-        for header in ["fx1_stone", "q_counts", "x", "x [foo]", "force_counts"] {
-            let error =
-                plan(&headers(&format!("t_s,{header}")), &[], &Meta::default(), Path::new("a")).expect_err(header);
-            assert!(error.to_string().contains(&format!("`{header}`")), "{error}");
-        }
-        // Extra channels may carry any unit.
-        let plan = plan(&headers("t_s,q_m,load_percent,oil_degC,q1_rad"), &[], &Meta::default(), Path::new("a"))
-            .expect("fine");
-        assert_eq!(names(&plan), ["q_m", "load_percent", "oil_degC", "q1_rad"]);
-    }
-
-    #[test]
-    fn half_a_vector_and_a_clash_are_refused() {
-        let no = |text: &str| plan(&headers(text), &[], &Meta::default(), Path::new("a")).expect_err(text).to_string();
-        assert!(no("t_s,x1_m,y1_m,x2_m,y2_m,fy1_N,fx2_N,fy2_N").contains("`fx1_N` is missing"));
-        assert!(no("t_s,x_m,x_mm,y_m").contains("two columns give `x_m`"));
-        assert!(no("t_s,q_m,q_m").contains("two columns give `q_m`"));
-    }
-
-    #[test]
-    fn select_matches_text_and_numbers() {
-        let one = Wanted::new(0, &Value::from("1"));
-        assert!(one.matches(b"1") && one.matches(b"1.0") && !one.matches(b"10") && !one.matches(b"x"));
-        assert!(Wanted::new(0, &Value::from(1)).matches(b"1.0"));
-        assert!(Wanted::new(0, &Value::from("00")).matches(b"00"));
-        assert!(Wanted::new(0, &Value::from("drawer")).matches(b"drawer"));
-    }
-}
+mod tests;

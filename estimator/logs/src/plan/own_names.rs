@@ -1,0 +1,116 @@
+//! Columns that the sidecar does not mention, by their own names.
+
+use super::{Planner, canonical};
+use crate::errors::LogError;
+use crate::units::{self, Dimension};
+use crate::written_units::{self, Written};
+
+impl Planner<'_> {
+    /// A column that the sidecar does not mention.
+    pub(super) fn take_own_name(&mut self, column: usize) -> Result<(), LogError> {
+        let header = self.headers[column].clone();
+        match header.as_str() {
+            "trial" if self.plan.trial.is_none() => {
+                self.plan.trial = Some(column);
+                return Ok(());
+            }
+            "label" if self.plan.label.is_none() => {
+                self.plan.label = Some(column);
+                return Ok(());
+            }
+            _ => {}
+        }
+        if let Some((name, si, factor)) = self.program_name(column)? {
+            if let Some(why) = self.is_unwanted(&name) {
+                self.plan.notes.push(format!("the column `{header}` is not used: {why}"));
+                return Ok(());
+            }
+            return self.add(name, si, column, factor, true);
+        }
+        let (name, unit, factor) = match units::split(&header) {
+            Some((quantity, unit)) => (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor),
+            None => (header.clone(), header.rsplit_once('_').map_or(String::new(), |(_, u)| u.to_owned()), 1.0),
+        };
+        self.add(name, unit, column, factor, false)
+    }
+
+    /// Name of the program, SI unit, and factor of a column that is named after one of its quantities: `q_mm`, `fx1_lbf`,
+    /// `x [mm]`. An error for a unit that is not known.
+    fn program_name(&self, column: usize) -> Result<Option<(String, String, f64)>, LogError> {
+        let header = self.headers[column].as_str();
+        if let Some((quantity, unit)) = units::split(header).filter(|_| self.stated(column).is_empty())
+            && units::quantity_dimensions(quantity).is_some_and(|dimensions| dimensions.contains(&unit.dimension))
+        {
+            return Ok(Some((format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor)));
+        }
+        let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
+        let alone = std::iter::once(match self.stated(column) {
+            "" => written_units::in_header(header, &[]),
+            stated => (header, stated),
+        });
+        let mut found = parts.chain(alone).filter_map(|(q, text)| Some((q, text, units::quantity_dimensions(q)?)));
+        let word = header.split_once('_').filter(|(q, _)| ["force", "torque", "angle", "position"].contains(q));
+        let Some((quantity, text, dimensions)) = found.next() else {
+            let is_counts = word.filter(|(_, text)| written_units::parse(text, &[]) == Written::Counts);
+            return is_counts.map_or(Ok(None), |(quantity, unit)| Err(self.unknown_unit(header, unit, quantity)));
+        };
+        match written_units::parse(text, dimensions) {
+            Written::Known(dimension, factor) if dimensions.contains(&dimension) => {
+                let si = units::si(dimension);
+                Ok(Some((format!("{quantity}_{si}"), si.to_owned(), factor)))
+            }
+            // A mapped column measures the quantity.
+            _ if self.meta.columns.keys().any(|k| units::split(k).is_some_and(|(q, _)| q == quantity)) => Ok(None),
+            // A word of another kind: `x_min`, `q_desired`.
+            Written::Known(..) if units::split(header).is_some() => Ok(None),
+            _ => Err(self.unknown_unit(header, text, quantity)),
+        }
+    }
+
+    /// Reason why a column with a name of the program's is not used: what the sidecar maps comes first.
+    fn is_unwanted(&self, name: &str) -> Option<String> {
+        if self.mapped(name) {
+            return Some(format!("\"columns\" in the sidecar maps another one to `{name}`"));
+        }
+        if self.meta.columns.iter().any(|(key, source)| source.is_empty() && canonical(key) == name) {
+            return Some(format!("\"columns\" in the sidecar says that the file has no `{name}`"));
+        }
+        let mut motions =
+            self.meta.columns.iter().filter(|(_, source)| !source.is_empty()).map(|(key, _)| canonical(key));
+        let motions: Vec<String> = motions.by_ref().filter(|key| is_motion(key)).collect();
+        let first = motions.first()?;
+        let is_mentioned = self.meta.scale.contains_key(name) || self.meta.sign.contains_key(name);
+        let is_apart =
+            !is_mentioned && !motions.iter().any(|motion| forms(motion).iter().any(|form| forms(name).contains(form)));
+        (is_apart && !forms(name).is_empty())
+            .then(|| format!("\"columns\" in the sidecar asks for another motion, `{first}`"))
+    }
+}
+
+/// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and
+/// the joints of one finger or two. None for others.
+fn forms(name: &str) -> &'static [u8] {
+    let Some((quantity, unit)) = units::split(name) else { return &[] };
+    let stem = quantity.trim_end_matches(['1', '2']);
+    let fingered = stem.len() < quantity.len();
+    match (stem, fingered) {
+        ("q", false) if unit.dimension == Dimension::Length => &[0],
+        ("q", false) => &[1],
+        ("dq", false) if unit.dimension == Dimension::Velocity => &[0],
+        ("dq" | "tau", false) => &[1],
+        ("f", false) => &[0],
+        ("x" | "y" | "z" | "vx" | "vy" | "vz", false) => &[2],
+        ("x" | "y" | "vx" | "vy", true) => &[3],
+        ("qb" | "qt" | "dqb" | "dqt", false) => &[4],
+        ("qb" | "qt" | "dqb" | "dqt", true) => &[5],
+        ("fx" | "fy" | "fz", false) => &[2, 4],
+        ("fx" | "fy", true) => &[3, 5],
+        _ => &[],
+    }
+}
+
+/// True for positions and angles.
+fn is_motion(name: &str) -> bool {
+    let unit = units::split(name).map(|(_, unit)| unit.dimension);
+    !forms(name).is_empty() && matches!(unit, Some(Dimension::Length | Dimension::Angle))
+}
