@@ -198,7 +198,7 @@ fn malformed_logs_answer_with_one_sentence() {
         ("nan.csv", "t_s,q_m,f_N\n0,1,2\n1,NaN,3\n", "q_m"),
         ("back.csv", "t_s,q_m,f_N\n0,1,2\n1,1,3\n0.5,1,3\n", "time"),
         ("ragged.csv", "t_s,q_m,f_N\n0,1,2\n1,1\n", "row"),
-        ("unit.csv", "t_s,q_m,f_lbf\n0,1,2\n1,1,2\n", "f_lbf"),
+        ("unit.csv", "t_s,q_m,f_stone\n0,1,2\n1,1,2\n", "f_stone"),
         ("clock.csv", "t_s,q_m,f_N\n0,1,2\n0,1,3\n", "time"),
     ];
     for (name, content, wanted) in cases {

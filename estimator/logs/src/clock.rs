@@ -106,7 +106,9 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
         return None;
     }
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| EPOCHS.contains(&(first * unit)))?;
-    time.iter_mut().for_each(|t| *t = (*t - first) * unit);
+    for t in time.iter_mut() {
+        *t = (*t - first) * unit;
+    }
     Some(format!("counts {name} since 1970, not seconds: its times are seconds since the first row"))
 }
 
@@ -120,7 +122,7 @@ pub fn on_one_clock(group: &mut Group, plan: &Plan, sparse: &[usize], headers: &
     let is_sparse = |column: &usize| sparse.contains(column) && group.columns[*column].iter().any(|v| is_missing(*v));
     // Nothing is made up between the samples of the slowest channel.
     let Some(base) = needed.iter().copied().min_by_key(|&column| rows_of(column).len()) else { return Vec::new() };
-    if !needed.iter().any(|column| is_sparse(column)) || time.windows(2).any(|w| w[1] <= w[0]) {
+    if !needed.iter().any(is_sparse) || time.windows(2).any(|w| w[1] <= w[0]) {
         return Vec::new();
     }
     let at = |rows: &[usize]| rows.iter().map(|&row| time[row]).collect::<Vec<f64>>();
@@ -146,7 +148,9 @@ pub fn on_one_clock(group: &mut Group, plan: &Plan, sparse: &[usize], headers: &
         columns[column] = to;
     }
     let base_name = &headers[base];
-    said.iter_mut().for_each(|text| *text = format!("the clock is that of `{base_name}`; {text}"));
+    for text in &mut said {
+        *text = format!("the clock is that of `{base_name}`; {text}");
+    }
     let labels: Labels =
         if group.labels.is_empty() { Labels::default() } else { group.labels.gathered(kept.iter().copied()) };
     *group = Group::new(columns, labels);

@@ -30,6 +30,8 @@ mod watch;
 mod write;
 pub mod written_units;
 
+pub use self::csv::stamps::parse as stamp_ns;
+pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
 pub use checks::{UNIT, repaired, warnings as quality};
@@ -97,6 +99,19 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
         Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
         Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
     }
+}
+
+/// The beginning of a table of text, for a mapping dialog; `None` for another format.
+pub fn text_table(path: &Path, most_bytes: u64) -> Result<Option<TextTable>, LogError> {
+    admissible_size(path)?;
+    let is_text = format::of(path)? == Format::Csv;
+    is_text.then(|| csv::text_table::read(path, most_bytes)).transpose()
+}
+
+/// Name of the program, in SI units, and factor that a column has by its own name, without a sidecar. `unit`: text of its
+/// unit outside the name. An error for a unit that is not known.
+pub fn program_name(header: &str, unit: &str) -> Result<Option<(String, f64)>, LogError> {
+    plan::program_name(header, unit)
 }
 
 /// Source of the facts about a log.

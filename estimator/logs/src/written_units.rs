@@ -282,6 +282,13 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
         return if is_item { (header, "") } else { (name.trim(), inside.trim()) };
     }
     let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
+    // A word behind *in* is meant as a unit, whether it is known or not.
+    if let Some((name, word)) = header.split_once(" in ")
+        && word.len() > 1
+        && !word.contains(' ')
+    {
+        return (name.trim(), word);
+    }
     let spoken = [" in ", " / ", "/", ", ", ",", "_in_"].iter().find_map(|mark| {
         let mut places = header.match_indices(mark);
         places.find_map(|(at, _)| (at > 0 && is_unit(&header[at + mark.len()..])).then_some((at, at + mark.len())))

@@ -2,11 +2,12 @@
 //! stay unchanged.
 
 use crate::ui::column_mapping::facts::{ColumnFacts, FileFacts};
-use crate::ui::column_mapping::file_units::{FileUnit, spelled};
+use crate::ui::column_mapping::file_units::FileUnit;
 use crate::ui::column_mapping::guess::{guess, unit_of};
 use crate::ui::column_mapping::names;
 use crate::ui::column_mapping::names::{Form, dimension};
-use estimator::log::units;
+use estimator::log::written_units::{self, Written};
+use estimator::log::{self, units};
 use haptics::recording::{Meta, Task};
 use serde_json::Value;
 
@@ -83,9 +84,7 @@ impl Row {
         if header == "trial" || header == "label" {
             return Some(header.clone());
         }
-        let (quantity, unit) = units::split(header)?;
-        let known = units::quantity_dimensions(quantity).is_some_and(|d| d.contains(&unit.dimension));
-        known.then(|| format!("{quantity}_{}", unit.si))
+        log::program_name(header, &self.facts.stated_unit).ok().flatten().map(|(name, _)| name)
     }
 
     /// True if the reader would reject the header as it is, or read it as a quantity of the program.
@@ -97,16 +96,30 @@ impl Row {
                 && (known(header) || header.match_indices('_').any(|(at, _)| known(&header[..at])))
     }
 
+    /// Factor of the unit that the file states, for a quantity of this dimension.
+    fn read_factor(&self, dimension: units::Dimension) -> Option<f64> {
+        match written_units::parse(self.facts.unit_text(dimension), &[dimension]) {
+            Written::Known(found, factor) if found == dimension => Some(factor),
+            _ => None,
+        }
+    }
+
     /// Key for `columns` and factor for `scale` (`None`: none needed).
     fn stated(&self, name: &str) -> (String, Option<f64>) {
         let (Some((quantity, si)), Some(unit)) = (units::split(name), self.unit) else {
             return (name.to_owned(), (self.scale != 1.0).then_some(self.scale));
         };
-        let header = &self.facts.header;
-        let tail_is_unit = header.rsplit_once('_').is_some_and(|(_, tail)| spelled(tail).is_some());
-        let scale = match (self.own_unit(), unit.symbol) {
-            (Some(own), _) if own.dimension == si.dimension => self.scale * unit.factor / own.factor,
-            (None, Some(symbol)) if !tail_is_unit => {
+        // The reader takes a unit that the file states, unless the key or a factor says otherwise.
+        let is_stated = !self.facts.unit_text(si.dimension).is_empty();
+        let own = self.own_unit().filter(|own| own.dimension == si.dimension && self.facts.stated_unit.is_empty());
+        let scale = match (own, unit.symbol) {
+            (Some(own), _) => self.scale * unit.factor / own.factor,
+            _ if self.scale == 1.0
+                && self.read_factor(si.dimension).is_some_and(|f| (f / unit.factor - 1.0).abs() < 1e-9) =>
+            {
+                1.0
+            }
+            (None, Some(symbol)) if !is_stated => {
                 return (format!("{quantity}_{symbol}"), (self.scale != 1.0).then_some(self.scale));
             }
             // The header's unit belongs to another quantity or is unknown to the reader: only a factor helps.
@@ -157,7 +170,8 @@ impl Draft {
             row.role = if own_name { Role::Extra } else { Role::Named(si.clone()) };
             (row.unit, row.unit_stated) = unit_of(&row.facts, Some(&si));
             let same = row.own_unit().filter(|own| split.is_some_and(|(_, unit)| unit.dimension == own.dimension));
-            if let Some((_, unit)) = split {
+            let has_factor = self.meta.scale.contains_key(&si) || self.meta.scale.contains_key(source);
+            if let Some((_, unit)) = split.filter(|(_, unit)| unit.factor != 1.0 || has_factor || !row.unit_stated) {
                 row.unit = FileUnit::of_symbol(same.map_or(unit.symbol, |own| own.symbol));
             }
             row.take_factors(&self.meta, &si);

@@ -3,10 +3,11 @@
 //! Text tables are inspected as text, so that columns of words can be trials, labels and selections. Other files go
 //! through the reader under neutral names.
 
-use estimator::log::{self, LogError, units};
+use estimator::log::units::{self, Dimension};
+use estimator::log::written_units::in_header;
+use estimator::log::{self, LogError, TextTable};
 use haptics::recording::Meta;
 use std::collections::BTreeSet;
-use std::io::Read as _;
 use std::path::Path;
 
 /// Number of bytes of a text table that are inspected.
@@ -23,6 +24,8 @@ const MOST_DISTINCT: usize = 60;
 pub struct ColumnFacts {
     /// Its name in the file.
     pub header: String,
+    /// Text of its unit outside the name; empty for none.
+    pub stated_unit: String,
     /// First values, as written in the file.
     pub first: Vec<String>,
     /// True if every cell is a number.
@@ -41,6 +44,13 @@ pub struct ColumnFacts {
     pub distinct: Option<Vec<String>>,
 }
 
+impl ColumnFacts {
+    /// Text of the column's unit, for a quantity of this dimension.
+    pub fn unit_text(&self, dimension: Dimension) -> &str {
+        if self.stated_unit.is_empty() { in_header(&self.header, &[dimension]).1 } else { &self.stated_unit }
+    }
+}
+
 /// Facts about an inspected file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FileFacts {
@@ -54,78 +64,30 @@ pub struct FileFacts {
 
 /// Inspects a file.
 pub fn look(path: &Path) -> Result<FileFacts, LogError> {
-    let headers = log::headers(path)?;
-    match text_rows(path, &headers)? {
-        Some((rows, whole_file)) => Ok(from_cells(&headers, &rows, whole_file)),
-        None => through_the_reader(path, &headers),
+    match log::text_table(path, LOOK_BYTES)? {
+        Some(table) => Ok(from_cells(&table)),
+        None => through_the_reader(path, &log::headers(path)?),
     }
 }
 
-type Rows = Vec<csv::StringRecord>;
-
-/// Rows of a text table; `None` if the file is not one.
-fn text_rows(path: &Path, headers: &[String]) -> Result<Option<(Rows, bool)>, LogError> {
-    let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(io)?;
-    let size = file.metadata().map_err(io)?.len();
-    file.take(LOOK_BYTES).read_to_end(&mut bytes).map_err(io)?;
-    let whole = size <= LOOK_BYTES;
-    if bytes.contains(&0) {
-        return Ok(None);
-    }
-    let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
-    let parsed = [b'\t', b';', b','].into_iter().find_map(|delimiter| {
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .flexible(true)
-            .from_reader(text);
-        // The reader has parsed the header; the delimiter that splits it the same way is the file's.
-        let same = reader.headers().is_ok_and(|found| found.iter().eq(headers.iter().map(String::as_str)));
-        same.then(|| {
-            let decimal_comma = delimiter != b',';
-            let rows = reader.records().map_while(Result::ok).map(|row| plain(row, decimal_comma));
-            rows.filter(|row| row.len() == headers.len()).collect::<Rows>()
-        })
-    });
-    Ok(parsed.map(|mut rows| {
-        if !whole {
-            rows.pop();
-        }
-        (rows, whole)
-    }))
-}
-
-/// Row whose numbers have a decimal point.
-fn plain(row: csv::StringRecord, decimal_comma: bool) -> csv::StringRecord {
-    if !decimal_comma || !row.iter().any(|cell| cell.contains(',')) {
-        return row;
-    }
-    let point = |cell: &str| {
-        let pointed = cell.replace(',', ".");
-        if pointed.parse::<f64>().is_ok() { pointed } else { cell.to_owned() }
+fn from_cells(table: &TextTable) -> FileFacts {
+    let rows = &table.rows;
+    let of = |(column, header): (usize, &String)| {
+        let cells = || rows.iter().filter_map(|row| row.get(column)).map(String::as_str);
+        // Times of the calendar count from the first row.
+        let origin_ns = cells().next().and_then(log::stamp_ns);
+        let seconds = |cell: &str| Some(1e-9 * log::stamp_ns(cell)?.saturating_sub(origin_ns?) as f64);
+        let numbers: Vec<f64> = cells().map_while(|cell| cell.parse().ok().or_else(|| seconds(cell))).collect();
+        let mut facts = if numbers.len() == rows.len() { of_numbers(&numbers) } else { ColumnFacts::default() };
+        facts.header.clone_from(header);
+        facts.stated_unit = table.units.get(column).cloned().unwrap_or_default();
+        facts.first = cells().take(SHOWN_CELLS).map(str::to_owned).collect();
+        facts.changes = cells().zip(cells().skip(1)).filter(|(a, b)| a != b).count();
+        facts.distinct = distinct(cells());
+        facts
     };
-    row.iter().map(point).collect()
-}
-
-fn from_cells(headers: &[String], rows: &Rows, whole_file: bool) -> FileFacts {
-    let columns = headers
-        .iter()
-        .enumerate()
-        .map(|(column, header)| {
-            let cells = || rows.iter().filter_map(|row| row.get(column));
-            let numbers: Vec<f64> = cells().map_while(|cell| cell.parse().ok()).collect();
-            let mut facts = if numbers.len() == rows.len() { of_numbers(&numbers) } else { ColumnFacts::default() };
-            facts.header.clone_from(header);
-            facts.first = cells().take(SHOWN_CELLS).map(str::to_owned).collect();
-            facts.changes = cells().zip(cells().skip(1)).filter(|(a, b)| a != b).count();
-            facts.distinct = distinct(cells());
-            facts
-        })
-        .collect();
-    FileFacts { columns, rows: rows.len(), whole_file }
+    let columns = table.headers.iter().enumerate().map(of).collect();
+    FileFacts { columns, rows: rows.len(), whole_file: table.is_whole }
 }
 
 fn distinct<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Vec<String>> {

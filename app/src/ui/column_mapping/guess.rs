@@ -2,7 +2,7 @@
 //! proposal.
 
 use crate::ui::column_mapping::facts::ColumnFacts;
-use crate::ui::column_mapping::file_units::{FileUnit, unit_in};
+use crate::ui::column_mapping::file_units::{FileUnit, spelled, spelled_for, unit_in};
 use crate::ui::column_mapping::names::{Form, find};
 use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read};
 use estimator::log::PAIRS;
@@ -52,10 +52,11 @@ pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
 
 /// Unit of a column in the dimension of `name`: as the header states it, otherwise inferred from the range.
 pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static FileUnit>, bool) {
-    let stated = unit_in(&facts.header).1;
     let Some(dimension) = name.and_then(crate::ui::column_mapping::names::dimension) else {
+        let stated = unit_in(&facts.header).1;
         return (stated, stated.is_some());
     };
+    let stated = spelled_for(facts.unit_text(dimension), &[dimension]);
     match stated.filter(|unit| unit.dimension == dimension) {
         Some(unit) => (Some(unit), true),
         None => (by_range(facts, dimension), false),
@@ -94,8 +95,7 @@ fn clock_unit(facts: &ColumnFacts, reach: f64) -> &'static FileUnit {
         () if facts.whole && step >= 1.0 => "ms",
         () => "s",
     };
-    crate::ui::column_mapping::file_units::spelled(shown)
-        .unwrap_or(&crate::ui::column_mapping::file_units::FILE_UNITS[11])
+    spelled(shown).unwrap_or(&crate::ui::column_mapping::file_units::FILE_UNITS[11])
 }
 
 fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Candidate> {
@@ -126,7 +126,7 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     if kind == Kind::Time {
         return facts.increasing.then(|| made("t_s".to_owned(), reading.points)).flatten();
     }
-    if stated_otherwise(&facts.header, kind) {
+    if stated_otherwise(facts, kind) {
         return None;
     }
     let name = name_of(kind, reading)?;
@@ -135,8 +135,9 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
 }
 
 /// True if the unit in the header measures something else.
-fn stated_otherwise(header: &str, kind: Kind) -> bool {
-    unit_in(header).1.is_some_and(|unit| !kind.dimensions().contains(&unit.dimension))
+fn stated_otherwise(facts: &ColumnFacts, kind: Kind) -> bool {
+    let outside = spelled(&facts.stated_unit);
+    outside.or_else(|| unit_in(&facts.header).1).is_some_and(|unit| !kind.dimensions().contains(&unit.dimension))
 }
 
 /// Program's name for the reading of a header.

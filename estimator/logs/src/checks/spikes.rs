@@ -14,8 +14,12 @@ const IMPOSSIBLE: f64 = 1e9;
 const SPIKE_STEPS: f64 = 5.0;
 /// Number of samples on either side that are compared.
 const AROUND: usize = 32;
-/// Number of other steps that may be as large: junk comes in clusters of up to seven spikes within 64 samples.
-const FORGIVEN: usize = 12;
+/// Number of other steps that may be as large, for another spike or two.
+const FORGIVEN: usize = 4;
+/// The same for far larger spikes, which come in clusters of up to seven within 64 samples, and on two neighbours.
+const FORGIVEN_IN_CLUSTERS: usize = 12;
+/// Least leap of a spike of a cluster, in multiples of the largest step that is not forgiven.
+const CLUSTER_STEPS: f64 = 20.0;
 /// Steps of less than this many times the mean of the steps around need no closer look.
 const WORTH_A_LOOK: f64 = 2.5;
 /// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
@@ -191,16 +195,17 @@ fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bo
     if there * back >= 0.0 || height < least || (values[end] - values[at - 1]).abs() > RETURN_SHARE * height {
         return false;
     }
-    let usual = usual_step(values, at);
+    let usual = usual_step(values, at, FORGIVEN);
     // A force out of nothing may be a touch; a position that stands still does not leap.
     let rest = usual > 0.0 || position || values[at - 1] != 0.0;
-    rest && height > SPIKE_STEPS * usual
+    let is_alone = run.len() == 1 && height > SPIKE_STEPS * usual;
+    rest && (is_alone || height > CLUSTER_STEPS * usual_step(values, at, FORGIVEN_IN_CLUSTERS))
 }
 
-/// Largest step around a sample, without the two steps at the sample itself and `FORGIVEN` others, but at least the
-/// smallest one that is a step.
-fn usual_step(values: &[f64], at: usize) -> f64 {
-    let (mut others, mut quantum) = ([0.0; FORGIVEN + 1], f64::INFINITY);
+/// Largest step around a sample, without the two steps at the sample itself and so many others, but at least the smallest
+/// one that is a step.
+fn usual_step(values: &[f64], at: usize, forgiven: usize) -> f64 {
+    let (mut others, mut quantum) = ([0.0; FORGIVEN_IN_CLUSTERS + 1], f64::INFINITY);
     let (first, end) = (at.saturating_sub(AROUND), (at + AROUND).min(values.len() - 1));
     for i in (first..end).filter(|&i| i + 1 != at && i != at) {
         let mut step = (values[i + 1] - values[i]).abs();
@@ -213,7 +218,7 @@ fn usual_step(values: &[f64], at: usize) -> f64 {
             }
         }
     }
-    if quantum.is_finite() { others[FORGIVEN].max(quantum) } else { 0.0 }
+    if quantum.is_finite() { others[forgiven].max(quantum) } else { 0.0 }
 }
 
 /// True when another channel leaps at the same sample too.
@@ -221,6 +226,6 @@ fn felt_elsewhere(recording: &Recording, channel: &Channel, at: usize) -> bool {
     recording.channels.iter().filter(|c| c.name != channel.name && units::is_program_name(&c.name)).any(|other| {
         let values = &other.values;
         let leap = (values[at] - values[at - 1]).abs().max((values[at + 1] - values[at]).abs());
-        leap > FELT_STEPS * usual_step(values, at)
+        leap > FELT_STEPS * usual_step(values, at, FORGIVEN)
     })
 }

@@ -49,18 +49,15 @@ impl Dialect {
     /// Ends the table before a summary behind its last row.
     pub(super) fn leave_summary_out(&mut self, path: &Path, text: Option<&[u8]>) -> std::io::Result<()> {
         let mut file = Vec::new();
-        let (tail, at) = match text {
-            Some(text) => {
-                let at = text.len().saturating_sub(TAIL_BYTES as usize);
-                (&text[at..], at as u64)
-            }
-            None => {
-                let mut source = File::open(path)?;
-                let at = source.seek(SeekFrom::End(0))?.saturating_sub(TAIL_BYTES);
-                source.seek(SeekFrom::Start(at))?;
-                source.take(TAIL_BYTES).read_to_end(&mut file)?;
-                (file.as_slice(), at)
-            }
+        let (tail, at) = if let Some(text) = text {
+            let at = text.len().saturating_sub(TAIL_BYTES as usize);
+            (&text[at..], at as u64)
+        } else {
+            let mut source = File::open(path)?;
+            let at = source.seek(SeekFrom::End(0))?.saturating_sub(TAIL_BYTES);
+            source.seek(SeekFrom::Start(at))?;
+            source.take(TAIL_BYTES).read_to_end(&mut file)?;
+            (file.as_slice(), at)
         };
         // From the first whole line on, and not before the rows.
         let whole = if at > 0 { memchr::memchr(b'\n', tail).map_or(tail.len(), |end| end + 1) } else { 0 };

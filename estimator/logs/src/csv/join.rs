@@ -75,7 +75,9 @@ impl<'a> Join<'a> {
         for (all, new) in
             [(&mut table.text_columns, &part.text_columns), (&mut table.gappy_columns, &part.gappy_columns)]
         {
-            new.iter().for_each(|column| all.extend((!all.contains(column)).then_some(*column)));
+            for column in new {
+                all.extend((!all.contains(column)).then_some(*column));
+            }
         }
         self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
         for (all, seen) in self.seen.iter_mut().zip(&part.seen) {

@@ -45,7 +45,8 @@ pub fn table(text: &[u8], path: &Path) -> Result<Vec<u8>, LogError> {
     for (row, line) in lines.take_while(|line| !line.trim().is_empty() && !line.contains(END)).enumerate() {
         let cells: Vec<&str> = line.split(delimiter).map(str::trim).collect();
         let time = if has_clock { None } else { step.map(|step| start + step * row as f64) };
-        made += &out.row(&cells, time.map(|t| format!("{t}").replace('.', if decimal == "," { "," } else { "." })));
+        made += &out
+            .row(&cells, time.map(|t| format!("{t}").replace('.', if decimal == "," { "," } else { "." })).as_deref());
     }
     Ok(made.into_bytes())
 }
@@ -89,9 +90,9 @@ impl Out<'_> {
         format!("{}\n{}\n", names.join("\t"), units.join("\t"))
     }
 
-    fn row(&self, cells: &[&str], time: Option<String>) -> String {
+    fn row(&self, cells: &[&str], time: Option<&str>) -> String {
         let cell = |&k: &usize| match &time {
-            Some(time) if (self.is_clock)(k) => time.clone(),
+            Some(time) if (self.is_clock)(k) => (*time).to_owned(),
             _ => cells.get(k).copied().unwrap_or_default().to_owned(),
         };
         self.kept.iter().map(cell).collect::<Vec<_>>().join("\t") + "\n"

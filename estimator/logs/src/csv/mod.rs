@@ -19,6 +19,7 @@ mod plain;
 mod simd;
 mod sniff;
 pub mod stamps;
+pub mod text_table;
 
 use super::errors::LogError;
 use super::plan::Plan;

@@ -68,10 +68,9 @@ impl<'a> Plain<'a> {
         if simd::is_at_home() {
             let comma = match self.notation.decimal {
                 Decimal::Point => false,
-                Decimal::Either => true,
                 // The vector instructions take every point for a decimal one.
                 Decimal::Comma if memchr::memchr(b'.', &bytes[at..]).is_some() => return (0, at),
-                Decimal::Comma => true,
+                Decimal::Either | Decimal::Comma => true,
             };
             // SAFETY: the processor has just been asked for every instruction that the function is compiled with.
             #[allow(unsafe_code, reason = "the only way to call a function that not every processor can run")]

@@ -41,6 +41,9 @@ impl Planner<'_> {
         }
         let clock = |column: usize| {
             let header = &self.headers[column];
+            if self.meta.columns.values().any(|source| source == header) {
+                return None;
+            }
             let name = match self.stated(column) {
                 "" => written_units::in_header(header, &[Dimension::Time]).0,
                 _ => header,

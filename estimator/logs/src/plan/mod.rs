@@ -144,6 +144,15 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
     Ok(planner.plan)
 }
 
+/// Name of the program and factor of a column by its own name, as it is read without a sidecar.
+pub fn program_name(header: &str, unit: &str) -> Result<Option<(String, f64)>, LogError> {
+    let (headers, units, meta) = ([header.to_owned()], [unit.to_owned()], Meta::default());
+    let plan = Plan { uses: vec![Use::Ignore], ..Plan::default() };
+    let planner =
+        Planner { headers: &headers, units: &units, meta: &meta, path: Path::new(""), plan, taken: HashMap::new() };
+    Ok(planner.program_name(0)?.map(|(name, _, factor)| (name, factor)))
+}
+
 impl Planner<'_> {
     fn missing(&self, column: &str, why: String) -> LogError {
         LogError::MissingColumn {
@@ -208,6 +217,7 @@ impl Planner<'_> {
             return self.add(name.to_owned(), String::new(), column, 1.0, true);
         };
         let factor = self.mapped_factor(name, target, column)?;
+        self.note_doubtful_unit(name, target, column);
         self.add(format!("{quantity}_{}", target.si), target.si.to_owned(), column, factor, true)
     }
 
@@ -239,6 +249,18 @@ impl Planner<'_> {
                     Err(self.unknown_unit(header, &text, name.split('_').next().unwrap_or(name)))
                 }
             },
+        }
+    }
+
+    /// Says that a word that may be a unit was taken for none.
+    fn note_doubtful_unit(&mut self, name: &str, target: Unit, column: usize) {
+        let header = self.headers[column].as_str();
+        let scaled = self.meta.scale.contains_key(name) || self.meta.scale.contains_key(header);
+        let word = header.rsplit_once(['_', ' ']).map_or("", |(_, word)| word);
+        let is_word = word.chars().count() > 1 && word.chars().all(char::is_alphabetic);
+        if is_word && !scaled && target.factor == 1.0 && self.unit_text(column, &[target.dimension]).is_empty() {
+            let note = format!("the name `{header}` states no known unit: its values are taken as {}", target.si);
+            self.plan.notes.push(note);
         }
     }
 

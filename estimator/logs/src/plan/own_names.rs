@@ -29,19 +29,31 @@ impl Planner<'_> {
         }
         let (name, unit, factor) = match units::split(&header) {
             Some((quantity, unit)) => (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor),
-            None => (header.clone(), header.rsplit_once('_').map_or(String::new(), |(_, u)| u.to_owned()), 1.0),
+            None => (header.clone(), self.shown_unit(column), 1.0),
         };
         self.add(name, unit, column, factor, false)
     }
 
+    /// Unit of an extra channel, as the file has it.
+    fn shown_unit(&self, column: usize) -> String {
+        let text = self.unit_text(column, &[]);
+        let suffix = self.headers[column].rsplit_once('_').map_or("", |(_, suffix)| suffix);
+        let is_word = suffix.chars().all(|c| c.is_alphanumeric() || c == '%');
+        if text.is_empty() && is_word { suffix.to_owned() } else { text.trim_matches(['(', ')', '[', ']']).to_owned() }
+    }
+
     /// Name of the program, SI unit, and factor of a column that is named after one of its quantities: `q_mm`, `fx1_lbf`,
     /// `x [mm]`. An error for a unit that is not known.
-    fn program_name(&self, column: usize) -> Result<Option<(String, String, f64)>, LogError> {
+    pub(super) fn program_name(&self, column: usize) -> Result<Option<(String, String, f64)>, LogError> {
         let header = self.headers[column].as_str();
         if let Some((quantity, unit)) = units::split(header).filter(|_| self.stated(column).is_empty())
             && units::quantity_dimensions(quantity).is_some_and(|dimensions| dimensions.contains(&unit.dimension))
         {
             return Ok(Some((format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor)));
+        }
+        // A name of somebody's own with a unit: `fx_wrist_sensor_N`.
+        if self.stated(column).is_empty() && units::split(header).is_some() {
+            return Ok(None);
         }
         let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
         let alone = std::iter::once(match self.stated(column) {
@@ -61,8 +73,6 @@ impl Planner<'_> {
             }
             // A mapped column measures the quantity.
             _ if self.meta.columns.keys().any(|k| units::split(k).is_some_and(|(q, _)| q == quantity)) => Ok(None),
-            // A word of another kind: `x_min`, `q_desired`.
-            Written::Known(..) if units::split(header).is_some() => Ok(None),
             _ => Err(self.unknown_unit(header, text, quantity)),
         }
     }
@@ -95,9 +105,8 @@ fn forms(name: &str) -> &'static [u8] {
     let fingered = stem.len() < quantity.len();
     match (stem, fingered) {
         ("q", false) if unit.dimension == Dimension::Length => &[0],
-        ("q", false) => &[1],
         ("dq", false) if unit.dimension == Dimension::Velocity => &[0],
-        ("dq" | "tau", false) => &[1],
+        ("q" | "dq" | "tau", false) => &[1],
         ("f", false) => &[0],
         ("x" | "y" | "z" | "vx" | "vy" | "vz", false) => &[2],
         ("x" | "y" | "vx" | "vy", true) => &[3],

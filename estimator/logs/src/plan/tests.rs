@@ -44,8 +44,9 @@ fn unknown_units_of_known_quantities_are_named() {
     }
     // Extra channels may carry any unit.
     let plan =
-        plan(&headers("t_s,q_m,load_percent,oil_degC,q1_rad"), &[], &Meta::default(), Path::new("a")).expect("fine");
-    assert_eq!(names(&plan), ["q_m", "load_percent", "oil_degC", "q1_rad"]);
+        plan(&headers("t_s,q_m,load_percent,oil_degC,q1_rad,fx_wrist_sensor_N"), &[], &Meta::default(), Path::new("a"))
+            .expect("fine");
+    assert_eq!(names(&plan), ["q_m", "load_percent", "oil_degC", "q1_rad", "fx_wrist_sensor_N"]);
 }
 
 #[test]

@@ -13,6 +13,9 @@ pub const AS_RECORDED: &str = "as_recorded";
 /// Kinds of the repairs.
 pub const KINDS: [&str; 4] = ["burst-stamps", "held-samples", "wrapped-angle", "spikes"];
 
+/// A repair, with the warnings about it.
+type Step = fn(&mut Recording) -> Vec<Warning>;
+
 /// Repairs a recording; the warnings tell what was done.
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
@@ -20,7 +23,7 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
         let listed = recording.meta.other.get(AS_RECORDED).and_then(|list| list.as_array());
         !listed.is_some_and(|list| list.iter().any(|entry| entry == kind))
     };
-    let steps: [(&str, fn(&mut Recording) -> Vec<Warning>); 3] = [
+    let steps: [(&str, Step); 3] = [
         (KINDS[0], |recording| bursts::spread(recording).into_iter().collect()),
         (KINDS[1], |recording| held_samples::take_out(recording).into_iter().collect()),
         (KINDS[2], wrapped_angles::unwrap),

@@ -8,9 +8,6 @@ use haptics::Vec2;
 /// Approximate rate of the points, Hz: a hand's motion is nearly linear between them.
 /// Choice: halved, 3 of 63 answers change; doubled, 1 of 63 answers change.
 pub const FINE_HZ: f64 = 400.0;
-/// Most points for one sample. Without it, a clock with a wrong unit would ask for memory by its seconds.
-/// Derived: recordings of 6.25 Hz and more have points at [`FINE_HZ`].
-const MOST_POINTS: f64 = 64.0;
 /// Averaging time of velocities, s.
 /// Choice: halved, 1 of 48 answers change; doubled, 1 of 48 answers change.
 const CALM_S: f64 = 0.012;
@@ -71,7 +68,8 @@ pub fn calmed_line(values: &[f64], period_s: f64) -> (Vec<f64>, f64) {
 
 /// Number of points for one sample, and number of samples for one point, at this time step. One of them is 1.
 pub fn points_and_samples(period_s: f64) -> (usize, usize) {
-    let fill = (FINE_HZ * period_s).round().clamp(1.0, MOST_POINTS) as usize;
+    // With more than 64 points for a sample, a clock with a wrong unit would ask for memory by its seconds.
+    let fill = (FINE_HZ * period_s).round().clamp(1.0, 64.0) as usize;
     (fill, (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize)
 }
 

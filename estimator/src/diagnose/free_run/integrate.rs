@@ -10,9 +10,6 @@ const INTEGRATION_STEP_S: f64 = 1e-3;
 /// Longest integration step of a coordinate that a hand holds, s.
 /// Choice: halved or doubled, none of 48 answers changes.
 const HELD_STEP_S: f64 = 2.5e-4;
-/// Most integration steps between two rows: a clock with a wrong unit would ask for work by its seconds.
-/// Derived: four seconds of the shorter step; a window is shorter.
-const MOST_STEPS: f64 = 4.0 / HELD_STEP_S;
 /// Mass of the fingertips that move a handle without inertia, kg.
 /// Derived: with the damping of the hand (9 N s/m) its time constant is 0.56 ms, over twice the step of 0.25 ms.
 const TIP_KG: f64 = 5e-3;
@@ -76,7 +73,8 @@ pub fn run(moments: &[Moment], side: Side<'_>) -> Errors {
         let (from, to) = (&pair[0].motion, &pair[1].motion);
         let span_s = (to.time_s - from.time_s).max(1e-9);
         let step_s = if driven { INTEGRATION_STEP_S } else { HELD_STEP_S };
-        let parts = (span_s / step_s).ceil().clamp(1.0, MOST_STEPS);
+        // A window is shorter than four seconds. A clock with a wrong unit would ask for work by its seconds.
+        let parts = (span_s.min(4.0) / step_s).ceil().max(1.0);
         let mut held_n = 0.0;
         for part in 0..parts as usize {
             let x = (part as f64 + 0.5) / parts;

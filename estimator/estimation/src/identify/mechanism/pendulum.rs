@@ -15,9 +15,6 @@ const MAX_PIECES: usize = 6;
 /// Inner step as a share of the inverse of the fastest rate of change: phase errors stay below 1e-6.
 /// Choice: no case of the ablation reads it.
 const INNER_STEP_SHARE: f64 = 0.005;
-/// Most inner steps between two samples: a clock with a wrong unit would ask for work by its seconds.
-/// Derived: 50 times the inverse of the fastest rate of change; a swing has at least 10 samples.
-const MOST_STEPS: f64 = 50.0 / INNER_STEP_SHARE;
 /// Largest number of Gauss-Newton steps.
 /// Choice: no case of the ablation reads it.
 const ITERATIONS: usize = 25;
@@ -129,7 +126,8 @@ fn simulate(terms: &[Term], ratios: &[f64], state: &[f64], run: &Run) -> Vec<f64
     run.time_s
         .iter()
         .map(|&until| {
-            let steps = ((until - time) / largest_step).ceil().clamp(0.0, MOST_STEPS);
+            // A swing has at least ten samples. A clock with a wrong unit would ask for work by its seconds.
+            let steps = ((until - time) / largest_step).ceil().clamp(0.0, 50.0 / INNER_STEP_SHARE);
             for _ in 0..steps as usize {
                 (motion.position, motion.velocity) =
                     step_coordinate(&effects, &motion, 0.0, 0.0, (until - time) / steps);
