@@ -363,7 +363,7 @@ fn nobody_is_told_to_sort_or_correct_a_container() {
         for json in [r#"{"columns": {"t_s": "clock_s"}}"#, r#"{"columns": {"f_N": "label"}}"#] {
             let meta: Meta = serde_json::from_str(json).expect("a sidecar");
             let text = load_with_meta(&path, &meta).expect_err("refused").to_string();
-            let edits = text.contains("sort the rows") || text.contains("correct that cell");
+            let edits = text.contains("remove the repeated row") || text.contains("correct that cell");
             assert!(edits == (*format == "csv") && text.contains("row "), "{format}: {text}");
         }
     }
