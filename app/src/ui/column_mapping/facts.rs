@@ -45,6 +45,12 @@ pub struct ColumnFacts {
 }
 
 impl ColumnFacts {
+    /// The name with the unit that stands outside it.
+    pub fn with_unit(&self) -> String {
+        let unit = self.stated_unit.trim_matches(['(', ')', '[', ']']);
+        if unit.is_empty() { self.header.clone() } else { format!("{} [{unit}]", self.header) }
+    }
+
     /// Text of the column's unit, for a quantity of this dimension.
     pub fn unit_text(&self, dimension: Dimension) -> &str {
         if self.stated_unit.is_empty() { in_header(&self.header, &[dimension]).1 } else { &self.stated_unit }

@@ -33,7 +33,7 @@ struct Candidate {
 
 /// Proposes a name and a unit for every column.
 pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
-    let readings: Vec<Reading> = columns.iter().map(|c| read(&c.header)).collect();
+    let readings: Vec<Reading> = columns.iter().map(|c| read(&c.with_unit())).collect();
     let mut candidates: Vec<Candidate> =
         columns.iter().enumerate().filter_map(|(at, facts)| candidate(at, facts, &readings[at])).collect();
     prefer_pairs(&mut candidates);

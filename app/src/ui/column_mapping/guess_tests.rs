@@ -161,3 +161,12 @@ fn a_clock_that_stands_or_goes_back_is_not_the_time() {
     facts.increasing = false;
     assert_eq!(guess(&[facts])[0].name, None);
 }
+
+#[test]
+fn a_row_of_units_tells_what_a_name_does_not() {
+    let with = |name: &str, unit: &str| ColumnFacts { stated_unit: unit.to_owned(), ..column(name) };
+    let columns = [with("Time|0|9", "(sec)"), with("Extension|-99|90", "(mm)"), with("Load|-7|7", "(N)")];
+    let found: Vec<_> = guess(&columns).into_iter().map(|g| (g.name, g.unit.map(|u| u.shown))).collect();
+    let expected = [("t_s", "s"), ("q_m", "mm"), ("f_N", "N")];
+    assert_eq!(found, expected.map(|(name, unit)| (Some(name.to_owned()), Some(unit))));
+}
