@@ -28,6 +28,14 @@ impl Cells {
         }
     }
 
+    /// Adds rows without a value until there are so many.
+    pub fn pad(&mut self, rows: usize) {
+        match self {
+            Self::Numbers(values) => values.resize(rows.max(values.len()), MISSING),
+            Self::Text(texts) => (texts.len()..rows).for_each(|_| texts.push("")),
+        }
+    }
+
     /// Bytes held, about.
     pub fn bytes(&self) -> usize {
         match self {

@@ -1,6 +1,6 @@
 //! The messages of one topic as columns: one row a message, one column a field.
 
-use crate::raw::{Cells, MISSING, is_missing};
+use crate::raw::{Cells, is_missing};
 use haptics::recording::Labels;
 use std::collections::HashMap;
 
@@ -46,7 +46,7 @@ impl Topic {
         let rows = self.log_ns.len();
         for column in &mut self.columns {
             if column.len() < rows {
-                pad(column, rows);
+                column.pad(rows);
             }
         }
         self.cells += self.columns.len() + 1;
@@ -76,7 +76,7 @@ impl Topic {
             return Err(format!("it has more than {MAX_FIELDS} different fields"));
         }
         let mut cells = if text { Cells::Text(Labels::default()) } else { Cells::Numbers(Vec::new()) };
-        pad(&mut cells, self.log_ns.len().saturating_sub(1));
+        cells.pad(self.log_ns.len().saturating_sub(1));
         self.cells += self.log_ns.len();
         self.fields.push(field.to_owned());
         self.columns.push(cells);
@@ -177,17 +177,6 @@ fn has_value(cells: &Cells) -> bool {
     match cells {
         Cells::Numbers(values) => values.iter().any(|&v| !is_missing(v)),
         Cells::Text(texts) => texts.iter().any(|text| !text.is_empty()),
-    }
-}
-
-fn pad(cells: &mut Cells, rows: usize) {
-    match cells {
-        Cells::Numbers(values) => values.resize(rows.max(values.len()), MISSING),
-        Cells::Text(texts) => {
-            for _ in texts.len()..rows {
-                texts.push("");
-            }
-        }
     }
 }
 

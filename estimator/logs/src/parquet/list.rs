@@ -106,7 +106,7 @@ impl Items<'_> {
         }
         let rows = self.list.rows;
         let cells = &mut self.list.items[place];
-        pad(cells, rows);
+        cells.pad(rows);
         Ok(Some(cells))
     }
 
@@ -147,7 +147,7 @@ impl Items<'_> {
             batch = (2 * batch).min(BATCH / self.list.lengths.map_or(1, |(_, most)| most).max(1)).max(1);
         }
         let rows = self.list.rows;
-        self.list.items.iter_mut().for_each(|cells| pad(cells, rows));
+        self.list.items.iter_mut().for_each(|cells| cells.pad(rows));
         Ok(())
     }
 }
@@ -171,16 +171,5 @@ impl Sink for Items<'_> {
             to.push(value.map_or(Ok(""), |v| v.as_utf8())?);
             Ok(())
         })
-    }
-}
-
-fn pad(cells: &mut Cells, rows: usize) {
-    match cells {
-        Cells::Numbers(values) => values.resize(rows.max(values.len()), MISSING),
-        Cells::Text(texts) => {
-            for _ in texts.len()..rows {
-                texts.push("");
-            }
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! What the X server says of itself, asked only after no window opened on it.
+//! Extensions and depth of the X server. It is asked only after no window opened on it.
 
 use x11rb::connection::{Connection as _, RequestConnection as _};
 use x11rb::errors::ConnectError;
