@@ -6,6 +6,7 @@ use crate::cli;
 use crate::cli::device::report;
 use estimator::diagnose::Diagnosis;
 use estimator::segment::Segmentation;
+use haptics::recording::Meta;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};
@@ -32,6 +33,7 @@ pub fn all() -> Vec<(&'static str, Value)> {
         ("report", of::<cli::report::Said>("report")),
         ("score", of::<cli::score::Said>("score")),
         ("info", one_or_several::<cli::info::Said>("info", true)),
+        ("info-suggest", of::<cli::suggest::Said>("info --suggest")),
         ("segment", one_or_several::<Segmentation>("segment", false)),
         ("fit", of::<cli::fit::Said<'_>>("fit")),
         ("diagnose", of::<Diagnosis>("diagnose")),
@@ -41,7 +43,14 @@ pub fn all() -> Vec<(&'static str, Value)> {
         ("export", of::<cli::export::Said>("export")),
         ("record", of::<cli::record::Said>("record")),
         ("screenshot", of::<cli::screenshot::Said>("screenshot")),
+        ("sidecar", sidecar()),
     ]
+}
+
+/// Schema of the sidecar as it is read, for editors.
+fn sidecar() -> Value {
+    let read = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Meta>().to_value();
+    titled(read, "sidecar <stem>.meta.json")
 }
 
 /// As things are printed, not as they are read: what is always there is required.

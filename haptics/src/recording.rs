@@ -1,13 +1,13 @@
 //! One recording: a table of samples and the facts that travel with it (`spec/logs.md`).
 
 mod labels;
+mod sidecar;
 
 pub use labels::Labels;
+pub use sidecar::{HandMeta, Meta, Prior, Segment, TimeWindow, VideoMeta};
 
-use crate::hand::Hand;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// What a recording is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
@@ -50,125 +50,6 @@ impl Task {
     }
 }
 
-/// Geometry of the hand that made the recording.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct HandMeta {
-    /// Link length, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub link_m: Option<f64>,
-    /// Base of the only finger, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base_m: Option<[f64; 2]>,
-    /// Base of the left finger, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base1_m: Option<[f64; 2]>,
-    /// Base of the right finger, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub base2_m: Option<[f64; 2]>,
-}
-
-/// The sidecar `<stem>.meta.json`. Every key is optional.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Meta {
-    /// Task that was performed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub task: Option<Task>,
-    /// Sampling rate where the table has no time column, Hz.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rate_hz: Option<f64>,
-    /// Gravity, m/s²; 9.81 when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gravity_m_s2: Option<f64>,
-    /// The axis that points up: `y` (default), `-y`, `z`, … or `none` for a horizontal plane.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub up: Option<String>,
-    /// Hand geometry.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hand: Option<HandMeta>,
-    /// The program's column name → the file's.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub columns: BTreeMap<String, String>,
-    /// Factor a column is multiplied by (after its unit is converted).
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub scale: BTreeMap<String, f64>,
-    /// Keep only rows whose column (program's or file's name) has this value.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub select: BTreeMap<String, serde_json::Value>,
-    /// +1 or −1 per column.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub sign: BTreeMap<String, f64>,
-    /// Parameters that are known and not to be estimated.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub known: BTreeMap<String, f64>,
-    /// Prior of a parameter before the recording. Names are those of a fit (`weight_N`), or with the object in front
-    /// (`block-2.weight_N`).
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub prior: BTreeMap<String, Prior>,
-    /// Least and largest value that a parameter can have, named as in `prior`; `null` leaves a side open.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub bounds: BTreeMap<String, [Option<f64>; 2]>,
-    /// States set by a person, with their times: in the place of the result of a segmentation.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub segments: Vec<Segment>,
-    /// The video that was taken meanwhile.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub video: Option<VideoMeta>,
-    /// Keys this version does not know: kept, so that saving loses nothing.
-    #[serde(flatten)]
-    pub other: BTreeMap<String, serde_json::Value>,
-}
-
-/// A video of the hand.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct VideoMeta {
-    /// The file, from the log's folder.
-    pub file: std::path::PathBuf,
-    /// Time of the recording at which its first picture was taken, s.
-    #[serde(default)]
-    pub begins_at_s: f64,
-}
-
-/// Segment of a recording in one state, set by a person.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Segment {
-    /// Start, s (sample number when the log is clockless).
-    pub t0: f64,
-    /// End, s.
-    pub t1: f64,
-    /// Name of the state, e.g. `hold-above-ground`.
-    pub state: String,
-    /// The subtask that it belongs to, e.g. `carry-block-1`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub subtask: Option<String>,
-}
-
-/// A normal distribution, in the parameter's unit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Prior {
-    /// Most likely value.
-    pub mean: f64,
-    /// Standard deviation, above zero.
-    pub std: f64,
-}
-
-impl Meta {
-    /// Gravity, m/s².
-    pub fn gravity(&self) -> f64 {
-        self.gravity_m_s2.unwrap_or(9.81)
-    }
-
-    /// The hand that made the recording: the default one, with the sidecar's statements put in.
-    pub fn hand(&self) -> Hand {
-        let default = Hand::default();
-        let Some(meta) = &self.hand else { return default };
-        let base = |given: Option<[f64; 2]>, index: usize| {
-            given.map_or(default.fingers[index].base_m, |[x, y]| crate::Vec2::new(x, y))
-        };
-        let link_m = meta.link_m.unwrap_or(default.fingers[0].link_m);
-        Hand::new(link_m, base(meta.base1_m.or(meta.base_m), 0), base(meta.base2_m, 1))
-    }
-}
-
 /// One column of samples in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
@@ -190,7 +71,7 @@ pub struct Span {
 }
 
 /// Something the reader should know before trusting a number.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct Warning {
     /// Stable short name: `gap`, `stuck-channel`, `copied-channel`, `saturation`, `clock-jump`, `no-clock`, …
     pub kind: String,
@@ -202,7 +83,13 @@ pub struct Warning {
     pub spans: Vec<Span>,
     /// One sentence: what, where, what to do.
     pub text: String,
+    /// Entries of the sidecar that would settle the doubt.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub suggested: Option<Suggested>,
 }
+
+/// Entries of a sidecar: an object as in the sidecar itself, with null for a value that only the user knows.
+pub type Suggested = serde_json::Map<String, serde_json::Value>;
 
 /// One recording: equal-length channels, in SI units, with its sidecar.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -32,6 +32,43 @@ fn the_schemas_are_those_of_the_types() {
     assert_eq!(files, schemas().len(), "every file in docs/schemas has a command");
 }
 
+/// The table of the sidecar's keys: key, meaning, value when absent, example.
+fn keys_of_the_sidecar(schema: &Value) -> String {
+    let mut table = "| key | meaning | when absent | example |\n|---|---|---|---|\n".to_owned();
+    let properties = schema["properties"].as_object().expect("keys");
+    for (key, about) in properties {
+        let line = |text: &Value| text.as_str().expect("a text").replace('\n', " ");
+        let example = json!({ key: about["examples"][0] }).to_string();
+        let inside = example.trim_start_matches('{').strip_suffix('}').expect("an object");
+        let (meaning, absent) = (line(&about["description"]), line(&about["x-absent"]));
+        writeln!(table, "| `{key}` | {meaning} | {absent} | `{inside}` |").expect("memory can be written");
+    }
+    table
+}
+
+#[test]
+fn the_page_of_the_sidecar_is_that_of_its_type() {
+    let path = workspace().join("docs/use/own-logs.md");
+    let page = std::fs::read_to_string(&path).expect("the page");
+    let (start, end) = ("<!-- keys -->\n", "<!-- end of keys -->");
+    let (before, rest) = page.split_once(start).expect("a start");
+    let (_, after) = rest.split_once(end).expect("an end");
+    let made = format!("{before}{start}{}{end}{after}", keys_of_the_sidecar(&schemas()["sidecar"]));
+    if std::env::var_os("TOUCHSTONE_WRITE_SCHEMAS").is_some() {
+        std::fs::write(&path, &made).expect("docs can be written");
+    }
+    assert!(made == page || std::env::var_os("TOUCHSTONE_WRITE_SCHEMAS").is_some(), "write {} anew", path.display());
+    // Every example is read.
+    let folder = tempfile::tempdir().expect("a folder");
+    for (key, about) in schemas()["sidecar"]["properties"].as_object().expect("keys") {
+        let sidecar = json!({ key: about["examples"][0] }).to_string();
+        let read = estimator::log::parse_sidecar(&sidecar, &folder.path().join("a.meta.json"));
+        assert!(read.is_ok_and(|meta| meta.other.is_empty()), "{sidecar}");
+        let wrong = faults(&schemas()["sidecar"], &serde_json::from_str(&sidecar).expect("JSON"));
+        assert!(wrong.is_empty(), "{sidecar}: {wrong:?}");
+    }
+}
+
 /// Runs a command with `--json` and holds what it prints against its schema.
 fn holds(name: &str, arguments: &[&str]) -> Value {
     let output = Command::new(touchstone()).args(arguments).arg("--json").output().expect("the program starts");
@@ -129,6 +166,9 @@ fn what_the_commands_print_is_what_the_schemas_say() {
     let file = |name: &str| folder.path().join(name).display().to_string();
     let (stack, crank) = (asset("stack.csv"), asset("crank.csv"));
     let trials = two_trials(folder.path());
+    let foreign = folder.path().join("foreign.csv");
+    std::fs::write(&foreign, "time_ms,Extension [mm],Load (stone)\n0,1,2\n1,2,3\n").expect("written");
+    holds("info-suggest", &["info", "--suggest", text(&foreign)]);
     for log in [stack.as_str(), crank.as_str(), text(&trials)] {
         holds("info", &["info", log]);
         holds("fit", &["fit", log, "--out", &file("world.json")]);

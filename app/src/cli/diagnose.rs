@@ -151,12 +151,7 @@ impl Diagnose {
     }
 
     fn one(&self, log: &Path, options: &Options) -> anyhow::Result<serde_json::Value> {
-        let mut recordings = estimator::log::load(log, self.source.meta.as_deref())?;
-        if let Some(task) = self.source.task.as_deref().map(Chosen::find).transpose()? {
-            for recording in &mut recordings {
-                task.give_to(recording);
-            }
-        }
+        let recordings = self.source.load_quietly(log)?;
         Ok(serde_json::to_value(diagnose(&recordings, options)?.diagnosis)?)
     }
 
@@ -172,6 +167,7 @@ impl Diagnose {
             }
         };
         add("task", self.source.task.clone());
+        add("part", self.source.part.shown());
         add("baseline", options.baseline.clone());
         add("world", options.world.as_ref().map(|world| crate::report::source::sha256(world.to_json().as_bytes())));
         asked

@@ -18,10 +18,16 @@ pub struct Info {
     log: PathBuf,
     #[command(flatten)]
     source: LogArgs,
+    /// Write the shortest sidecar with which the log is read without doubts; values that only you know are null in it
+    #[arg(long)]
+    suggest: bool,
 }
 
 impl Info {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
+        if self.suggest {
+            return super::suggest::run(&self.log, self.source.meta.as_deref());
+        }
         let recordings = self.source.load(&self.log)?;
         let text = recordings.iter().map(describe).collect::<Vec<_>>().join("\n");
         let mut all: Vec<Value> = recordings.iter().map(to_json).collect::<serde_json::Result<_>>()?;

@@ -14,6 +14,7 @@ pub(crate) mod gallery;
 pub(crate) mod history;
 pub(crate) mod info;
 pub(crate) mod lessons;
+pub(crate) mod part;
 mod progress;
 pub(crate) mod record;
 pub(crate) mod report;
@@ -22,12 +23,13 @@ pub(crate) mod screenshot;
 mod segment;
 pub(crate) mod simulate;
 mod stated;
+pub(crate) mod suggest;
 pub mod table;
 
 use crate::tasks::Chosen;
 use crate::ui::shell::run;
 use clap::{Args, Parser, Subcommand};
-use estimator::log::{LogError, Watch};
+use estimator::log::{LogError, Part, Watch};
 use haptics::device::haply::farewell;
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
@@ -120,6 +122,8 @@ struct LogArgs {
     /// told from the sidecar and the columns when not given
     #[arg(long)]
     task: Option<String>,
+    #[command(flatten)]
+    part: part::PartArgs,
 }
 
 /// The passivity controller, where a command runs a servo.
@@ -152,18 +156,28 @@ fn find_task(text: &str) -> Result<Chosen, String> {
 }
 
 /// Reads a log, with a progress message if it is long.
-fn read(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
+fn read(path: &Path, meta: Option<&Path>, part: &Part) -> Result<Vec<Recording>, LogError> {
     let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
     progress::during(&format!("reading {name}"), |share| {
         let never = AtomicBool::new(false);
         let watch = Watch { progress: &|done| share.tell(done), cancelled: &never, preview: None };
-        estimator::log::load_watched(path, meta, &watch)
+        estimator::log::load_part(path, meta, part, &watch)
     })
 }
 
 impl LogArgs {
     fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
-        let mut recordings = read(path, self.meta.as_deref())?;
+        let recordings = read(path, self.meta.as_deref(), &self.part.stated()?)?;
+        self.with_task(recordings)
+    }
+
+    /// [`Self::load`] without a progress message.
+    fn load_quietly(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
+        let part = self.part.stated()?;
+        self.with_task(estimator::log::load_part(path, self.meta.as_deref(), &part, &Watch::none())?)
+    }
+
+    fn with_task(&self, mut recordings: Vec<Recording>) -> anyhow::Result<Vec<Recording>> {
         if let Some(task) = self.task.as_deref().map(Chosen::find).transpose()? {
             for recording in &mut recordings {
                 task.give_to(recording);

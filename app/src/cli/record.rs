@@ -193,7 +193,7 @@ impl Record {
 }
 
 fn replay(log: &Path) -> anyhow::Result<(ReplayDevice, [haptics::Vec2; 2])> {
-    let recordings = super::read(log, None)?;
+    let recordings = super::read(log, None, &estimator::log::Part::default())?;
     let recording = recordings.first().context("the log holds no recording")?;
     let device = ReplayDevice::from_recording(recording)?;
     let start = device.start_in_world();

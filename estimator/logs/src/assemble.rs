@@ -1,10 +1,11 @@
 //! From the table to recordings: time, channels, notes.
 
 use super::errors::LogError;
+use super::fingerprint::Shared;
 use super::plan::{Plan, Use};
 use super::table::{Group, Table};
-use super::{checks, clock, facts, repairs, sidecar, units};
-use haptics::recording::{Channel, Meta, Recording, Warning};
+use super::{checks, clock, facts, repairs, runs, sidecar, units};
+use haptics::recording::{Channel, Meta, Recording, TimeWindow, Warning};
 use std::path::Path;
 
 /// One recording for every group of the table. `said`: warnings of the format's reader.
@@ -16,47 +17,98 @@ pub fn recordings(
     headers: &[String],
     said: &[Warning],
 ) -> Result<Vec<Recording>, LogError> {
-    let groups = std::mem::take(&mut table.groups);
-    let several = groups.len() > 1;
-    let copies = table.fingerprints.copies();
-    let left_out: Vec<usize> = table.text_columns.iter().chain(&table.gappy_columns).copied().collect();
-    let mut recordings = Vec::with_capacity(groups.len());
-    for (trial, mut group) in groups {
+    let apart = runs::apart(std::mem::take(&mut table.groups), plan, headers, path)?;
+    let windows = meta.windows();
+    let copies = if apart.by_column { table.fingerprints.copies() } else { Vec::new() };
+    let mut said = said.to_vec();
+    said.extend(apart.said.map(|text| note("runs", None, text)));
+    let several = apart.runs.len() > 1;
+    let mut recordings = Vec::with_capacity(apart.runs.len());
+    let mut span_s: Option<(f64, f64)> = None;
+    let mut used: Vec<TimeWindow> = Vec::new();
+    for (trial, mut group) in apart.runs {
         let mut about_time = clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers);
         let (time_s, said_of_time) = clock::times(&mut group, plan, meta, headers, path)?;
         about_time.extend(said_of_time);
-        let mut recording = Recording {
-            name: name(path, trial.as_deref().filter(|_| several)),
-            trial,
-            time_s,
-            channels: channels(&mut group, plan, &left_out),
-            labels: plan.label.map(|_| std::mem::take(&mut group.labels)),
-            meta: meta.clone(),
-            warnings: Vec::new(),
-        };
-        if recording.channels.is_empty() {
-            let why = "no column holds numbers beside the time".to_owned();
-            return Err(LogError::NotATable { why, path: path.to_path_buf() });
+        let ends = time_s.as_ref().and_then(|time| Some((*time.first()?, *time.last()?)));
+        span_s = ends.map(|(a, b)| span_s.map_or((a, b), |(c, d)| (f64::min(a, c), f64::max(b, d)))).or(span_s);
+        for (window, group, time_s) in runs::within(&windows, (group, time_s), path)? {
+            used.extend(window);
+            let part = window.filter(|_| windows.len() > 1).map(runs::shown);
+            let run = trial.iter().filter(|_| several);
+            let names: Vec<String> = run.clone().map(|run| format!("trial {run}")).chain(part.clone()).collect();
+            let trial = if part.is_some() {
+                Some(run.cloned().chain(part).collect::<Vec<_>>().join(", "))
+            } else {
+                trial.clone()
+            };
+            let about = About { plan, meta, path, headers, copies: &copies, table: &table };
+            let name = names.iter().fold(String::new(), |all, name| format!("{all}, {name}"));
+            let mut made = about.recording(group, (trial, name), time_s)?;
+            let clock = about_time.iter().map(|text| note("clock", Some("t_s"), text.clone()));
+            made.warnings.splice(0..0, said.iter().cloned().chain(clock));
+            recordings.push(made);
         }
-        if let Some(why) = facts::up_not_honoured(&recording) {
-            return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
-        }
-        recording.warnings = said.to_vec();
-        recording.warnings.extend(about_time.into_iter().map(|text| note("clock", Some("t_s"), text)));
-        recording.warnings.extend(notes(plan, &table, headers, &recording));
-        recording.warnings.extend(facts::doubts(&recording));
-        let repairs = repairs::repair(&mut recording);
-        recording.warnings.extend(repairs);
-        recording.warnings.extend(checks::warnings(&recording));
-        recording.warnings.extend(checks::copied(&recording, plan, &copies));
-        recordings.push(recording);
+    }
+    if let Some(empty) = windows.iter().find(|window| !used.contains(window)) {
+        let (first, last) = span_s.unwrap_or_default();
+        let window = runs::shown(*empty);
+        let why = format!("no sample lies in its window of time ({window}): the log runs from {first} to {last} s");
+        return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }
     Ok(recordings)
 }
 
-fn name(path: &Path, trial: Option<&str>) -> String {
+/// Facts that hold for every recording of a file.
+struct About<'a> {
+    plan: &'a Plan,
+    meta: &'a Meta,
+    path: &'a Path,
+    headers: &'a [String],
+    /// Channels that repeat those of another trial.
+    copies: &'a [Shared],
+    table: &'a Table,
+}
+
+impl About<'_> {
+    /// The recording of a group of rows. `names`: its trial, and the part of its name after the file's.
+    fn recording(
+        &self,
+        mut group: Group,
+        (trial, part): (Option<String>, String),
+        time_s: Option<Vec<f64>>,
+    ) -> Result<Recording, LogError> {
+        let left_out: Vec<usize> = self.table.text_columns.iter().chain(&self.table.gappy_columns).copied().collect();
+        let mut recording = Recording {
+            name: name(self.path, &part),
+            trial,
+            time_s,
+            channels: channels(&mut group, self.plan, &left_out),
+            labels: self.plan.label.map(|_| std::mem::take(&mut group.labels)),
+            meta: self.meta.clone(),
+            warnings: Vec::new(),
+        };
+        if recording.channels.is_empty() {
+            let why = "no column holds numbers beside the time".to_owned();
+            return Err(LogError::NotATable { why, path: self.path.to_path_buf() });
+        }
+        if let Some(why) = facts::up_not_honoured(&recording) {
+            return Err(LogError::Sidecar { why, path: sidecar::path_for(self.path) });
+        }
+        recording.warnings.extend(notes(self.plan, self.table, self.headers, &recording));
+        recording.warnings.extend(facts::doubts(&recording));
+        recording.warnings.extend(recording.time_s.as_deref().and_then(clock::unit_doubt));
+        let repairs = repairs::repair(&mut recording);
+        recording.warnings.extend(repairs);
+        recording.warnings.extend(checks::warnings(&recording));
+        recording.warnings.extend(checks::copied(&recording, self.plan, self.copies));
+        Ok(recording)
+    }
+}
+
+fn name(path: &Path, part: &str) -> String {
     let file = path.file_name().map_or_else(|| path.display().to_string(), |f| f.to_string_lossy().into_owned());
-    trial.map_or(file.clone(), |t| format!("{file}, trial {t}"))
+    file + part
 }
 
 /// The channels: columns are moved, and copied only where two names share one.
@@ -78,7 +130,7 @@ fn channels(group: &mut Group, plan: &Plan, left_out: &[usize]) -> Vec<Channel> 
 }
 
 fn note(kind: &str, column: Option<&str>, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: column.map(str::to_owned), spans: Vec::new(), text }
+    Warning { kind: kind.to_owned(), column: column.map(str::to_owned), spans: Vec::new(), text, ..Warning::default() }
 }
 
 /// Notes for the reader about the table itself.
@@ -97,7 +149,7 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
     let is_known = recording.channels.iter().any(|c| units::is_program_name(&c.name));
     if !is_known && !foundation::signal::chain::is_chain(recording) {
         let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
-        notes.push(note("no-known-column", None, text));
+        notes.push(note(super::NO_KNOWN_COLUMN, None, text));
     }
     if recording.time_s.is_none() {
         let text = "the log has no clock (no t_s column, no rate_hz in the sidecar): paths and forces can be used; \

@@ -5,7 +5,8 @@ use super::mcap::resample;
 use super::plan::{Plan, Use};
 use super::raw::{Cells, is_missing};
 use super::table::Group;
-use haptics::recording::{Labels, Meta};
+use haptics::recording::{Labels, Meta, Warning};
+use serde_json::json;
 use std::path::Path;
 
 /// Times from which a number of seconds is none: three thousand years.
@@ -14,6 +15,10 @@ const NO_SECONDS: f64 = 1e11;
 const EPOCHS: std::ops::Range<f64> = 6.3e8..4.1e9;
 /// Units that stamps since 1970 are counted in.
 const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
+/// Rates at which motion is measured, Hz.
+const RATES_HZ: std::ops::Range<f64> = 5.0..50_000.0;
+/// Fewer stamps show no clock: they may count poses.
+const FEWEST_STAMPS: usize = 50;
 /// Numbers at which counters of 16, 31 and 32 bits run over.
 const COUNTERS: [f64; 3] = [65_536.0, 2_147_483_648.0, 4_294_967_296.0];
 /// A step over the end of a counter is that of its neighbours to this share.
@@ -33,10 +38,8 @@ pub fn times(
     };
     let mut time = std::mem::take(&mut group.columns[column]);
     let mut said = Vec::new();
-    let (factor, cycles) = match plan.uses[column] {
-        Use::Number { factor, .. } => (factor, COUNTERS.map(|count| count * factor).to_vec()),
-        _ => (1.0, vec![super::csv::stamps::DAY_S as f64]),
-    };
+    let cycles = cycles(plan.uses[column]);
+    let factor = if let Use::Number { factor, .. } = plan.uses[column] { factor } else { 1.0 };
     said.extend(unwrapped(&mut time, &cycles).map(|what| format!("the column `{}` {what}", headers[column])));
     said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
@@ -49,11 +52,39 @@ pub fn times(
             how: if goes_back { "goes backwards" } else { "stands still" },
             previous: time[i],
             time: time[i + 1],
+            rate_hz: mean_rate(&time),
             advice: advice(&time, (goes_back, line == 0), meta.rate_hz),
             path: path.to_path_buf(),
         });
     }
     Ok((Some(time), said))
+}
+
+/// Spans after which a clock starts again and time goes on, in its own numbers times their factor.
+pub fn cycles(clock: Use) -> Vec<f64> {
+    match clock {
+        Use::Number { factor, .. } => COUNTERS.map(|count| count * factor).to_vec(),
+        _ => vec![super::csv::stamps::DAY_S as f64],
+    }
+}
+
+/// The cycle by which a step back is an `usual` one.
+pub fn cycle_of(step: f64, usual: f64, cycles: &[f64]) -> Option<f64> {
+    cycles.iter().copied().find(|cycle| (step + cycle - usual).abs() <= LIKE_OTHERS * usual)
+}
+
+/// Median of the steps forward; none when there is none.
+pub fn usual_step(time: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Rows a second of times that stand still at times and never go back.
+fn mean_rate(time: &[f64]) -> Option<f64> {
+    let span = time.last()? - time.first()?;
+    let rate = (time.len() - 1) as f64 / span;
+    (span > 0.0 && time.windows(2).all(|w| w[1] >= w[0])).then_some(rate)
 }
 
 /// A way out for times that do not increase.
@@ -80,18 +111,12 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
 
 /// Adds a cycle wherever a counter or the time of the day ran over.
 fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
-    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
-    if steps.is_empty() {
-        return None;
-    }
-    let middle = steps.len() / 2;
-    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let usual = usual_step(time)?;
     let (mut added, mut times, mut first) = (0.0, 0, 0);
     for i in 1..time.len() {
         let step = time[i] + added - time[i - 1];
         if step < 0.0 {
-            let cycle = cycles.iter().find(|cycle| (step + **cycle - usual).abs() <= LIKE_OTHERS * usual);
-            let Some(cycle) = cycle else { continue };
+            let Some(cycle) = cycle_of(step, usual, cycles) else { continue };
             (added, times, first) = (added + cycle, times + 1, if first == 0 { i } else { first });
         }
         time[i] += added;
@@ -110,6 +135,25 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
         *t = (*t - first) * unit;
     }
     Some(format!("counts {name} since 1970, not seconds: its times are seconds since the first row"))
+}
+
+/// Doubt about the unit of a clock whose stamps are whole numbers and slower than a measurement of motion.
+pub fn unit_doubt(time: &[f64]) -> Option<Warning> {
+    let step = usual_step(time).filter(|step| *step >= 1.0 && time.len() >= FEWEST_STAMPS)?;
+    let is_whole = |t: &f64| t.fract() == 0.0;
+    if !time.iter().all(is_whole) {
+        return None;
+    }
+    let rate_hz = step.recip();
+    let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
+    let text = format!(
+        "the times are whole numbers and run at {rate_hz:.3e} Hz; as {name} they run at {:.4} Hz: if they are, state \"scale\": \
+         {{\"t_s\": {unit:e}}} in the sidecar, and if they count samples, \"columns\": {{\"t_s\": null}} and \"rate_hz\"",
+        rate_hz / unit
+    );
+    let suggested = json!({ "scale": { "t_s": unit } }).as_object().cloned();
+    let (kind, column) = (super::checks::UNIT.to_owned(), Some("t_s".to_owned()));
+    Some(Warning { kind, column, text, suggested, ..Warning::default() })
 }
 
 /// Puts needed columns that have values in some rows only on the clock of the one with fewest.

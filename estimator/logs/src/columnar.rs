@@ -100,7 +100,7 @@ fn selected(raw: &Raw, plan: &Plan, path: &Path) -> Result<Vec<usize>, LogError>
             let more = if seen.len() < SHOWN_VALUES { "" } else { ", …" };
             return Err(LogError::NothingSelected {
                 column: raw.headers[wanted.column].clone(),
-                wanted: wanted.text.clone(),
+                wanted: wanted.shown(),
                 present: if seen.is_empty() { "no rows".to_owned() } else { seen.join(", ") + more },
                 path: path.to_path_buf(),
             });

@@ -1,6 +1,7 @@
 //! Errors of reading a log: one sentence each, the problem first and the path last.
 
 use haptics::text_file::one_line as plain;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Error that kept a log from being loaded. Nothing is half-loaded: the result is a recording or one of these.
@@ -164,7 +165,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The same name twice.
-    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar: {path}", column = plain(column), first = plain(first), second = plain(second), path = path.display())]
+    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, header), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
     DuplicateColumn {
         /// The name.
         column: String,
@@ -172,11 +173,13 @@ pub enum LogError {
         first: String,
         /// The second's.
         second: String,
+        /// Header of the first column, if the second has another one.
+        header: Option<String>,
         /// The file.
         path: PathBuf,
     },
     /// A column that the sidecar or the quantity needs is not there.
-    #[error("the column `{column}` is missing: {why}; the file has {present}: {path}", why = plain(why), column = plain(column), present = plain(present), path = path.display())]
+    #[error("the column `{column}` is missing: {why}; the file has {present}{instead}: {path}", instead = mapped_instead(instead), why = plain(why), column = plain(column), present = plain(present), path = path.display())]
     MissingColumn {
         /// The program's or file's name of it.
         column: String,
@@ -184,11 +187,13 @@ pub enum LogError {
         why: String,
         /// Columns of the file.
         present: String,
+        /// Entries of `columns` with which it is not needed.
+        instead: BTreeMap<String, String>,
         /// The file.
         path: PathBuf,
     },
     /// A unit the program cannot convert.
-    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted} and the like, or state its factor in the sidecar: {mended}: {path}", mended = plain(mended), column = plain(column), unit = plain(unit), path = path.display())]
+    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted} and the like, or state its factor in the sidecar: \"columns\": {{\"{name}\": \"{column}\"}}, \"scale\": {{\"{name}\": SI value of 1}}: {path}", name = plain(name), column = plain(column), unit = plain(unit), path = path.display())]
     UnknownUnit {
         /// The column.
         column: String,
@@ -196,8 +201,8 @@ pub enum LogError {
         unit: String,
         /// Units that can be used.
         accepted: &'static str,
-        /// Lines of the sidecar that mend it.
-        mended: String,
+        /// The program's name of its quantity.
+        name: String,
         /// The file.
         path: PathBuf,
     },
@@ -258,6 +263,8 @@ pub enum LogError {
         time: f64,
         /// The way out.
         advice: String,
+        /// Mean rate of the rows if time only stands still, Hz.
+        rate_hz: Option<f64>,
         /// The file.
         path: PathBuf,
     },
@@ -289,6 +296,22 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+}
+
+/// Choice among two columns, as an entry of the sidecar.
+fn chosen(column: &str, header: &Option<String>) -> String {
+    let entry = |header: &String| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(header));
+    header.as_ref().map_or(String::new(), entry)
+}
+
+/// Entries of `columns`, at the end of a sentence.
+fn mapped_instead(columns: &BTreeMap<String, String>) -> String {
+    let entry = |(name, header): (&String, &String)| format!("\"{}\": \"{}\"", plain(name), plain(header));
+    let entries: Vec<String> = columns.iter().map(entry).collect();
+    if entries.is_empty() {
+        return String::new();
+    }
+    format!("; for a motion along one line, state \"columns\": {{{}}} in the sidecar", entries.join(", "))
 }
 
 /// `row 3 (line 4)`, or without the line where the format has none.

@@ -1,12 +1,12 @@
 //! Facts that a sidecar may state: refusals in plain words, and doubts that become warnings.
 
-use super::repairs::{AS_RECORDED, KINDS};
+use super::repairs::KINDS;
 use super::units;
-use haptics::recording::{Meta, Recording, Task, Warning};
+use haptics::recording::{Meta, Recording, Task, TimeWindow, Warning};
 use serde_json::Value;
 
 /// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 17] = [
     "task",
     "rate_hz",
     "gravity_m_s2",
@@ -15,12 +15,15 @@ const KEYS: [&str; 14] = [
     "columns",
     "scale",
     "select",
+    "from_s",
+    "to_s",
+    "windows",
     "sign",
     "known",
     "prior",
     "bounds",
     "simulated_object",
-    AS_RECORDED,
+    "as_recorded",
 ];
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
@@ -76,12 +79,12 @@ pub fn wrong_type(sidecar: &Value) -> Option<String> {
 }
 
 fn entry(key: &str, value: &Value) -> Option<String> {
-    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "hand") {
+    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "hand" | "from_s" | "to_s") {
         return None;
     }
     match key {
         "task" => task(value),
-        "rate_hz" | "gravity_m_s2" => must(key, value, value.is_number(), "a number"),
+        "rate_hz" | "gravity_m_s2" | "from_s" | "to_s" => must(key, value, value.is_number(), "a number"),
         "up" => must(key, value, value.is_string(), "a text like \"y\""),
         "hand" => members(key, value, &hand_member),
         "columns" => members(key, value, &|k, v| {
@@ -97,14 +100,19 @@ fn entry(key: &str, value: &Value) -> Option<String> {
             let pair = v.as_array().is_some_and(|a| a.len() == 2 && a.iter().all(side));
             must(k, v, pair, "two numbers in brackets, or null for a side that is open")
         }),
-        AS_RECORDED => {
+        "as_recorded" => {
             let known = |list: &Vec<Value>| list.iter().all(|v| KINDS.iter().any(|kind| v == kind));
             let wanted = format!("a list of some of {}", KINDS.join(", "));
             must(key, value, value.as_array().is_some_and(known), &wanted)
         }
         "select" => {
             let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
-            members(key, value, &|k, v| must(k, v, simple(v), "a text or a number"))
+            let several = |v: &Value| v.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(simple));
+            members(key, value, &|k, v| must(k, v, simple(v) || several(v), "a text, a number, or a list of them"))
+        }
+        "windows" => {
+            let windows = serde_json::from_value::<Vec<TimeWindow>>(value.clone());
+            must(key, value, windows.is_ok(), "a list like [{\"from_s\": 2, \"to_s\": 8}]")
         }
         _ => None,
     }
@@ -183,6 +191,13 @@ pub fn complaint(meta: &Meta) -> Option<String> {
         let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
         return Some(format!("the bounds of {name} are {low} and {high}; the first must be the smaller one"));
     }
+    if let Some(window) = meta.windows().iter().find(|w| w.from_s.zip(w.to_s).is_some_and(|(from, to)| from >= to)) {
+        let (from, to) = (window.from_s.unwrap_or_default(), window.to_s.unwrap_or_default());
+        return Some(format!("the window of time from_s {from} to_s {to} is empty; the first must be the smaller one"));
+    }
+    if !meta.windows.is_empty() && (meta.from_s.is_some() || meta.to_s.is_some()) {
+        return Some("it has \"windows\" and \"from_s\" or \"to_s\"; state the window of time once".to_owned());
+    }
     meta.known.iter().find_map(|(name, value)| impossible(last_part(name), *value))
 }
 
@@ -224,7 +239,13 @@ pub fn up_not_honoured(recording: &Recording) -> Option<String> {
 /// Doubtful statements of the sidecar about this recording.
 pub fn doubts(recording: &Recording) -> Vec<Warning> {
     let meta = &recording.meta;
-    let warning = |text: String| Warning { kind: "sidecar".to_owned(), column: None, spans: Vec::new(), text };
+    let warning = |text: String| Warning {
+        kind: "sidecar".to_owned(),
+        column: None,
+        spans: Vec::new(),
+        text,
+        ..Warning::default()
+    };
     let mut found = Vec::new();
     for key in meta.other.keys().filter(|k| !KEYS.contains(&k.as_str())) {
         found.push(warning(format!("the sidecar's key `{key}` means nothing to the program; it is kept as it is")));

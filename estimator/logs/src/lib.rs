@@ -23,7 +23,9 @@ pub mod pyramid;
 mod raw;
 mod repairs;
 mod rows;
+mod runs;
 mod sidecar;
+mod suggested;
 mod table;
 pub mod units;
 mod watch;
@@ -37,9 +39,12 @@ pub use self::mcap::stream::McapStream;
 pub use checks::{UNIT, repaired, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
-pub use plan::PAIRS;
+pub use plan::{PAIRS, counts_runs};
 pub use rows::Attachment;
-pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
+pub use sidecar::{
+    parse as parse_sidecar, path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar,
+};
+pub use suggested::put_into as put_suggested;
 pub use watch::Watch;
 pub use write::{write, write_csv};
 
@@ -47,16 +52,19 @@ pub use write::{write, write_csv};
 pub const SPIKES: &str = "outlier";
 /// The kind of the warning that a log has no clock.
 pub const NO_CLOCK: &str = "no-clock";
+/// The kind of the warning that no column has a name of the program.
+pub const NO_KNOWN_COLUMN: &str = "no-known-column";
 
-use haptics::recording::{Meta, Recording, Warning};
+use haptics::recording::{Meta, Recording, TimeWindow, Warning};
 use raw::Raw;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Largest file that is read, bytes (4 GiB): the table needs about as much memory again.
 pub const MAX_BYTES: u64 = 4 << 30;
 
 /// Reads a log and its sidecar (`meta`, or the one that a file of ours carries, or `<stem>.meta.json` beside it): one
-/// recording for every value of the `trial` column, in the order of the file, else one.
+/// recording for every run and window of time, in the order of the file.
 pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
     load_watched(path, meta, &Watch::none())
 }
@@ -68,9 +76,33 @@ pub fn check(recording: &Recording) -> Vec<Warning> {
 
 /// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
 pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    load_part(path, meta, &Part::default(), watch)
+}
+
+/// [`load_watched`] of a part of the log only.
+pub fn load_part(path: &Path, meta: Option<&Path>, part: &Part, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
-    let facts = Facts::Found { beside: Box::new(sidecar::load(path, meta)), named: meta.is_some() };
-    read(path, format::of(path)?, size, facts, watch)
+    let beside = Box::new(sidecar::load(path, meta));
+    read(path, format::of(path)?, size, Facts::Found { beside, named: meta.is_some(), part }, watch)
+}
+
+/// Runs and windows of time that are read: a caller's statement, which takes the place of the sidecar's.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Values of columns, as in the sidecar.
+    pub select: BTreeMap<String, serde_json::Value>,
+    /// Windows of time; none for all of it.
+    pub windows: Vec<TimeWindow>,
+}
+
+impl Part {
+    fn put_into(&self, meta: &mut Meta) {
+        meta.select.extend(self.select.clone());
+        if !self.windows.is_empty() {
+            (meta.from_s, meta.to_s) = (None, None);
+            meta.windows.clone_from(&self.windows);
+        }
+    }
 }
 
 /// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
@@ -119,7 +151,7 @@ enum Facts<'a> {
     /// The caller.
     Given(&'a Meta),
     /// The sidecar beside the log (or why it cannot be read), which the caller may have named.
-    Found { beside: Box<Result<Meta, LogError>>, named: bool },
+    Found { beside: Box<Result<Meta, LogError>>, named: bool, part: &'a Part },
 }
 
 impl Facts<'_> {
@@ -127,22 +159,27 @@ impl Facts<'_> {
     fn settle(self, carried: Option<&str>, path: &Path) -> Result<(Meta, Option<Warning>), LogError> {
         match (self, carried) {
             (Self::Given(meta), _) => Ok((meta.clone(), None)),
-            (Self::Found { beside, named: false }, Some(text)) => {
-                let meta = sidecar::parse(text, path)?;
+            (Self::Found { beside, named: false, part }, Some(text)) => {
+                let mut meta = sidecar::parse(text, path)?;
                 // The columns of a file of ours are in SI units already: another file's mapping would spoil them.
                 let file = sidecar::path_for(path);
                 let stray = !beside.is_ok_and(|beside| beside == Meta::default() || beside == meta);
                 let text =
                     format!("the log carries its own sidecar; {} is not used unless it is named", file.display());
+                part.put_into(&mut meta);
                 Ok((meta, stray.then(|| note("sidecar", text))))
             }
-            (Self::Found { beside, .. }, _) => Ok(((*beside)?, None)),
+            (Self::Found { beside, part, .. }, _) => {
+                let mut meta = (*beside)?;
+                part.put_into(&mut meta);
+                Ok((meta, None))
+            }
         }
     }
 }
 
 fn note(kind: &str, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
+    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text, ..Warning::default() }
 }
 
 fn read(

@@ -90,6 +90,8 @@ pub(super) fn portable_meta(meta: &Meta) -> Meta {
     meta.scale.clear();
     meta.sign.clear();
     meta.select.clear();
+    (meta.from_s, meta.to_s) = (None, None);
+    meta.windows.clear();
     meta
 }
 

@@ -48,6 +48,27 @@ impl Group {
         })
     }
 
+    /// Stretches of rows that stand one after the other in the file: first row of the group, line, and row in the file of each.
+    pub fn stretches(&self) -> Vec<(usize, u64, usize)> {
+        if self.lines.is_empty() { vec![(0, 0, 1)] } else { self.lines.clone() }
+    }
+
+    /// A copy of the rows `first..end`, with their places.
+    pub fn rows_between(&self, first: usize, end: usize) -> Self {
+        let part = |values: &Vec<f64>| values.get(first..end).map(<[f64]>::to_vec).unwrap_or_default();
+        let mut labels = Labels::default();
+        if !self.labels.is_empty() {
+            labels.extend_from(&self.labels, first..end);
+        }
+        let mut made = Self::new(self.columns.iter().map(part).collect(), labels);
+        let (row, line) = self.place(first);
+        made.note_place(0, row, line);
+        for &(index, line, row) in self.lines.iter().filter(|(index, ..)| (first + 1..end).contains(index)) {
+            made.note_place(index - first, row, line);
+        }
+        made
+    }
+
     /// Says where row `index` of the group stands in the file.
     pub fn note_place(&mut self, index: usize, row: usize, line: u64) {
         if self.lines.is_empty() || self.place(index) != (row, line) {

@@ -93,6 +93,7 @@ pub fn accepted(dimensions: &[Dimension]) -> &'static str {
         [Dimension::Velocity] => "m_s, cm_s, mm_s, um_s",
         [Dimension::AngularVelocity] => "rad_s, deg_s",
         [Dimension::Velocity, Dimension::AngularVelocity] => "m_s, cm_s, mm_s, rad_s, deg_s",
+        [Dimension::Acceleration, ..] => "m_s2, cm_s2, mm_s2, rad_s2, deg_s2",
         _ => "m, cm, mm, um",
     }
 }
@@ -130,6 +131,7 @@ pub fn quantity_dimensions(quantity: &str) -> Option<&'static [Dimension]> {
         ("dqb" | "dqt", _) => Some(&[Dimension::AngularVelocity]),
         ("q", false) => Some(&[Dimension::Length, Dimension::Angle]),
         ("dq", false) => Some(&[Dimension::Velocity, Dimension::AngularVelocity]),
+        ("ddq", false) => Some(&[Dimension::Acceleration, Dimension::AngularAcceleration]),
         ("tau", false) => Some(&[Dimension::Torque]),
         _ => None,
     }

@@ -200,8 +200,10 @@ impl Draft {
                 row.take_factors(&self.meta, &name);
             }
         }
-        let words = |r: &Row| !r.facts.numeric && r.role == Role::Extra;
-        // A table of several recordings: the first is selected until the user chooses another.
+        // Runs are recordings of one object.
+        let words =
+            |r: &Row| !r.facts.numeric && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
+        // A table of several objects: the first is selected until the user chooses another.
         if self.meta.select.is_empty()
             && let Some(row) = self.rows.iter().find(|r| words(r) && several(&r.facts))
             && let Some(first) = row.facts.distinct.as_ref().and_then(|d| d.first())

@@ -98,7 +98,7 @@ pub fn see(path: &Path, meta: &Meta, ticket: &Ticket) -> Result<Seen, String> {
     let mut warnings: Vec<String> = Vec::new();
     for warning in recordings.iter().flat_map(|r| &r.warnings) {
         // The sentence about missing data says so already.
-        if warning.kind == "no-known-column" || (warning.kind == "no-clock" && missing.is_some()) {
+        if warning.kind == estimator::log::NO_KNOWN_COLUMN || (warning.kind == "no-clock" && missing.is_some()) {
             continue;
         }
         let text = sentence(&warning.text);

@@ -172,8 +172,8 @@ fn meaning(word: &str) -> Meaning {
             Meaning::Kind(Kind::Force)
         }
         "tau" | "torque" | "moment" | "drehmoment" | "tq" | "trq" => Meaning::Kind(Kind::Torque),
-        "trial" | "run" | "versuch" | "toss" | "episode" | "test" | "take" | "rep" | "repetition" | "wiederholung"
-        | "lauf" | "demo" | "trials" | "runs" => Meaning::Kind(Kind::Trial),
+        // The reader decides if `segment` stands for runs or for the phases of one.
+        run if run != "segment" && estimator::log::counts_runs(run) => Meaning::Kind(Kind::Trial),
         "label" | "state" | "zustand" | "phase" | "annotation" => Meaning::Kind(Kind::Label),
         "x" => Along(None, Axis::X),
         "y" => Along(None, Axis::Y),

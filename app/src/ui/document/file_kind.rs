@@ -62,6 +62,6 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
 /// Why a mapping should be offered for recordings that could be read: nothing in them has a name that the program knows.
 pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
     let warnings = &recordings.first()?.recording.warnings;
-    let mute = warnings.iter().any(|w| w.kind == "no-known-column");
+    let mute = warnings.iter().any(|w| w.kind == estimator::log::NO_KNOWN_COLUMN);
     mute.then(|| "No column has a name that the program knows: say what they mean.".to_owned())
 }

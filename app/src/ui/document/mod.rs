@@ -1,6 +1,7 @@
 //! The open files: recordings, videos, projects, the choice of a fit, undo, and file dialogs.
 
 pub mod autosave;
+pub mod correction;
 pub mod file_kind;
 pub mod files;
 pub mod fit_choice;

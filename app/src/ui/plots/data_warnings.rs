@@ -66,6 +66,7 @@ mod tests {
             column: Some(column.to_owned()),
             spans: vec![Span { first: 1, end: 3 }, Span { first: 4, end: 5 }, Span { first: 90, end: 99 }],
             text: "it is stuck".to_owned(),
+            ..Warning::default()
         };
         let channel = |name: &str, unit: &str| Channel { name: name.into(), unit: unit.into(), values: vec![0.0; 6] };
         let recording = Recording {

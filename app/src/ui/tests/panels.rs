@@ -84,6 +84,7 @@ fn doubtful_spans_are_shaded_and_listed() {
         column: Some("f_N".to_owned()),
         spans: spans.to_vec(),
         text: "f_N is stuck".to_owned(),
+        ..haptics::recording::Warning::default()
     });
     let mut harness =
         harness(session(recording.clone()), [420.0, 900.0], |ui, session| ResultsPanel::default().ui(ui, session));

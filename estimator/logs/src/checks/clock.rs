@@ -22,6 +22,7 @@ pub fn warnings(recording: &Recording) -> Vec<Warning> {
             column: Some("t_s".to_owned()),
             spans: limited(spans),
             text,
+            ..Warning::default()
         })
         .collect()
 }

@@ -8,7 +8,7 @@ const MAX_SPANS: usize = 200;
 
 /// A warning about one channel.
 pub(super) fn about(kind: &str, channel: &Channel, spans: Vec<Span>, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: Some(channel.name.clone()), spans, text }
+    Warning { kind: kind.to_owned(), column: Some(channel.name.clone()), spans, text, ..Warning::default() }
 }
 
 /// Place of a sample, for people.
@@ -19,11 +19,13 @@ pub(crate) fn place(recording: &Recording, sample: usize) -> String {
     }
 }
 
-pub(super) fn limited(mut spans: Vec<Span>) -> Vec<Span> {
+/// The first spans, as many as a warning lists.
+pub(crate) fn limited(mut spans: Vec<Span>) -> Vec<Span> {
     spans.truncate(MAX_SPANS);
     spans
 }
 
-pub(super) fn is_position(channel: &Channel) -> bool {
+/// True for positions and angles of the program.
+pub(crate) fn is_position(channel: &Channel) -> bool {
     units::is_program_name(&channel.name) && matches!(channel.unit.as_str(), "m" | "rad")
 }

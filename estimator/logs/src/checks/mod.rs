@@ -13,7 +13,7 @@ mod repeats;
 mod scale;
 mod spikes;
 
-pub(crate) use findings::place;
+pub(crate) use findings::{is_position, limited, place};
 pub use repeats::copied;
 pub use scale::UNIT;
 pub use spikes::repaired;

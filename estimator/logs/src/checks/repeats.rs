@@ -2,6 +2,7 @@
 
 use super::findings::{limited, place};
 use super::profile::{Profile, holds};
+use crate::fingerprint::Shared;
 use crate::plan::Plan;
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
@@ -64,6 +65,7 @@ fn copies_beside(recording: &Recording, profiles: &[Profile], known: &[usize]) -
                 "{} is the same as {} over the whole recording: one of the two was not measured; do not use it",
                 channels[copy].name, channels[source].name
             ),
+            ..Warning::default()
         });
     }
     found
@@ -138,7 +140,13 @@ fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -
         spans.iter().map(|s| s.end - s.first).sum::<usize>(),
         place(recording, first.first)
     );
-    Some(Warning { kind: "duplicate-samples".to_owned(), column: None, spans: limited(spans), text })
+    Some(Warning {
+        kind: "duplicate-samples".to_owned(),
+        column: None,
+        spans: limited(spans),
+        text,
+        ..Warning::default()
+    })
 }
 
 /// Places of equal, moving values of two channels: one look at all of them, place by place, instead of one a pair.
@@ -188,6 +196,7 @@ fn copy(recording: &Recording, one: &Channel, other: &Channel, equal: &[usize]) 
             place(recording, span.first),
             span.end - span.first
         ),
+        ..Warning::default()
     };
     if let Some(span) = equal_stretch(a, b, equal) {
         return Some(warning(span, "the same as"));
@@ -290,28 +299,26 @@ fn line(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Warnings about channels that another trial of the same file repeats: `copies` from the fingerprints.
-pub fn copied(recording: &Recording, plan: &Plan, copies: &[(usize, String, String, usize)]) -> Vec<Warning> {
-    let selected: Vec<&str> = plan.select.iter().map(|w| w.text.as_str()).collect();
-    let mine = |trial: &str| {
+pub fn copied(recording: &Recording, plan: &Plan, copies: &[Shared]) -> Vec<Warning> {
+    let is_mine = |trial: &str| {
         let parts: Vec<&str> = trial.split(" / ").collect();
-        recording.trial.as_deref().is_none_or(|t| parts.contains(&t)) && selected.iter().all(|s| parts.contains(s))
+        recording.trial.as_deref().is_none_or(|t| parts.contains(&t))
+            && plan.select.iter().all(|w| w.texts.iter().any(|s| parts.contains(&s.as_str())))
     };
     let mut found = Vec::new();
-    for (watched, a, b, rows) in copies {
-        let Some(other) = [(a, b), (b, a)].into_iter().find(|(own, _)| mine(own)).map(|(_, other)| other) else {
-            continue;
-        };
-        let column = plan.watched[*watched];
-        let Some(target) = plan.targets.iter().find(|t| t.column == column) else { continue };
+    for Shared { watched, trials: [a, b] } in copies {
+        let mine = [(a, b), (b, a)].into_iter().find(|(own, _)| is_mine(&own.0));
+        let target = plan.targets.iter().find(|t| t.column == plan.watched[*watched]);
+        let (Some(((_, spans), (other, _))), Some(target)) = (mine, target) else { continue };
+        let rows: usize = spans.iter().map(|span| span.end - span.first).sum();
         found.push(Warning {
             kind: "copied-channel".to_owned(),
             column: Some(target.name.clone()),
-            spans: vec![Span { first: 0, end: (*rows).min(recording.len()) }],
+            spans: spans.iter().copied().filter(|span| span.end <= recording.len()).collect(),
             text: format!(
                 "{} is the same as in trial {other} over {rows} samples: one of the two was not measured; do not use it",
                 target.name
-            ),
-        });
+            ), ..Warning::default() });
     }
     found
 }

@@ -6,7 +6,11 @@ use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
 /// Factors between units that people mix up, with their names.
-const FACTORS: [(f64, &str); 3] = [(1000.0, "1000"), (100.0, "100"), (180.0 / std::f64::consts::PI, "57.3")];
+const FACTORS: [(f64, &str); 3] = [(1000.0, "1000"), (100.0, "100"), (DEGREES, "57.3")];
+/// Degrees of a radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+/// Millimetres of a metre.
+const THOUSAND: (&str, f64) = ("1000", 1000.0);
 /// A measured ratio may differ from the factor by this, either way: noise on the velocity lowers it.
 const TOLERANCE: f64 = 1.2;
 /// Largest difference of a rate from that of its position, as a factor.
@@ -52,9 +56,13 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     found
 }
 
-fn doubt(recording: &Recording, column: &str, text: String) -> Warning {
+/// `scale`: factors by channel that would settle the doubt.
+fn doubt(recording: &Recording, column: &str, text: String, scale: &[(&str, f64)]) -> Warning {
+    let scale: serde_json::Map<_, _> =
+        scale.iter().map(|(name, factor)| ((*name).to_owned(), (*factor).into())).collect();
+    let suggested = Some(serde_json::Map::from_iter([("scale".to_owned(), scale.into())]));
     let all = Span { first: 0, end: recording.len() };
-    Warning { kind: UNIT.to_owned(), column: Some(column.to_owned()), spans: vec![all], text }
+    Warning { kind: UNIT.to_owned(), column: Some(column.to_owned()), spans: vec![all], text, suggested }
 }
 
 /// Velocity channels against the changes of their positions.
@@ -72,15 +80,15 @@ fn rates(recording: &Recording) -> Vec<Warning> {
             [(factor, format!("{name} times"), name), (factor.recip(), format!("1/{name} of"), name)]
         });
         let ratio = (least * most).sqrt();
-        let (how, wrong) = named.into_iter().find(|(factor, ..)| is_near(factor)).map_or_else(
-            || (format!("{ratio:.2} times"), format!("a factor of {:.2}", ratio.max(ratio.recip()))),
-            |(_, how, name)| (how, name.to_owned()),
+        let (factor, how, wrong) = named.into_iter().find(|(factor, ..)| is_near(factor)).map_or_else(
+            || (ratio, format!("{ratio:.2} times"), format!("a factor of {:.2}", ratio.max(ratio.recip()))),
+            |(factor, how, name)| (factor, how, name.to_owned()),
         );
         let text = format!(
             "{} changes at {how} the rate that {} states: the unit of one of the two, or of the time, is wrong by {wrong}; correct it in the column's name, or give \"scale\" in the sidecar",
             position.name, velocity.name
         );
-        found.push(doubt(recording, &velocity.name, text));
+        found.push(doubt(recording, &velocity.name, text, &[(&velocity.name, factor)]));
     }
     found
 }
@@ -135,15 +143,19 @@ fn ranges(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
             .collect()
     };
     let mut found = Vec::new();
-    let mut judge = |members: &[(&Channel, &Profile)], least: f64, most: f64, factor: &str, what: &str| {
+    let mut judge = |members: &[(&Channel, &Profile)],
+                     least: f64,
+                     most: f64,
+                     (factor, value): (&str, f64),
+                     what: &str| {
         // Nine tenths of the samples: a spike is not a unit.
         let usual = |p: &Profile| p.quantile(0.05).abs().max(p.quantile(0.95).abs());
         let Some((channel, profile)) = members.iter().max_by(|a, b| usual(a.1).total_cmp(&usual(b.1))) else { return };
         let size = usual(profile);
-        let how = if size > most {
-            "more"
+        let (how, mended) = if size > most {
+            ("more", value.recip())
         } else if size < least && profile.reach() < least {
-            "less"
+            ("less", value)
         } else {
             return;
         };
@@ -151,21 +163,22 @@ fn ranges(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
             "{} goes up to {size:.4} {}, {how} than {what}: its unit looks wrong by {factor}; correct it in the column's name, or give \"scale\" in the sidecar",
             channel.name, channel.unit
         );
-        found.push(doubt(recording, &channel.name, text));
+        let scale: Vec<(&str, f64)> = members.iter().map(|(c, _)| (c.name.as_str(), mended)).collect();
+        found.push(doubt(recording, &channel.name, text, &scale));
     };
     let tips = group(&["x", "y"], "m", true);
-    judge(&tips, NEAREST_REACHES * reach_m, FARTHEST_REACHES * reach_m, "1000", "a hand of this size does");
+    judge(&tips, NEAREST_REACHES * reach_m, FARTHEST_REACHES * reach_m, THOUSAND, "a hand of this size does");
     let joints: Vec<_> = [true, false].into_iter().flat_map(|f| group(&["qb", "qt"], "rad", f)).collect();
-    judge(&joints, NEAREST_JOINT_RAD, FARTHEST_JOINT_RAD, "57.3", "the joints of a hand do");
+    judge(&joints, NEAREST_JOINT_RAD, FARTHEST_JOINT_RAD, ("57.3", DEGREES), "the joints of a hand do");
     let mechanism: Vec<_> = ["q", "x", "y", "z"].into_iter().flat_map(|stem| group(&[stem], "m", false)).collect();
-    judge(&mechanism, 0.0, FARTHEST_MECHANISM_M, "1000", "a mechanism or a tool does");
+    judge(&mechanism, 0.0, FARTHEST_MECHANISM_M, THOUSAND, "a mechanism or a tool does");
     let fingers = group(&["fx", "fy"], "N", true);
-    judge(&fingers, SMALLEST_FINGER_N, LARGEST_FINGER_N, "1000", "fingers can");
+    judge(&fingers, SMALLEST_FINGER_N, LARGEST_FINGER_N, THOUSAND, "fingers can");
     let known = &recording.meta.known;
     let weight = known.get("weight_N").copied().or(known.get("mass_kg").map(|m| m * recording.meta.gravity()));
     if let Some(weight) = weight.filter(|w| *w > 0.0) {
         let all: Vec<_> = [true, false].into_iter().flat_map(|f| group(&["fx", "fy", "fz", "f"], "N", f)).collect();
-        judge(&all, weight / WEIGHT_FACTOR, weight * WEIGHT_FACTOR, "1000", "the stated weight lets expect");
+        judge(&all, weight / WEIGHT_FACTOR, weight * WEIGHT_FACTOR, THOUSAND, "the stated weight lets expect");
     }
     found
 }

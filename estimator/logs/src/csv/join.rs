@@ -205,7 +205,7 @@ impl<'a> Join<'a> {
         let more = if seen.len() < SHOWN_VALUES { "" } else { ", …" };
         LogError::NothingSelected {
             column: self.dialect.headers[wanted.column].clone(),
-            wanted: wanted.text.clone(),
+            wanted: wanted.shown(),
             present: if seen.is_empty() { "no rows".to_owned() } else { seen.join(", ") + more },
             path: self.path.to_path_buf(),
         }

@@ -29,5 +29,5 @@ pub(super) struct Source {
 
 /// A warning about the file as a whole.
 pub(super) fn note(kind: &str, text: String) -> Warning {
-    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
+    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text, ..Warning::default() }
 }

@@ -127,7 +127,13 @@ fn fields(schema: &SchemaDescriptor) -> (Vec<Field>, Vec<Warning>) {
 }
 
 fn note(column: &str, text: String) -> Warning {
-    Warning { kind: "text-column".to_owned(), column: Some(column.to_owned()), spans: Vec::new(), text }
+    Warning {
+        kind: "text-column".to_owned(),
+        column: Some(column.to_owned()),
+        spans: Vec::new(),
+        text,
+        ..Warning::default()
+    }
 }
 
 /// The first packing of a wanted column that is not read.

@@ -2,13 +2,15 @@
 
 mod clock_column;
 mod own_names;
+mod selection;
+
+pub use selection::{Wanted, counts_runs};
 
 use super::errors::LogError;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
 use haptics::recording::Meta;
-use serde_json::Value;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 /// Columns that are of no use without each other; a log that has one of a pair must have both.
@@ -46,33 +48,6 @@ pub enum Use {
     Ignore,
 }
 
-/// One condition of `select`.
-#[derive(Clone, Debug)]
-pub struct Wanted {
-    /// Column of the file.
-    pub column: usize,
-    /// The value, as text.
-    pub text: String,
-    number: Option<f64>,
-}
-
-impl Wanted {
-    fn new(column: usize, value: &Value) -> Self {
-        let text = value.as_str().map_or_else(|| value.to_string(), |s| s.trim().to_owned());
-        let number = text.parse().ok();
-        Self { column, text, number }
-    }
-
-    /// True when the cell is this value, as text or as a number (`1` = `1.0`).
-    pub fn matches(&self, cell: &[u8]) -> bool {
-        if cell == self.text.as_bytes() {
-            return true;
-        }
-        let Some(number) = self.number else { return false };
-        std::str::from_utf8(cell).ok().and_then(|t| t.parse::<f64>().ok()) == Some(number)
-    }
-}
-
 /// A channel to be made: its name in the program, its SI unit, the column it comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
@@ -95,10 +70,14 @@ pub struct Plan {
     pub time: Option<usize>,
     /// The trial column.
     pub trial: Option<usize>,
+    /// True when the trial column was told by its name, which may mean something else.
+    pub is_trial_guessed: bool,
     /// The label column.
     pub label: Option<usize>,
     /// Rows to keep.
     pub select: Vec<Wanted>,
+    /// Runs to keep, by their names; its column means nothing.
+    pub runs: Option<Wanted>,
     /// Columns whose contents are compared between trials.
     pub watched: Vec<usize>,
     /// Columns that tell the trials of the file apart: `trial` and those of `select`.
@@ -136,6 +115,7 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
         }
     }
     planner.guess_time();
+    planner.guess_runs();
     planner.take_select()?;
     planner.note_unused_keys();
     planner.plan.targets.sort_by_key(|t| t.column);
@@ -159,6 +139,7 @@ impl Planner<'_> {
             column: column.to_owned(),
             why,
             present: list(self.headers),
+            instead: BTreeMap::new(),
             path: self.path.to_path_buf(),
         }
     }
@@ -181,6 +162,7 @@ impl Planner<'_> {
             column: name.to_owned(),
             first: place(first),
             second: place(second),
+            header: Some(self.headers[first].clone()).filter(|header| *header != self.headers[second]),
             path: self.path.to_path_buf(),
         }
     }
@@ -284,7 +266,7 @@ impl Planner<'_> {
             column: column.to_owned(),
             unit: unit.to_owned(),
             accepted: units::accepted(dimensions),
-            mended: format!("\"columns\": {{\"{name}\": \"{column}\"}}, \"scale\": {{\"{name}\": SI value of 1}}"),
+            name,
             path: self.path.to_path_buf(),
         }
     }
@@ -301,9 +283,7 @@ impl Planner<'_> {
             return Ok(());
         }
         let keys = [name.as_str(), header.as_str()];
-        let pick = |map: &std::collections::BTreeMap<String, f64>| {
-            map.get(keys[0]).or_else(|| map.get(keys[1])).copied().unwrap_or(1.0)
-        };
+        let pick = |map: &BTreeMap<String, f64>| map.get(keys[0]).or_else(|| map.get(keys[1])).copied().unwrap_or(1.0);
         let factor = factor * pick(&self.meta.scale) * pick(&self.meta.sign);
         if let Some(&first) = self.taken.get(&name) {
             return Err(self.duplicate(&name, first, column));
@@ -319,17 +299,6 @@ impl Planner<'_> {
         } else {
             self.taken.insert(name.clone(), column);
             self.plan.targets.push(Target { name, unit, column });
-        }
-        Ok(())
-    }
-
-    fn take_select(&mut self) -> Result<(), LogError> {
-        for (name, value) in &self.meta.select {
-            let source = self.meta.columns.get(name).unwrap_or(name);
-            let column = self
-                .position(source)
-                .ok_or_else(|| self.missing(source, "\"select\" in the sidecar names it".to_owned()))?;
-            self.plan.select.push(Wanted::new(column, value));
         }
         Ok(())
     }
@@ -352,15 +321,22 @@ impl Planner<'_> {
 
     /// Vectors must be complete: half a position or half a force is of no use.
     fn complete(&self) -> Result<(), LogError> {
-        let has = |name: &str| self.plan.targets.iter().any(|t| t.name == name);
-        for (a, b) in PAIRS {
-            for (there, absent) in [(a, b), (b, a)] {
-                if has(there) && !has(absent) {
-                    return Err(self.missing(absent, format!("`{there}` is there and needs it")));
-                }
-            }
+        let target = |name: &str| self.plan.targets.iter().find(|t| t.name == name);
+        let halves = PAIRS.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
+        let mut halves = halves.filter(|(there, absent)| target(there).is_some() && target(absent).is_none());
+        let Some((there, absent)) = halves.clone().next() else { return Ok(()) };
+        let mut error = self.missing(absent, format!("`{there}` is there and needs it"));
+        if let LogError::MissingColumn { instead, .. } = &mut error {
+            let name = |half: &str| match half {
+                "x_m" | "y_m" => Some("q_m"),
+                "fx_N" | "fy_N" => Some("f_N"),
+                _ => None,
+            };
+            let one =
+                |(there, _): (&str, &str)| Some((name(there)?.to_owned(), self.headers[target(there)?.column].clone()));
+            *instead = halves.by_ref().filter_map(one).collect();
         }
-        Ok(())
+        Err(error)
     }
 
     fn watch(&mut self) {

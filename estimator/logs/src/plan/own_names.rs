@@ -106,7 +106,8 @@ fn forms(name: &str) -> &'static [u8] {
     match (stem, fingered) {
         ("q", false) if unit.dimension == Dimension::Length => &[0],
         ("dq", false) if unit.dimension == Dimension::Velocity => &[0],
-        ("q" | "dq" | "tau", false) => &[1],
+        ("ddq", false) if unit.dimension == Dimension::Acceleration => &[0],
+        ("q" | "dq" | "ddq" | "tau", false) => &[1],
         ("f", false) => &[0],
         ("x" | "y" | "z" | "vx" | "vy" | "vz", false) => &[2],
         ("x" | "y" | "vx" | "vy", true) => &[3],

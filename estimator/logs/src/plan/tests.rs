@@ -1,6 +1,7 @@
 //! Uses of columns by their names, their units, and the sidecar.
 
 use super::*;
+use serde_json::Value;
 
 fn headers(text: &str) -> Vec<String> {
     text.split(',').map(str::to_owned).collect()

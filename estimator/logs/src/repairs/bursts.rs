@@ -44,5 +44,5 @@ pub fn spread(recording: &mut Recording) -> Option<Warning> {
     );
     recording.time_s = Some(even);
     let spans = vec![Span { first: 0, end: count }];
-    Some(Warning { kind: "burst-stamps".to_owned(), column: Some("t_s".to_owned()), spans, text })
+    Some(Warning { kind: "burst-stamps".to_owned(), column: Some("t_s".to_owned()), spans, text, ..Warning::default() })
 }

@@ -23,12 +23,9 @@ pub fn take_out(recording: &mut Recording) -> Option<Warning> {
         "{name} has a new value in every {every}th row only{rate} and repeats it in between: the {} rows of {count} without a new one are left out",
         count - kept.len()
     );
-    let gathered = |values: &[f64]| kept.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    recording.time_s = recording.time_s.as_deref().map(gathered);
-    recording.channels.iter_mut().for_each(|channel| channel.values = gathered(&channel.values));
-    recording.labels = recording.labels.as_ref().map(|labels| labels.gathered(kept.iter().copied()));
+    super::keep(recording, &kept);
     let spans = vec![Span { first: 0, end: kept.len() }];
-    Some(Warning { kind: "held-samples".to_owned(), column: Some(name), spans, text })
+    Some(Warning { kind: "held-samples".to_owned(), column: Some(name), spans, text, ..Warning::default() })
 }
 
 /// Name of a channel that holds its values, the usual number of rows between new ones, and the rows of new ones.

@@ -1,17 +1,17 @@
-//! Repairs of a recording on loading: stamps in bursts, held samples, wrapped angles, spikes. Each is told by a warning,
+//! Repairs of a recording on loading: numbers that stand for no value, stamps in bursts, held samples, wrapped angles, spikes. Each is told by a warning,
 //! and `"as_recorded"` in the sidecar switches it off by its kind.
 
 mod bursts;
 mod held_samples;
+mod integrated;
+mod sentinels;
 mod wrapped_angles;
 
 use super::checks;
 use haptics::recording::{Recording, Warning};
 
-/// Key of the sidecar that lists the kinds of repairs that are not made.
-pub const AS_RECORDED: &str = "as_recorded";
 /// Kinds of the repairs.
-pub const KINDS: [&str; 4] = ["burst-stamps", "held-samples", "wrapped-angle", "spikes"];
+pub const KINDS: [&str; 5] = ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes"];
 
 /// A repair, with the warnings about it.
 type Step = fn(&mut Recording) -> Vec<Warning>;
@@ -19,27 +19,34 @@ type Step = fn(&mut Recording) -> Vec<Warning>;
 /// Repairs a recording; the warnings tell what was done.
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
-    let wanted = |recording: &Recording, kind: &str| {
-        let listed = recording.meta.other.get(AS_RECORDED).and_then(|list| list.as_array());
-        !listed.is_some_and(|list| list.iter().any(|entry| entry == kind))
-    };
-    let steps: [(&str, Step); 3] = [
-        (KINDS[0], |recording| bursts::spread(recording).into_iter().collect()),
-        (KINDS[1], |recording| held_samples::take_out(recording).into_iter().collect()),
-        (KINDS[2], wrapped_angles::unwrap),
+    let wanted = |recording: &Recording, kind: &str| !recording.meta.as_recorded.iter().any(|listed| listed == kind);
+    let steps: [(&str, Step); 4] = [
+        (KINDS[0], sentinels::take_out),
+        (KINDS[1], |recording| bursts::spread(recording).into_iter().collect()),
+        (KINDS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
+        (KINDS[3], wrapped_angles::unwrap),
     ];
     for (kind, step) in steps {
         if wanted(recording, kind) {
             found.extend(step(recording));
         }
     }
-    if wanted(recording, KINDS[3])
+    if wanted(recording, KINDS[4])
         && let Some((other, said)) = checks::repaired(recording)
     {
         recording.channels = other.channels;
         found.extend(said);
     }
+    found.extend(integrated::complete(recording));
     found
+}
+
+/// Leaves all rows but these out.
+fn keep(recording: &mut Recording, kept: &[usize]) {
+    let gathered = |values: &[f64]| kept.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+    recording.time_s = recording.time_s.as_deref().map(gathered);
+    recording.channels.iter_mut().for_each(|channel| channel.values = gathered(&channel.values));
+    recording.labels = recording.labels.as_ref().map(|labels| labels.gathered(kept.iter().copied()));
 }
 
 #[cfg(test)]

@@ -81,6 +81,73 @@ fn spikes_give_way_to_their_neighbours_unless_the_sidecar_says_no() {
     assert_eq!(kinds(&repair(&mut one)), ["outlier"]);
     assert!(one.channels[1].values.iter().all(|v| v.abs() < 5.0));
     let mut kept = spoiled();
-    kept.meta.other.insert(AS_RECORDED.to_owned(), serde_json::json!(["spikes"]));
+    kept.meta.as_recorded = vec!["spikes".to_owned()];
     assert!(repair(&mut kept).is_empty() && kept.channels == spoiled().channels);
+}
+
+#[test]
+fn numbers_that_stand_for_no_value_are_left_out_with_their_rows() {
+    let put = |channel: usize, value: f64, rows: &[std::ops::Range<usize>]| {
+        let mut one = swing(4000);
+        rows.iter().cloned().flatten().for_each(|row| one.channels[channel].values[row] = value);
+        one
+    };
+    let runs = [0..3, 900..940, 2500..2501];
+    for value in [-999.0, -9.99, 65_535.0, 655.35, f64::to_radians(9999.0), -32_768e-3] {
+        for channel in 0..2 {
+            let mut spoilt = put(channel, value, &runs);
+            let found = repair(&mut spoilt);
+            assert_eq!((kinds(&found), spoilt.len()), (vec!["sentinel"], 3956), "{value}");
+            let (whole, time) = (swing(4000), spoilt.time_s.as_ref().expect("a clock"));
+            let row = |k: usize| (time[k] / 0.002).round() as usize;
+            let same =
+                (0..time.len()).all(|k| spoilt.channels[channel].values[k] == whole.channels[channel].values[row(k)]);
+            assert!(same, "{value}");
+        }
+    }
+    // A dropout to zero of an angle; a torque may vanish.
+    let mut dropped = put(0, 0.0, &[700..720, 1900..1950]);
+    assert_eq!((kinds(&repair(&mut dropped)), dropped.len()), (vec!["sentinel"], 3930));
+    let mut released = put(1, 0.0, &[700..720, 1900..1950]);
+    assert_eq!((repair(&mut released).len(), released.len()), (0, 4000));
+    let mut kept = put(0, -999.0, &[900..940]);
+    kept.meta.as_recorded = vec!["sentinels".to_owned(), "spikes".to_owned()];
+    assert!(repair(&mut kept).is_empty() && kept.len() == 4000);
+}
+
+#[test]
+fn motion_through_zero_and_a_travel_of_999_are_measured() {
+    let mut rest = swing(4000);
+    rest.channels[0].values.iter_mut().enumerate().for_each(|(i, v)| *v = if i < 1500 { 0.0 } else { *v - 1.7 });
+    let before = rest.channels[0].values[1600];
+    assert!(repair(&mut rest).is_empty() && rest.channels[0].values[1600] == before);
+    let mut travel = swing(4000);
+    travel.channels[0].values.iter_mut().for_each(|v| *v *= 999.0 / 3.7);
+    let top = travel.channels[0].values.iter().copied().fold(f64::MIN, f64::max);
+    travel.channels[0].values.iter_mut().for_each(|v| *v *= 999.0 / top);
+    assert!(repair(&mut travel).is_empty() && travel.len() == 4000);
+}
+
+#[test]
+fn a_velocity_alone_gives_the_position_with_its_drift() {
+    let whole = swing(4000);
+    let time = whole.time_s.clone().expect("a clock");
+    let position = |t: f64| 0.2 * (3.0 * t).sin();
+    let mut fast = whole.clone();
+    fast.channels[0] = channel("dq_m_s", "m_s", time.iter().map(|t| 0.6 * (3.0 * t).cos()).collect());
+    let found = repair(&mut fast);
+    assert_eq!(kinds(&found), ["integrated"]);
+    let made = fast.channel("q_m").expect("a position");
+    let off = time.iter().zip(made).map(|(t, q)| (q - position(*t)).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-4, "{off}");
+    // An accelerometer with an offset, from rest to rest.
+    let end = time[time.len() - 1];
+    let turn = std::f64::consts::TAU / end;
+    let mut slow = whole.clone();
+    slow.channels[0] = channel("ddq_m_s2", "m_s2", time.iter().map(|t| 0.3 * (turn * t).sin() + 0.05).collect());
+    assert_eq!(kinds(&repair(&mut slow)), ["integrated", "integrated"]);
+    let made = slow.channel("dq_m_s").expect("a velocity");
+    let right = |t: f64| 0.3 / turn * (1.0 - (turn * t).cos());
+    let off = time.iter().zip(made).map(|(t, v)| (v - right(*t)).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-3 && slow.channel("q_m").is_some(), "{off}");
 }

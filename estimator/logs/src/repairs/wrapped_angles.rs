@@ -25,7 +25,13 @@ pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
             place(recording, leaps[0])
         );
         let spans = leaps.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
-        Warning { kind: "wrapped-angle".to_owned(), column: Some(channel.name.clone()), spans, text }
+        Warning {
+            kind: "wrapped-angle".to_owned(),
+            column: Some(channel.name.clone()),
+            spans,
+            text,
+            ..Warning::default()
+        }
     });
     let warnings: Vec<Warning> = warnings.collect();
     for (k, leaps) in leaps {

@@ -7,6 +7,7 @@ use crate::ui::calibrate::panels::parameters;
 use crate::ui::calibrate::panels::parameters::ParametersPanel;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::diagnose::actions;
+use crate::ui::document::correction;
 use crate::ui::document::state::Document;
 use crate::ui::headless::gallery::sample::Sample;
 use crate::ui::headless::stage;
@@ -25,6 +26,7 @@ use crate::ui::train::state::Training;
 use egui::{RichText, ScrollArea, Ui};
 use egui_tiles::ContainerKind;
 use estimator::estimate::{Constraint, ConstraintKind};
+use haptics::recording::Suggested;
 
 /// Texts of this panel; a sentence with numbers is in the code that computes them.
 mod words {
@@ -40,6 +42,7 @@ mod words {
     pub const AS_RIGID_AS_HAND: &str = "As rigid as hand and sensors can tell";
     pub const GIVES_WAY_MEASURABLY: &str = "Gives way measurably";
     pub const WARNINGS: &str = "Warnings";
+    pub const CORRECT: &str = "Correct it in the sidecar";
     pub const NOTHING_DOUBTFUL_WAS_FOUND: &str = "Nothing doubtful was found.";
     pub const WHAT_IT_GETS_WRONG: &str = "What it gets wrong";
     pub const WHAT_IT_GETS_WRONG_MORE: &str =
@@ -88,7 +91,7 @@ impl Panel for ResultsPanel {
             crate::ui::calibrate::panels::parameter_editor::selected(ui, &mut session.calibration);
             crate::ui::calibrate::panels::measured::of_recording(ui, &session.calibration);
             constraints(ui, &session.calibration);
-            warnings(ui, &mut session.document, &session.calibration);
+            warnings(ui, &mut session.document, &session.calibration, &mut session.jobs);
             train_with_it(ui, &mut session.workspace, &session.calibration, &mut session.training, &mut session.jobs);
             diagnose(ui, session);
         });
@@ -179,18 +182,18 @@ fn facts(constraint: &Constraint) -> Vec<String> {
     facts
 }
 
-fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration) {
+fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration, jobs: &mut Jobs<Session>) {
     let Some(prepared) = document.prepared().cloned() else { return };
-    let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    let mut texts: Vec<(String, Vec<(f64, f64)>, Option<Suggested>)> = Vec::new();
     for warning in &prepared.recording.warnings {
-        texts.push((sentence(&warning.text), places(&prepared, warning)));
+        texts.push((sentence(&warning.text), places(&prepared, warning), warning.suggested.clone()));
     }
     let analysis = calibration.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
     let segmented = calibration.segmentation(document.current).into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
-        if !texts.iter().any(|(t, _)| *t == text) {
-            texts.push((text, Vec::new()));
+        if !texts.iter().any(|(t, ..)| *t == text) {
+            texts.push((text, Vec::new(), None));
         }
     }
     let count = texts.len();
@@ -206,17 +209,32 @@ fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration) {
         if texts.is_empty() {
             ui.label(theme::caption(ui, words::NOTHING_DOUBTFUL_WAS_FOUND));
         }
-        for (text, places) in texts {
+        for (text, places, suggested) in texts {
             ui.scope(|ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 remark(ui, Icon::Doubt, text);
-                jump = jump.or(go_there(ui, &places, document.cursor_s, prepared.clockless()));
+                if let Some(entries) = suggested.filter(|_| document.path.is_some()) {
+                    corrected(ui, document, jobs, &entries);
+                } else {
+                    jump = jump.or(go_there(ui, &places, document.cursor_s, prepared.clockless()));
+                }
             });
         }
     });
     if let Some((from, to)) = jump {
         document.look_at(from, to);
     }
+}
+
+/// Draws a link that puts suggested entries into the sidecar.
+fn corrected(ui: &mut Ui, document: &Document, jobs: &mut Jobs<Session>, entries: &Suggested) {
+    ui.horizontal(|ui| {
+        ui.add_space(icons::SMALL + 6.0 - ui.spacing().item_spacing.x);
+        let shown = serde_json::Value::Object(entries.clone()).to_string();
+        if ui.link(RichText::new(words::CORRECT).size(11.5)).on_hover_text(shown).clicked() {
+            correction::correct(document, jobs, &ui.ctx().clone(), entries);
+        }
+    });
 }
 
 /// Draws a link to the next of several intervals. Returns the requested one.

@@ -1,0 +1,135 @@
+//! `touchstone info --suggest`: the shortest sidecar with which a file is read, or read without doubts.
+
+use super::Output;
+use crate::ui::column_mapping::draft::Draft;
+use crate::ui::column_mapping::facts::look;
+use crate::ui::column_mapping::state::mends;
+use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, load, parse_sidecar, put_suggested, sidecar_path};
+use haptics::recording::{Recording, Suggested};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Suggestions that follow from each other.
+const ROUNDS: usize = 8;
+
+/// What `info --suggest --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The sidecar's file.
+    path: PathBuf,
+    /// Its entries, with null for a value that only the user knows.
+    sidecar: Suggested,
+    /// True if the file was written, false if there was nothing to add.
+    written: bool,
+    /// The first doubt or error that stays.
+    open: Option<String>,
+}
+
+/// Entries of a sidecar that make a log load without doubts.
+struct Search<'a> {
+    log: &'a Path,
+    entries: Suggested,
+    has_guessed: bool,
+}
+
+impl Search<'_> {
+    /// Reads the log with the entries so far. They are tried in a sidecar of their own.
+    fn read(&self) -> anyhow::Result<Result<Vec<Recording>, LogError>> {
+        let folder = tempfile::tempdir()?;
+        let sidecar = folder.path().join("suggested.meta.json");
+        std::fs::write(&sidecar, Value::Object(self.entries.clone()).to_string())?;
+        Ok(load(self.log, Some(&sidecar)))
+    }
+
+    /// Takes the meanings of the columns from their names and values; false if that was done before.
+    fn guess(&mut self) -> anyhow::Result<bool> {
+        if self.has_guessed {
+            return Ok(false);
+        }
+        self.has_guessed = true;
+        let meta = parse_sidecar(&Value::Object(self.entries.clone()).to_string(), &sidecar_path(self.log))?;
+        let Value::Object(guessed) = serde_json::to_value(Draft::new(&look(self.log)?, meta).sidecar())? else {
+            return Ok(false);
+        };
+        let is_new = guessed != self.entries;
+        self.entries = guessed;
+        Ok(is_new)
+    }
+
+    /// Takes entries in; false if they say nothing new.
+    fn take(&mut self, suggested: &Suggested) -> bool {
+        let before = self.entries.clone();
+        put_suggested(suggested, &mut self.entries);
+        self.entries != before
+    }
+
+    /// One step; the problem that stays when there is no further one.
+    fn step(&mut self) -> anyhow::Result<Option<Option<String>>> {
+        let (has_step, problem) = match self.read()? {
+            Ok(recordings) => {
+                let mut warnings = recordings.iter().flat_map(|r| &r.warnings);
+                let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()));
+                let doubt = warnings.find(|w| w.suggested.is_some());
+                let has_step = is_mute && self.guess()?
+                    || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries));
+                (has_step, doubt.map(|w| w.text.clone()))
+            }
+            Err(error) => {
+                let has_step = match error.suggested() {
+                    Some(entries) => self.take(&entries),
+                    None => mends(&error) && self.guess()?,
+                };
+                (has_step, Some(error.to_string()))
+            }
+        };
+        Ok((!has_step).then_some(problem))
+    }
+}
+
+/// True for entries with a value that only the user knows.
+fn has_null(entries: &Suggested) -> bool {
+    let is_open = |value: &Value| match value {
+        Value::Object(members) => members.values().any(Value::is_null),
+        other => other.is_null(),
+    };
+    entries.iter().any(|(key, value)| key != "columns" && is_open(value))
+}
+
+/// Finds the sidecar of a log and writes it beside the log.
+pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
+    let path = given.map_or_else(|| sidecar_path(log), Path::to_path_buf);
+    let before: Suggested = match std::fs::read_to_string(&path) {
+        Ok(text) => serde_json::from_str(text.trim_start_matches('\u{feff}'))?,
+        Err(_) => Suggested::new(),
+    };
+    let mut search = Search { log, entries: before.clone(), has_guessed: false };
+    let mut open = None;
+    for _ in 0..ROUNDS {
+        if let Some(problem) = search.step()? {
+            open = problem;
+            break;
+        }
+        if has_null(&search.entries) {
+            open = Some("state the values in place of null".to_owned());
+            break;
+        }
+    }
+    let written = search.entries != before;
+    let sidecar = search.entries;
+    let shown = serde_json::to_string_pretty(&sidecar)?;
+    if written {
+        haptics::text_file::write(&path, format!("{shown}\n"))?;
+    }
+    let mut text = if written {
+        format!("{shown}\nwritten to {}", path.display())
+    } else {
+        "there is nothing to add to the sidecar".to_owned()
+    };
+    if let Some(open) = &open {
+        text = format!("{text}\nstill open: {open}");
+    }
+    let json = serde_json::to_value(Said { path, sidecar, written, open })?;
+    Ok(Output { text, json })
+}

@@ -1,0 +1,121 @@
+//! Rows without a measurement that hold a number in its place: −999, 65535, or 0 where a sensor dropped out.
+
+use crate::checks::{is_position, place};
+use crate::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+use std::collections::BTreeSet;
+
+/// Digits of numbers that stand for no value, whatever the power of ten: nines, and the ends of integers of 15 to 32 bits.
+const CODES: [f64; 10] = [
+    999.0,
+    9_999.0,
+    99_999.0,
+    32_767.0,
+    32_768.0,
+    65_535.0,
+    8_388_607.0,
+    16_777_215.0,
+    2_147_483_647.0,
+    4_294_967_295.0,
+];
+/// A number that stands for no value is entered and left by a leap of so many usual steps. Half as many also hold for
+/// fast motion.
+const LEAP: f64 = 10.0;
+/// Steps up to this quantile are usual.
+const USUAL: f64 = 0.99;
+/// Largest share of rows that a number may replace. Beyond it, the number is the signal.
+const MOST: f64 = 0.5;
+
+/// Leaves the rows out in which a channel of the program holds a number that stands for no value.
+pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
+    let mut rows: BTreeSet<usize> = BTreeSet::new();
+    let mut found = Vec::new();
+    for channel in recording.channels.iter().filter(|c| units::is_program_name(&c.name)) {
+        let mut own: BTreeSet<usize> = BTreeSet::new();
+        // Two numbers may be in use.
+        for _ in 0..2 {
+            let Some((value, spans)) = sentinel(channel, &own) else { break };
+            let count: usize = spans.iter().map(|span| span.end - span.first).sum();
+            let text = format!(
+                "{} is exactly {value} in {count} row(s), the first at {}: no sensor measured that, and these rows are left out",
+                channel.name,
+                place(recording, spans[0].first)
+            );
+            own.extend(spans.iter().flat_map(|span| span.first..span.end));
+            let spans = crate::checks::limited(spans);
+            found.push(Warning {
+                kind: "sentinel".to_owned(),
+                column: Some(channel.name.clone()),
+                spans,
+                text,
+                ..Warning::default()
+            });
+        }
+        rows.append(&mut own);
+    }
+    if !rows.is_empty() {
+        let kept: Vec<usize> = (0..recording.len()).filter(|row| !rows.contains(row)).collect();
+        super::keep(recording, &kept);
+    }
+    found
+}
+
+/// A number that stands for no value, with its rows; `without`: rows that are out already.
+fn sentinel(channel: &Channel, without: &BTreeSet<usize>) -> Option<(f64, Vec<Span>)> {
+    let values = &channel.values;
+    let sound = || values.iter().enumerate().filter(|(row, _)| !without.contains(row)).map(|(_, v)| *v);
+    let (low, high) = sound().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let zero = (is_position(channel) && low != 0.0 && high != 0.0).then_some(0.0);
+    let candidates = [low, high].into_iter().filter(|v| is_code(*v)).chain(zero.filter(|_| values.contains(&0.0)));
+    let mut usual = None;
+    candidates.into_iter().find_map(|value| {
+        let spans: Vec<Span> = runs(values, value);
+        if spans.iter().any(|span| without.contains(&span.first)) {
+            return None;
+        }
+        let count: usize = spans.iter().map(|span| span.end - span.first).sum();
+        if count as f64 > MOST * values.len() as f64 {
+            return None;
+        }
+        let leap = LEAP * *usual.get_or_insert_with(|| usual_step(values));
+        let is_far = |row: Option<usize>| row.and_then(|row| values.get(row)).map(|v| (v - value).abs() > leap);
+        let fits = |span: &Span| {
+            let (before, after) = (is_far(span.first.checked_sub(1)), is_far(Some(span.end)));
+            // A zero at an end may be the start of a motion.
+            before.unwrap_or(value != 0.0) && after.unwrap_or(value != 0.0)
+        };
+        (spans.iter().all(fits) && count < values.len()).then_some((value, spans))
+    })
+}
+
+/// True for a code in some unit: SI value over number is a power of ten, or that of degrees.
+fn is_code(value: f64) -> bool {
+    let size = value.abs();
+    let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b;
+    [size, size.to_degrees()].into_iter().any(|size| {
+        let same = |code: &f64| {
+            let power = (size / code).log10().round();
+            power.abs() <= 9.0 && is_near(size / 10_f64.powi(power as i32), *code)
+        };
+        size > 0.0 && CODES.iter().any(same)
+    })
+}
+
+/// Runs of rows with exactly this value.
+fn runs(values: &[f64], value: f64) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    for row in (0..values.len()).filter(|&row| values[row] == value) {
+        match spans.last_mut() {
+            Some(last) if last.end == row => last.end = row + 1,
+            _ => spans.push(Span { first: row, end: row + 1 }),
+        }
+    }
+    spans
+}
+
+/// The largest usual step from row to row.
+fn usual_step(values: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
+    let at = (USUAL * steps.len() as f64) as usize;
+    if at >= steps.len() { 0.0 } else { *steps.select_nth_unstable_by(at, f64::total_cmp).1 }
+}

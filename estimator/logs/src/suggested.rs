@@ -1,0 +1,91 @@
+//! Entries of a sidecar with which a refused file is read.
+
+use super::errors::LogError;
+use haptics::recording::Suggested;
+use serde_json::{Value, json};
+
+impl LogError {
+    /// The shortest entries of a sidecar that settle this error, with null for a value that only the user knows. `None` if
+    /// no sidecar helps.
+    pub fn suggested(&self) -> Option<Suggested> {
+        let entries = match self {
+            Self::UnknownUnit { name, column, .. } => json!({ "columns": { name: column }, "scale": { name: null } }),
+            Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
+            Self::DuplicateColumn { column, header: Some(header), .. } => json!({ "columns": { column: header } }),
+            Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),
+            Self::Time { rate_hz, .. } => json!({ "columns": { "t_s": null }, "rate_hz": rate_hz }),
+            Self::NoClock { .. } => json!({ "rate_hz": null }),
+            _ => return None,
+        };
+        as_entries(entries)
+    }
+}
+
+/// An object as entries of a sidecar.
+fn as_entries(value: Value) -> Option<Suggested> {
+    if let Value::Object(entries) = value { Some(entries) } else { None }
+}
+
+/// Puts entries into those of a sidecar. Objects are joined, and factors of `scale` are multiplied.
+pub fn put_into(entries: &Suggested, sidecar: &mut Suggested) {
+    for (key, value) in entries {
+        match (sidecar.get_mut(key), value) {
+            (Some(Value::Object(there)), Value::Object(new)) => {
+                for (name, new) in new {
+                    let both = (there.get(name).and_then(Value::as_f64), new.as_f64());
+                    let value = match both {
+                        (Some(old), Some(new)) if key == "scale" => json!(old * new),
+                        _ => new.clone(),
+                    };
+                    there.insert(name.clone(), value);
+                }
+            }
+            _ => {
+                sidecar.insert(key.clone(), value.clone());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{load, sidecar_path};
+
+    /// The error of a table, and the table read with the entries that the error suggests.
+    fn mended(table: &str, fill: Option<f64>) -> (String, Vec<haptics::recording::Recording>) {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let log = folder.path().join("log.csv");
+        std::fs::write(&log, table).expect("writable");
+        let error = load(&log, None).expect_err("refused");
+        let entries = error.suggested().expect("a sidecar helps");
+        let text = Value::Object(entries).to_string();
+        let text = fill.map_or(text.clone(), |value| text.replace("null", &value.to_string()));
+        std::fs::write(sidecar_path(&log), &text).expect("writable");
+        (error.to_string(), load(&log, None).unwrap_or_else(|error| panic!("{text}: {error}")))
+    }
+
+    #[test]
+    fn what_an_error_suggests_makes_the_file_load() {
+        let (error, log) = mended("t_s,q_m,f_stone\n0,1,2\n1,2,3\n", Some(62.3));
+        assert!(error.contains("\"scale\": {\"f_N\": SI value of 1}"), "{error}");
+        assert!((log[0].channel("f_N").expect("a force")[0] - 124.6).abs() < 1e-9);
+        let (error, log) = mended("t_s,q_m,q_mm\n0,1,2\n1,2,3\n", None);
+        assert!(error.contains("like {\"q_m\": \"q_m\"}") && log[0].channel("q_m").expect("one")[1] == 2.0, "{error}");
+        let (error, log) = mended("t_s,x_mm,fx_N\n0,1,2\n1,2,3\n", None);
+        assert!(error.contains("\"f_N\": \"fx_N\", \"q_m\": \"x_mm\""), "{error}");
+        assert!(log[0].channel("q_m").expect("one")[1] == 0.002 && log[0].channel("f_N").is_some());
+        let coarse: String = (0..40).map(|i| format!("{},{}\n", i / 10, f64::from(i).sin())).collect();
+        let (_, log) = mended(&format!("t_s,q_m\n{coarse}"), None);
+        assert!((log[0].rate_hz().expect("a rate") - 13.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn entries_are_joined() {
+        let entries = |value: Value| as_entries(value).expect("an object");
+        let mut sidecar = entries(json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 1.5 } }));
+        put_into(&entries(json!({ "scale": { "q_m": 0.001 }, "rate_hz": null })), &mut sidecar);
+        let joined = json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 0.0015 }, "rate_hz": null });
+        assert_eq!(Value::Object(sidecar), joined);
+    }
+}

@@ -1,0 +1,176 @@
+//! The sidecar: facts about a recording that its table does not hold. `docs/use/own-logs.md` is made from these types.
+
+use super::Task;
+use crate::hand::Hand;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// Geometry of the hand that made the recording.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct HandMeta {
+    /// Link length, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link_m: Option<f64>,
+    /// Base of the only finger, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_m: Option<[f64; 2]>,
+    /// Base of the left finger, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base1_m: Option<[f64; 2]>,
+    /// Base of the right finger, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base2_m: Option<[f64; 2]>,
+}
+
+/// The sidecar `<stem>.meta.json`. Every key is optional.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Meta {
+    /// Task that was performed: one of the program's, or the name of one of yours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>", extend("x-absent" = "told by the columns"), example = &"crank")]
+    pub task: Option<Task>,
+    /// Sampling rate of a table without a time column, Hz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "the time column"), example = 1000.0)]
+    pub rate_hz: Option<f64>,
+    /// Gravity, m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "9.81"), example = 9.80665)]
+    pub gravity_m_s2: Option<f64>,
+    /// Axis that points up: `x`, `y`, `z`, the same with a minus, or `none` for a horizontal plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "y"), example = &"z")]
+    pub up: Option<String>,
+    /// Geometry of the hand, for joint angles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "the hand of the program"), example = json!({ "link_m": 0.08, "base1_m": [-0.04, 0.0], "base2_m": [0.04, 0.0] }))]
+    pub hand: Option<HandMeta>,
+    /// The file's column for each name of the program; null for a name that the file does not have.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, Option<String>>", extend("x-absent" = "known names are read"), example = json!({ "q_m": "Extension [mm]", "t_s": null }))]
+    pub columns: BTreeMap<String, String>,
+    /// Factor of a column, after the conversion of its unit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "1"), example = json!({ "f_N": 35.15 }))]
+    pub scale: BTreeMap<String, f64>,
+    /// Rows to read: a column of the program or the file, and the value or list of values that it must have.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "all rows"), example = json!({ "mechanism": "drawer", "trial": [1, 2] }))]
+    pub select: BTreeMap<String, serde_json::Value>,
+    /// Time from which the recording is read, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "the start"), example = 2.0)]
+    pub from_s: Option<f64>,
+    /// Time up to which the recording is read, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "the end"), example = 8.0)]
+    pub to_s: Option<f64>,
+    /// Several windows of time; each is a recording. They take the place of `from_s` and `to_s`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-absent" = "all of it"), example = json!([{ "from_s": 2.0, "to_s": 4.0 }, { "from_s": 6.0 }]))]
+    pub windows: Vec<TimeWindow>,
+    /// Sign of a column: 1 or −1.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
+    pub sign: BTreeMap<String, f64>,
+    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
+    pub as_recorded: Vec<String>,
+    /// Parameters that are known and not estimated.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "nothing is known"), example = json!({ "mass_kg": 0.107 }))]
+    pub known: BTreeMap<String, f64>,
+    /// Normal prior of a parameter: `weight_N`, or `block-2.weight_N` with the object in front.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "no prior"), example = json!({ "weight_N": { "mean": 0.5, "std": 0.1 } }))]
+    pub prior: BTreeMap<String, Prior>,
+    /// Least and largest value of a parameter, named as in `prior`; null leaves a side open.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "no bounds"), example = json!({ "friction_mu": [0.0, null] }))]
+    pub bounds: BTreeMap<String, [Option<f64>; 2]>,
+    /// States that a person set, with their times; they take the place of the segmentation.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-absent" = "the segmentation's"), example = json!([{ "t0": 0.0, "t1": 1.5, "state": "free-motion" }]))]
+    pub segments: Vec<Segment>,
+    /// Video of the recording.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "none"), example = json!({ "file": "hand.mp4", "begins_at_s": -0.4 }))]
+    pub video: Option<VideoMeta>,
+    /// Keys this version does not know: kept, so that saving loses nothing.
+    #[serde(flatten)]
+    pub other: BTreeMap<String, serde_json::Value>,
+}
+
+/// A window of time, in the times of the recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeWindow {
+    /// First time, s; the start of the recording when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
+    /// Last time, s; the end of the recording when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_s: Option<f64>,
+}
+
+/// A video of the hand.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct VideoMeta {
+    /// The file, from the log's folder.
+    pub file: std::path::PathBuf,
+    /// Time of the recording at which its first picture was taken, s.
+    #[serde(default)]
+    pub begins_at_s: f64,
+}
+
+/// Segment of a recording in one state, set by a person.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Segment {
+    /// Start, s (sample number when the log is clockless).
+    pub t0: f64,
+    /// End, s.
+    pub t1: f64,
+    /// Name of the state, e.g. `hold-above-ground`.
+    pub state: String,
+    /// The subtask that it belongs to, e.g. `carry-block-1`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub subtask: Option<String>,
+}
+
+/// A normal distribution, in the parameter's unit.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Prior {
+    /// Most likely value.
+    pub mean: f64,
+    /// Standard deviation, above zero.
+    pub std: f64,
+}
+
+impl Meta {
+    /// The windows of time that are used; none when all of the recording is.
+    pub fn windows(&self) -> Vec<TimeWindow> {
+        if self.from_s.is_none() && self.to_s.is_none() {
+            return self.windows.clone();
+        }
+        vec![TimeWindow { from_s: self.from_s, to_s: self.to_s }]
+    }
+
+    /// Gravity, m/s².
+    pub fn gravity(&self) -> f64 {
+        self.gravity_m_s2.unwrap_or(9.81)
+    }
+
+    /// The hand that made the recording: the default one, with the sidecar's statements put in.
+    pub fn hand(&self) -> Hand {
+        let default = Hand::default();
+        let Some(meta) = &self.hand else { return default };
+        let base = |given: Option<[f64; 2]>, index: usize| {
+            given.map_or(default.fingers[index].base_m, |[x, y]| crate::Vec2::new(x, y))
+        };
+        let link_m = meta.link_m.unwrap_or(default.fingers[0].link_m);
+        Hand::new(link_m, base(meta.base1_m.or(meta.base_m), 0), base(meta.base2_m, 1))
+    }
+}
