@@ -13,6 +13,7 @@ mod errors;
 mod facts;
 mod fingerprint;
 mod format;
+mod mat;
 mod mcap;
 mod pages;
 #[cfg(feature = "parquet")]
@@ -22,6 +23,7 @@ pub mod preview;
 pub mod pyramid;
 mod raw;
 mod repairs;
+mod room;
 mod rows;
 mod sidecar;
 mod table;
@@ -96,6 +98,7 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     let nothing = Meta::default();
     match format::of(path)? {
         Format::Csv => Ok(csv::sniff(path)?.headers),
+        Format::Mat => Ok(mat::read(path, size, &Watch::none())?.0.headers),
         Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
         Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
     }
@@ -154,6 +157,10 @@ fn read(
 ) -> Result<Vec<Recording>, LogError> {
     let done = match format {
         Format::Csv => facts.settle(None, path).and_then(|(meta, _)| read_csv(path, &meta, size, watch)),
+        Format::Mat => mat::read(path, size, watch).and_then(|(raw, said)| {
+            let (meta, _) = facts.settle(None, path)?;
+            finish(raw, &meta, path, &said)
+        }),
         Format::Mcap => mcap::read(path, size, watch).and_then(|log| {
             let (meta, stray) = facts.settle(log.sidecar.as_deref(), path)?;
             let (raw, mut said) = log.columns(&meta)?;
@@ -186,7 +193,7 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
 /// From the columns of a container to recordings.
 fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
     let headers = raw.headers.clone();
-    let plan = plan::plan(&headers, &[], &raw.resolved(meta), path)?;
+    let plan = plan::plan(&headers, &raw.units, &raw.resolved(meta), path)?;
     let table = columnar::table(raw, &plan, path)?;
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }

@@ -32,6 +32,12 @@ impl Plan {
     }
 }
 
+/// True for a name of a time, with or without a unit. `unit`: text of its unit outside the name.
+pub fn is_clock(header: &str, unit: &str) -> bool {
+    let name = if unit.is_empty() { written_units::in_header(header, &[Dimension::Time]).0 } else { header };
+    ["t", "time", "timestamp", "zeit", "x_value"].iter().any(|word| name.eq_ignore_ascii_case(word))
+}
+
 impl Planner<'_> {
     /// `time_s`, `Time [ms]`, `timestamp_ns`: the time, when nothing else claims to be it.
     pub(super) fn guess_time(&mut self) {
@@ -44,11 +50,7 @@ impl Planner<'_> {
             if self.meta.columns.values().any(|source| source == header) {
                 return None;
             }
-            let name = match self.stated(column) {
-                "" => written_units::in_header(header, &[Dimension::Time]).0,
-                _ => header,
-            };
-            let is_time = ["time", "timestamp", "zeit", "x_value"].iter().any(|word| name.eq_ignore_ascii_case(word));
+            let is_time = is_clock(header, self.stated(column));
             match written_units::parse(&self.unit_text(column, &[Dimension::Time]), &[Dimension::Time]) {
                 Written::Known(Dimension::Time, factor) if is_time => Some(factor),
                 _ => None,

@@ -3,6 +3,8 @@
 mod clock_column;
 mod own_names;
 
+pub use clock_column::is_clock;
+
 use super::errors::LogError;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
