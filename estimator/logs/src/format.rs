@@ -45,10 +45,21 @@ fn of_bytes(start: &[u8], size: u64) -> Format {
     Format::Csv
 }
 
+impl Format {
+    /// Name of the format, as its files end.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Mat => "mat",
+            Self::Mcap => "mcap",
+            Self::Parquet => "parquet",
+        }
+    }
+}
+
 /// Kind of a file that is not read, by its first bytes, with the way for its owner to get a log out of it.
 pub fn foreign(start: &[u8]) -> Option<&'static str> {
-    const KNOWN: [(&[u8], &str); 9] = [
-        (b"MATLAB 7.3", "a MATLAB file of version 7.3; save it with save('file.mat', ..., '-v7')"),
+    const KNOWN: [(&[u8], &str); 8] = [
         (
             b"\x89HDF\r\n",
             "an HDF5 file, as of MATLAB 7.3; save it with save('file.mat', ..., '-v7') there, elsewhere as CSV or Parquet",
@@ -64,6 +75,9 @@ pub fn foreign(start: &[u8]) -> Option<&'static str> {
         (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `unzstd`"),
         (b"\x93NUMPY", "a NumPy array; write it as CSV with a header line of column names"),
     ];
+    if start.starts_with(b"MATLAB 7.3") || mat::is_hdf5(start) {
+        return Some("a MATLAB file of version 7.3; save it with save('file.mat', ..., '-v7')");
+    }
     let known = KNOWN.iter().find(|(magic, _)| start.starts_with(magic)).map(|&(_, what)| what);
     known.or_else(|| markup(start))
 }

@@ -92,6 +92,12 @@ fn load_sized(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<
     read(path, format::of(path)?, size, Facts::Given(meta), watch)
 }
 
+/// Format of a file, told by its content.
+pub fn format(path: &Path) -> Result<Format, LogError> {
+    admissible_size(path)?;
+    format::of(path)
+}
+
 /// The column names of a table, for a mapping dialog.
 pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     let size = admissible_size(path)?;

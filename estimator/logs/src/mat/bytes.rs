@@ -129,7 +129,7 @@ impl<'a> Bytes<'a> {
     fn failed(&self, error: std::io::Error) -> Stop {
         match error.kind() {
             ErrorKind::UnexpectedEof => damaged("it ends in the middle"),
-            _ if self.is_packed => damaged("its compressed content is none"),
+            _ if self.is_packed => damaged("a compressed variable cannot be unpacked"),
             _ => Stop::Io(error),
         }
     }

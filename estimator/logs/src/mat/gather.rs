@@ -140,10 +140,10 @@ impl Gathered {
         let has_texts = items.iter().any(|item| matches!(item, Value::Text(_)));
         match texts {
             _ if sides(dims).is_none_or(|(_, columns)| columns > 1) => {
-                self.leave_out(&field.path(), "it is a cell array of rows and columns".to_owned());
+                self.leave_out(&field.path(), "a cell array of rows and columns".to_owned());
             }
             Some(texts) => self.append(field, Cells::Text(texts)),
-            None if has_texts => self.leave_out(&field.path(), "it is a cell array of text and numbers".to_owned()),
+            None if has_texts => self.leave_out(&field.path(), "a cell array of text and numbers".to_owned()),
             None => self.array(items, field.place, |this, value, place| this.value(value, Field { place, ..field })),
         }
     }
@@ -152,7 +152,7 @@ impl Gathered {
         match sides(dims) {
             Some((_, 1)) => self.append(field, Cells::Numbers(values)),
             Some((_, columns)) if columns > MOST_COLUMNS => {
-                self.leave_out(&field.path(), format!("it has more than {MOST_COLUMNS} columns"));
+                self.leave_out(&field.path(), format!("more than {MOST_COLUMNS} columns"));
             }
             Some((rows, columns)) => {
                 // The first side that is not one is the one that runs first.
@@ -169,7 +169,7 @@ impl Gathered {
                     self.put((&around, &name, unit), own, field.place);
                 }
             }
-            None => self.leave_out(&field.path(), "it has more than two dimensions".to_owned()),
+            None => self.leave_out(&field.path(), "more than two dimensions".to_owned()),
         }
     }
 
@@ -215,10 +215,10 @@ impl Gathered {
         };
         column.runs.push(run);
         match (&mut column.cells, cells) {
-            _ if column.unit != unit => self.leave_out(&path, "its unit changes from run to run".to_owned()),
+            _ if column.unit != unit => self.leave_out(&path, "a unit that changes from run to run".to_owned()),
             (Cells::Numbers(all), Cells::Numbers(more)) => all.extend(more),
             (Cells::Text(all), Cells::Text(more)) => all.extend_from(&more, 0..more.len()),
-            _ => self.leave_out(&path, "it holds text in some runs and numbers in others".to_owned()),
+            _ => self.leave_out(&path, "text in some runs and numbers in others".to_owned()),
         }
     }
 
@@ -235,7 +235,7 @@ fn is_list_of_signals(value: &Value) -> bool {
 /// Reason for leaving out a value that is not read, with the way to convert it.
 fn reason(why: &Unread, path: &str) -> String {
     let class = match why {
-        Unread::Kind(kind) => return format!("it holds {kind}"),
+        Unread::Kind(kind) => return (*kind).to_owned(),
         Unread::Object(class) => class.as_str(),
     };
     let save = "save('log.mat', '-struct', 'S', '-v7')";
@@ -251,5 +251,5 @@ fn reason(why: &Unread, path: &str) -> String {
         "string" | "categorical" => format!("S.label = cellstr({path}); {save}"),
         _ => format!("S = struct({path}); {save}"),
     };
-    format!("it is a {class}, an object that only MATLAB can open; convert it there: {convert}")
+    format!("a {class}, an object that only MATLAB can open; convert it there: {convert}")
 }

@@ -31,6 +31,11 @@ pub fn is_one(start: &[u8], size: u64) -> bool {
     start.starts_with(MAGIC) || level5::order(start).is_some() || level4::order(start, size).is_some()
 }
 
+/// True for the start of a file of version 7.3, whose content is HDF5.
+pub fn is_hdf5(start: &[u8]) -> bool {
+    matches!(start.get(124..level5::HEADER), Some([0, 2, b'I', b'M'] | [2, 0, b'M', b'I']))
+}
+
 /// Reads the table of a file, with notes about the variables that do not belong to it.
 pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<(Raw, Vec<Warning>), LogError> {
     let variables = variables(path, size, watch).map_err(|stop| match stop {

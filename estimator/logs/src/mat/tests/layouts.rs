@@ -137,7 +137,7 @@ fn runs_that_lack_a_field_or_change_its_unit_do_not_slip() {
     };
     let logs = loaded(&Form::ALL[0].file(&[("r", V::Cells(vec![2, 1], vec![with_unit("N"), with_unit("kN")]))]), "{}");
     let logs = logs.unwrap_or_else(|e| panic!("{e}"));
-    assert!(names(&logs[0]) == ["q_m"] && said(&logs[0], "`r.f` is not read: its unit changes from run to run"));
+    assert!(names(&logs[0]) == ["q_m"] && said(&logs[0], "`r.f` is not read: a unit that changes from run to run"));
     let short = V::Cells(
         vec![2, 1],
         vec![one(vec![("t_s", column(&clock())), ("q_m", column(&Q))]), one(vec![("t_s", empty()), ("q_m", empty())])],

@@ -132,14 +132,14 @@ fn values_of_other_kinds_are_named_and_left_out() {
     );
     assert_eq!(names(&log), ["q_m"]);
     for words in [
-        "the variable `z` is not read: it holds complex numbers",
-        "`s` is not read: it holds a sparse matrix",
-        "`T` is not read: it is a timetable, an object that only MATLAB can open; convert it there: T = timetable2table(T);",
-        "`deep.name` is not read: it is a string",
-        "`wide` is not read: it has more than 64 columns",
-        "`cube` is not read: it has more than two dimensions",
-        "`mixed` is not read: it is a cell array of text and numbers",
-        "`grid` is not read: it is a cell array of rows and columns",
+        "the variable `z` is not read: complex numbers",
+        "`s` is not read: a sparse matrix",
+        "`T` is not read: a timetable, an object that only MATLAB can open; convert it there: T = timetable2table(T);",
+        "`deep.name` is not read: a string",
+        "`wide` is not read: more than 64 columns",
+        "`cube` is not read: more than two dimensions",
+        "`mixed` is not read: a cell array of text and numbers",
+        "`grid` is not read: a cell array of rows and columns",
     ] {
         assert!(said(&log, words), "{words}: {:?}", log.warnings);
     }
@@ -153,7 +153,8 @@ fn a_file_without_a_table_ends_in_one_sentence() {
     assert!(refused(&[("a", column(&[1.0]))]).contains("no variable is a vector of samples"));
     assert!(refused(&[]).contains("save vectors of equal length"));
     assert!(refused(&[("s", V::Chars(vec!["a", "b"]))]).contains("no variable is a vector of samples"));
-    for start in [&b"MATLAB 7.3 MAT-file, Platform: GLNXA64"[..], b"\x89HDF\r\n\x1a\n"] {
+    let unnamed = [&b"MATLAB 7.0 MAT-file"[..], &[b' '; 105], &[0, 2, b'I', b'M']].concat();
+    for start in [&b"MATLAB 7.3 MAT-file, Platform: GLNXA64"[..], b"\x89HDF\r\n\x1a\n", &unnamed] {
         let text = loaded(&[start, &[0; 600]].concat(), "{}").expect_err("version 7.3").to_string();
         assert!(text.contains("save('file.mat', ..., '-v7')") && !text.contains('\n'), "{text}");
     }
