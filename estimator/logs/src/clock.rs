@@ -1,5 +1,6 @@
 //! The times of a recording's rows: counters that ran over, epochs, and columns that have clocks of their own.
 
+use super::csv::calendar;
 use super::errors::LogError;
 use super::mcap::resample;
 use super::plan::{Plan, Use};
@@ -33,11 +34,12 @@ pub fn times(
     };
     let mut time = std::mem::take(&mut group.columns[column]);
     let mut said = Vec::new();
-    let (factor, cycles) = match plan.uses[column] {
-        Use::Number { factor, .. } => (factor, COUNTERS.map(|count| count * factor).to_vec()),
-        _ => (1.0, vec![super::csv::stamps::DAY_S as f64]),
+    let (factor, passed) = match plan.uses[column] {
+        Use::Number { factor, .. } => (factor, unwrapped(&mut time, &COUNTERS.map(|count| count * factor))),
+        Use::Stamp { form, .. } if !form.is_dated => (1.0, on_the_next_day(&mut time)),
+        _ => (1.0, None),
     };
-    said.extend(unwrapped(&mut time, &cycles).map(|what| format!("the column `{}` {what}", headers[column])));
+    said.extend(passed.map(|what| format!("the column `{}` {what}", headers[column])));
     said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
         let (row, line) = group.place(i + 1);
@@ -78,7 +80,7 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
     }
 }
 
-/// Adds a cycle wherever a counter or the time of the day ran over.
+/// Adds a cycle wherever a counter ran over.
 fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
     let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
     if steps.is_empty() {
@@ -97,6 +99,21 @@ fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
         time[i] += added;
     }
     (times > 0).then(|| format!("runs over {times} time(s), first in row {}: its times go on from there", first + 1))
+}
+
+/// Adds a day wherever a time of the day falls back by more than half a day.
+fn on_the_next_day(time: &mut [f64]) -> Option<String> {
+    let day_s = calendar::DAY_S as f64;
+    let (mut days, mut first, mut last) = (0.0, None, f64::NEG_INFINITY);
+    for (row, t) in time.iter_mut().enumerate() {
+        if last - *t > 0.5 * day_s {
+            days += 1.0;
+            first = first.or(Some(row + 1));
+        }
+        last = *t;
+        *t += days * day_s;
+    }
+    first.map(|row| format!("passes midnight {days} time(s), first in row {row}: its times go on on the next day"))
 }
 
 /// Turns stamps since 1970 that can be no seconds into seconds since the first row.

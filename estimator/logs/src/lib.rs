@@ -32,7 +32,7 @@ mod watch;
 mod write;
 pub mod written_units;
 
-pub use self::csv::stamps::parse as stamp_ns;
+pub use self::csv::calendar::parse as stamp_ns;
 pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
@@ -191,8 +191,14 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     let dialect = csv::sniff(path)?;
     let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
-    let table = csv::read(path, &dialect, &plan, size, watch)?;
-    let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    let mut read = csv::read(path, &dialect, &plan, size, watch);
+    // A day above 12 anywhere in the file settles the order of day and month.
+    if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {
+        read = csv::read(path, &dialect, &plan, size, watch).or(read);
+    }
+    let table = read?;
+    let mut said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    said.extend(plan::Plan::doubt_about_dates(table.days).map(|text| note("clock", text)));
     assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }
 

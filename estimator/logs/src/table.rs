@@ -14,6 +14,15 @@ pub struct Group {
     lines: Vec<(usize, u64, usize)>,
 }
 
+/// What the dates of a table say about the order of day and month.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Days {
+    /// True if a date on another day than the first has two readings.
+    pub is_open: bool,
+    /// True if a date has one reading only, for a day above 12.
+    pub is_settled: bool,
+}
+
 /// A parsed table: groups in the order in which their trial value first appears.
 #[derive(Debug, Default)]
 pub struct Table {
@@ -25,6 +34,8 @@ pub struct Table {
     pub gappy_columns: Vec<usize>,
     /// Needed columns that have values in some rows only: each has a clock of its own.
     pub sparse_columns: Vec<usize>,
+    /// Order of day and month in the dates.
+    pub days: Days,
     /// Contents of every trial, also of those not selected.
     pub fingerprints: Fingerprints,
 }
