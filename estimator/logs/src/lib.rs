@@ -27,6 +27,7 @@ mod room;
 mod rows;
 mod sidecar;
 mod table;
+mod text_clock;
 pub mod units;
 mod watch;
 mod write;
@@ -197,15 +198,18 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
         read = csv::read(path, &dialect, &plan, size, watch).or(read);
     }
     let table = read?;
-    let mut said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
-    said.extend(plan::Plan::doubt_about_dates(table.days).map(|text| note("clock", text)));
+    let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    plan.notes.extend(plan::Plan::doubt_about_dates(table.days));
     assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }
 
 /// From the columns of a container to recordings.
-fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
+fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
     let headers = raw.headers.clone();
-    let plan = plan::plan(&headers, &raw.units, &raw.resolved(meta), path)?;
+    let resolved = raw.resolved(meta);
+    let mut plan = plan::plan(&headers, &raw.units, &resolved, path)?;
+    let days = text_clock::take(&mut raw, &mut plan, &resolved, path)?;
+    plan.notes.extend(plan::Plan::doubt_about_dates(days));
     let table = columnar::table(raw, &plan, path)?;
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }

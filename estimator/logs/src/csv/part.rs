@@ -289,12 +289,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             let what = format!("`{}` is not a time like the others", shown.chars().take(40).collect::<String>());
             return Err(Fault::Cell(column, what));
         };
-        if form.is_dated {
-            let settles = calendar::settles_order(&shown);
-            let days = &mut self.part.days;
-            days.is_settled |= settles == Some(true);
-            days.is_open |= settles == Some(false) && calendar::is_another_day(ns, origin_ns);
-        }
+        self.part.days.look_at(form, &shown, calendar::is_another_day(ns, origin_ns));
         self.row.push(1e-9 * ns.saturating_sub(origin_ns) as f64);
         Ok(())
     }

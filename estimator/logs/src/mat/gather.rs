@@ -107,7 +107,9 @@ impl Gathered {
     /// Takes the elements of an array, which are runs if there are several. Elements of one row each are one run.
     fn array<T>(&mut self, elements: Vec<T>, around: u64, mut take: impl FnMut(&mut Self, T, u64)) {
         if elements.len() < 2 {
-            elements.into_iter().for_each(|element| take(self, element, around));
+            for element in elements {
+                take(self, element, around);
+            }
             return;
         }
         let outer = std::mem::take(&mut self.grown);

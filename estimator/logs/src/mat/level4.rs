@@ -23,7 +23,7 @@ struct Header {
 impl Header {
     /// The header that these whole numbers make; none if they make no header.
     fn of([code, rows, columns, imaginary, name]: [u32; 5], order: Order) -> Option<Self> {
-        let machine = if order == Order::Big { 1 } else { 0 };
+        let machine = u32::from(order == Order::Big);
         let (of, reserved, kind, content) = (code / 1000, code / 100 % 10, code / 10 % 10, code % 10);
         let kind = match kind {
             0 => Kind::F64,
@@ -35,7 +35,7 @@ impl Header {
             _ => return None,
         };
         let is_one = of == machine && reserved == 0 && content <= 2 && imaginary <= 1;
-        let fits = rows <= i32::MAX as u32 && columns <= i32::MAX as u32 && (2..=LONGEST_NAME).contains(&name);
+        let fits = [rows, columns].iter().all(|n| i32::try_from(*n).is_ok()) && (2..=LONGEST_NAME).contains(&name);
         (is_one && fits).then_some(Self { kind, content, rows, columns, is_complex: imaginary == 1, name })
     }
 

@@ -58,12 +58,10 @@ fn variables(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Vec<(String, V
     let mut take = |name: String, value: Value, left: u64| {
         (watch.progress)(1.0 - left as f64 / size.max(1) as f64);
         // The last one of a name holds, as in MATLAB.
-        match known.get(&name).and_then(|&at: &usize| found.get_mut(at)) {
+        let at: usize = *known.entry(name.clone()).or_insert(found.len());
+        match found.get_mut(at) {
             Some(earlier) => earlier.1 = value,
-            None => {
-                known.insert(name.clone(), found.len());
-                found.push((name, value));
-            }
+            None => found.push((name, value)),
         }
     };
     if let Some(order) = level5::order(&start) {

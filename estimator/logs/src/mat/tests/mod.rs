@@ -114,6 +114,21 @@ fn text_is_a_column_or_a_label() {
 }
 
 #[test]
+fn dates_and_times_of_the_day_in_text_are_the_clock() {
+    let q = column(&Q[..3]);
+    let stamps = V::Chars(vec!["17-Apr-2026", "2", "3"]);
+    assert!(log(&[("time", stamps), ("q_m", q.clone())], "{}").time_s.is_none(), "no stamps that are known");
+    let stamps = V::Chars(vec!["2026-04-17 23:59:59.5", "2026-04-18 00:00:00", "2026-04-18 00:00:02"]);
+    assert_eq!(log(&[("time", stamps), ("q_m", q.clone())], "{}").time_s, Some(vec![0.0, 0.5, 2.5]));
+    let (days, times) = (texts(&["11/04/2026", "12/04/2026", "13/04/2026"]), texts(&["12:00", "12:00", "12:01"]));
+    let read = log(&[("day", days), ("begun", times), ("q_m", q.clone())], "{}");
+    assert_eq!(read.time_s, Some(vec![0.0, 86_400.0, 172_860.0]));
+    let faulty = [("time", texts(&["12:00", "x", "12:01"])), ("q_m", q)];
+    let text = loaded(&Form::ALL[0].file(&faulty), "{}").expect_err("no time").to_string();
+    assert!(text.contains("row 2, column `time`: `x` is not a time like the others"), "{text}");
+}
+
+#[test]
 fn values_of_other_kinds_are_named_and_left_out() {
     let log = log(
         &[
