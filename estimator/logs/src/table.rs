@@ -1,6 +1,6 @@
 //! The common intermediate of every format: rows by trial, column by column, with their places in the file.
 
-use super::csv::calendar::{self, Form};
+use super::csv::calendar::Days;
 use super::fingerprint::Fingerprints;
 use haptics::recording::Labels;
 
@@ -13,24 +13,6 @@ pub struct Group {
     pub labels: Labels,
     /// Line in the file of every row, run-length coded: (first row index in the group, its line, its row in the file).
     lines: Vec<(usize, u64, usize)>,
-}
-
-/// Evidence of a table's dates for the order of day and month.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Days {
-    /// True if a date on another day than the first has two readings.
-    pub is_open: bool,
-    /// True if a date has one reading only, for a day above 12.
-    pub is_settled: bool,
-}
-
-impl Days {
-    /// Looks at a stamp, which may be on another day than the first.
-    pub fn look_at(&mut self, form: Form, text: &str, is_another_day: bool) {
-        let settles = calendar::settles_order(text).filter(|_| form.is_dated);
-        self.is_settled |= settles == Some(true);
-        self.is_open |= settles == Some(false) && is_another_day;
-    }
 }
 
 /// A parsed table: groups in the order in which their trial value first appears.

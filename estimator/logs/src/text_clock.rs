@@ -1,10 +1,9 @@
 //! Time columns of text in a container: times of the calendar or of the day become seconds.
 
-use super::csv::calendar::{self, Form};
+use super::csv::calendar::{self, Days, Form};
 use super::errors::LogError;
 use super::plan::{Plan, Use};
 use super::raw::{Cells, Raw};
-use super::table::Days;
 use haptics::recording::Meta;
 use std::path::Path;
 

@@ -39,6 +39,24 @@ impl Form {
     }
 }
 
+/// Evidence of a table's dates for the order of day and month.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Days {
+    /// True if a date on another day than the first has two readings.
+    pub is_open: bool,
+    /// True if a date has one reading only, for a day above 12.
+    pub is_settled: bool,
+}
+
+impl Days {
+    /// Looks at a stamp, which may be on another day than the first.
+    pub fn look_at(&mut self, form: Form, text: &str, is_another_day: bool) {
+        let settles = settles_order(text).filter(|_| form.is_dated);
+        self.is_settled |= settles == Some(true);
+        self.is_open |= settles == Some(false) && is_another_day;
+    }
+}
+
 /// Nanoseconds since the start of 1970 of a date with a time, or since midnight of a time alone: `2025-04-17T17:00:08.12Z`,
 /// `17.04.2025 17:00:08,12`, `4/17/25 5:00:08 PM`, `17:00:08.12`. A zone is left out of account but for its offset.
 pub fn parse(text: &str) -> Option<i64> {

@@ -1,12 +1,11 @@
 //! One block of a table, parsed by itself: places count from its own start.
 
-use super::calendar::{self, Form};
+use super::calendar::{self, Days, Form};
 use super::cells::{Cells, Notation, number, record_end};
 use super::plain::{self, Plain};
 use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::plan::{Plan, Use};
 use crate::raw::MISSING;
-use crate::table::Days;
 use haptics::recording::Labels;
 use memchr::memchr;
 

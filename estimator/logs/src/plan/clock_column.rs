@@ -1,8 +1,7 @@
 //! The time column: told by its name, or by times of the calendar in it.
 
 use super::{Plan, Planner, Use};
-use crate::csv::calendar::{self, Form, Order};
-use crate::table::Days;
+use crate::csv::calendar::{self, Days, Form, Order};
 use crate::units::Dimension;
 use crate::written_units::{self, Written};
 use haptics::recording::Meta;
