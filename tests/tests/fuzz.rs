@@ -62,6 +62,7 @@ fn all() -> Vec<Target> {
     let of = |name, run, seeds, spoiled| Target { name, run, seeds, spoiled };
     vec![
         of("log", targets::log::run, corpus("log"), 60),
+        of("mat", targets::mat::run, corpus("mat"), 60),
         of("mcap", targets::mcap::run, corpus("mcap"), 60),
         of("parquet", targets::parquet::run, corpus("parquet"), 60),
         of("sidecar", targets::sidecar::run, corpus("sidecar"), 60),

@@ -305,7 +305,7 @@ fn the_corpus_of_odd_inputs_ends_in_recordings_or_sentences() {
     let path = folder.path().join("log.csv");
     let mut seen = 0;
     // By content: the name says CSV for every one of them.
-    for kind in ["log", "mcap", "parquet"] {
+    for kind in ["log", "mat", "mcap", "parquet"] {
         for entry in std::fs::read_dir(corpus.join(kind)).expect("the corpus") {
             std::fs::copy(entry.expect("an entry").path(), &path).expect("writable");
             seen += usize::from(sentence(&path));

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `convert`.
 #[derive(Args)]
 pub struct Convert {
-    /// Log file: CSV, MCAP or Parquet, told by its content
+    /// Log file: CSV, MCAP, Parquet or MATLAB, told by its content
     #[arg(value_name = "IN")]
     log: PathBuf,
     /// Where to write it; the ending names the format: .csv (with a sidecar beside it), .mcap or .parquet (which carry it)

@@ -30,7 +30,9 @@ impl Info {
         }
         let recordings = self.source.load(&self.log)?;
         let text = recordings.iter().map(describe).collect::<Vec<_>>().join("\n");
-        let mut all: Vec<Value> = recordings.iter().map(to_json).collect::<serde_json::Result<_>>()?;
+        let format = estimator::log::format(&self.log)?.name();
+        let mut all: Vec<Value> =
+            recordings.iter().map(|recording| to_json(recording, format)).collect::<serde_json::Result<_>>()?;
         let json = if all.len() == 1 {
             all.remove(0)
         } else {
@@ -84,6 +86,8 @@ fn definition(recording: &Recording, task: Task) -> Option<Definition> {
 pub(crate) struct Said {
     /// The file, and the trial where there are several.
     name: String,
+    /// Format of the file: `csv`, `mat`, `mcap` or `parquet`.
+    format: &'static str,
     /// Value of the `trial` column, where there are several.
     trial: Option<String>,
     /// What was done, as far as it is known.
@@ -119,7 +123,7 @@ pub(crate) struct Column {
     max: Option<f64>,
 }
 
-fn to_json(recording: &Recording) -> serde_json::Result<Value> {
+fn to_json(recording: &Recording, format: &'static str) -> serde_json::Result<Value> {
     let task = recording.meta.task.and_then(|task| definition(recording, task));
     let columns = recording.channels.iter().map(|channel| {
         let (low, high) = range(&channel.values);
@@ -128,6 +132,7 @@ fn to_json(recording: &Recording) -> serde_json::Result<Value> {
     });
     serde_json::to_value(Said {
         name: recording.name.clone(),
+        format,
         trial: recording.trial.clone(),
         task: recording.meta.task,
         task_definition: task.as_ref().map(|task| task.name.clone()),

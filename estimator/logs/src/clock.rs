@@ -1,5 +1,6 @@
 //! The times of a recording's rows: counters that ran over, epochs, and columns that have clocks of their own.
 
+use super::csv::calendar;
 use super::errors::LogError;
 use super::mcap::resample;
 use super::plan::{Plan, Use};
@@ -19,6 +20,8 @@ const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 
 const RATES_HZ: std::ops::Range<f64> = 5.0..50_000.0;
 /// Fewer stamps show no clock: they may count poses.
 const FEWEST_STAMPS: usize = 50;
+/// Length of a day, s.
+pub const DAY_S: f64 = calendar::DAY_S as f64;
 /// Numbers at which counters of 16, 31 and 32 bits run over.
 const COUNTERS: [f64; 3] = [65_536.0, 2_147_483_648.0, 4_294_967_296.0];
 /// A step over the end of a counter is that of its neighbours to this share.
@@ -38,9 +41,12 @@ pub fn times(
     };
     let mut time = std::mem::take(&mut group.columns[column]);
     let mut said = Vec::new();
-    let cycles = cycles(plan.uses[column]);
-    let factor = if let Use::Number { factor, .. } = plan.uses[column] { factor } else { 1.0 };
-    said.extend(unwrapped(&mut time, &cycles).map(|what| format!("the column `{}` {what}", headers[column])));
+    let (factor, passed) = match plan.uses[column] {
+        Use::Number { factor, .. } => (factor, unwrapped(&mut time, &COUNTERS.map(|count| count * factor))),
+        Use::Stamp { form, .. } if !form.is_dated => (1.0, on_the_next_day(&mut time)),
+        _ => (1.0, None),
+    };
+    said.extend(passed.map(|what| format!("the column `{}` {what}", headers[column])));
     said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
         let (row, line) = group.place(i + 1);
@@ -64,7 +70,7 @@ pub fn times(
 pub fn cycles(clock: Use) -> Vec<f64> {
     match clock {
         Use::Number { factor, .. } => COUNTERS.map(|count| count * factor).to_vec(),
-        _ => vec![super::csv::stamps::DAY_S as f64],
+        _ => vec![DAY_S],
     }
 }
 
@@ -109,7 +115,7 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
     }
 }
 
-/// Adds a cycle wherever a counter or the time of the day ran over.
+/// Adds a cycle wherever a counter ran over.
 fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
     let usual = usual_step(time)?;
     let (mut added, mut times, mut first) = (0.0, 0, 0);
@@ -122,6 +128,20 @@ fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
         time[i] += added;
     }
     (times > 0).then(|| format!("runs over {times} time(s), first in row {}: its times go on from there", first + 1))
+}
+
+/// Adds a day wherever a time of the day falls back by more than half a day.
+fn on_the_next_day(time: &mut [f64]) -> Option<String> {
+    let (mut days, mut first, mut last) = (0.0, None, f64::NEG_INFINITY);
+    for (row, t) in time.iter_mut().enumerate() {
+        if last - *t > 0.5 * DAY_S {
+            days += 1.0;
+            first = first.or(Some(row + 1));
+        }
+        last = *t;
+        *t += days * DAY_S;
+    }
+    first.map(|row| format!("passes midnight {days} time(s), first in row {row}: its times go on on the next day"))
 }
 
 /// Turns stamps since 1970 that can be no seconds into seconds since the first row.

@@ -136,7 +136,12 @@ fn usable(
     let mut uses = vec![None; plan.uses.len()];
     let mut worst: Option<(usize, usize, String)> = None;
     for (column, wanted) in plan.uses.iter().enumerate() {
-        let Use::Number { required, factor } = *wanted else { continue };
+        let (required, factor) = match *wanted {
+            Use::Number { required, factor } => (required, factor),
+            // Its text has become seconds.
+            Use::Stamp { .. } => (true, 1.0),
+            Use::Ignore => continue,
+        };
         let cells = &raw.columns[column];
         let rows = groups.iter().flat_map(|(_, rows)| rows);
         let first_bad = rows.copied().filter(|&row| !number(cells, row).is_finite()).min();

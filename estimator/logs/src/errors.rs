@@ -72,7 +72,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Not a table at all.
-    #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP or a Parquet file: {path}", why = plain(why), path = path.display())]
+    #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP, a Parquet or a MATLAB file: {path}", why = plain(why), path = path.display())]
     NotATable {
         /// Signs of its real kind.
         why: String,
@@ -112,7 +112,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A container without anything that can be read as columns of numbers.
-    #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", why = plain(why), path = path.display())]
+    #[error("nothing in the {format} file can be read as columns of numbers ({why}); {advice}: {path}", why = plain(why), advice = columns_advice(format), path = path.display())]
     NoColumns {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
@@ -319,7 +319,15 @@ fn place(row: usize, line: u64) -> String {
     if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
 }
 
-/// Advice about a cell: nobody corrects one of an MCAP or Parquet file, which have no lines.
+/// Advice about a container without columns of numbers.
+fn columns_advice(format: &str) -> &'static str {
+    match format {
+        "MATLAB" => "save vectors of equal length, one of them the time, with save('log.mat', ..., '-v7')",
+        _ => "export the log with JSON, protobuf or ROS 2 messages, or as CSV",
+    }
+}
+
+/// Advice about a cell: nobody corrects one of a container, which has no lines.
 fn cell_advice(line: u64) -> &'static str {
     if line == 0 {
         "map another column in the sidecar, or record that channel again"

@@ -1,6 +1,7 @@
 //! Format of a file: told by its content, never by its name.
 
 use super::errors::LogError;
+use super::mat;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
@@ -10,6 +11,8 @@ use std::path::Path;
 pub enum Format {
     /// A table of text; also anything that no other format claims.
     Csv,
+    /// MATLAB's variables, of versions 4 to 7.
+    Mat,
     /// Foxglove's container of messages.
     Mcap,
     /// Apache Parquet.
@@ -19,12 +22,15 @@ pub enum Format {
 /// Looks at the first bytes of a file.
 pub fn of(path: &Path) -> Result<Format, LogError> {
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
-    let mut start = Vec::with_capacity(8);
-    File::open(path).map_err(io)?.take(8).read_to_end(&mut start).map_err(io)?;
-    Ok(of_bytes(&start))
+    let file = File::open(path).map_err(io)?;
+    let size = file.metadata().map_err(io)?.len();
+    let mut start = Vec::with_capacity(mat::START);
+    file.take(mat::START as u64).read_to_end(&mut start).map_err(io)?;
+    Ok(of_bytes(&start, size))
 }
 
-fn of_bytes(start: &[u8]) -> Format {
+/// `start`: the first bytes of a file of `size` bytes.
+fn of_bytes(start: &[u8], size: u64) -> Format {
     // The version byte and the line ends after it are the reader's business: a file mangled there should be called damaged.
     if start.starts_with(b"\x89MCAP") {
         return Format::Mcap;
@@ -33,19 +39,30 @@ fn of_bytes(start: &[u8]) -> Format {
     if start.starts_with(b"PAR1") || start.starts_with(b"PARE") {
         return Format::Parquet;
     }
+    if mat::is_one(start, size) {
+        return Format::Mat;
+    }
     Format::Csv
+}
+
+impl Format {
+    /// Name of the format, as its files end.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Mat => "mat",
+            Self::Mcap => "mcap",
+            Self::Parquet => "parquet",
+        }
+    }
 }
 
 /// Kind of a file that is not read, by its first bytes, with the way for its owner to get a log out of it.
 pub fn foreign(start: &[u8]) -> Option<&'static str> {
-    const KNOWN: [(&[u8], &str); 9] = [
-        (
-            b"MATLAB 5.0",
-            "a MATLAB file; write it as a table with writetable(…, 'log.csv') in MATLAB, or with scipy.io.loadmat and pandas",
-        ),
+    const KNOWN: [(&[u8], &str); 8] = [
         (
             b"\x89HDF\r\n",
-            "an HDF5 file, which MATLAB 7.3 also writes; write it as CSV or Parquet, with pandas for example",
+            "an HDF5 file, as of MATLAB 7.3; save it with save('file.mat', ..., '-v7') there, elsewhere as CSV or Parquet",
         ),
         (b"#ROSBAG", "a ROS 1 bag; convert it with `mcap convert`"),
         (
@@ -58,6 +75,9 @@ pub fn foreign(start: &[u8]) -> Option<&'static str> {
         (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `unzstd`"),
         (b"\x93NUMPY", "a NumPy array; write it as CSV with a header line of column names"),
     ];
+    if start.starts_with(b"MATLAB 7.3") || mat::is_hdf5(start) {
+        return Some("a MATLAB file of version 7.3; save it with save('file.mat', ..., '-v7')");
+    }
     let known = KNOWN.iter().find(|(magic, _)| start.starts_with(magic)).map(|&(_, what)| what);
     known.or_else(|| markup(start))
 }
@@ -78,16 +98,21 @@ mod tests {
 
     #[test]
     fn the_first_bytes_decide() {
-        assert_eq!(of_bytes(b"\x89MCAP0\r\n"), Format::Mcap);
-        assert_eq!(of_bytes(b"PAR1\x15\x04"), Format::Parquet);
-        assert_eq!(of_bytes(b"t_s,q_m\n"), Format::Csv);
-        assert_eq!(of_bytes(b"PAR"), Format::Csv);
-        assert_eq!(of_bytes(b""), Format::Csv);
+        let of = |start: &[u8]| of_bytes(start, start.len() as u64);
+        assert_eq!(of(b"\x89MCAP0\r\n"), Format::Mcap);
+        assert_eq!(of(b"PAR1\x15\x04"), Format::Parquet);
+        assert_eq!(of(b"t_s,q_m\n"), Format::Csv);
+        assert_eq!(of(b"PAR"), Format::Csv);
+        assert_eq!(of(b""), Format::Csv);
+        assert_eq!(of(b"MATLAB 5.0 MAT-file"), Format::Mat);
+        assert_eq!(of(b"MATLAB 7.3 MAT-file"), Format::Csv);
     }
 
     #[test]
     fn well_known_files_are_named() {
-        assert!(foreign(b"MATLAB 5.0 MAT-file, Platform: GLNXA64").is_some_and(|what| what.contains("writetable")));
+        for start in [&b"MATLAB 7.3 MAT-file, Platform: GLNXA64"[..], b"\x89HDF\r\n\x1a\n"] {
+            assert!(foreign(start).is_some_and(|what| what.contains("save('file.mat', ..., '-v7')")));
+        }
         assert!(foreign(b"t_s,q_m\n").is_none() && foreign(b"").is_none());
         assert!(foreign(b"<!DOCTYPE html>\n<html>").is_some_and(|what| what.contains("web page")));
         assert!(foreign(b"\n { \"t_s\": [0, 1] }").is_some_and(|what| what.starts_with("JSON")));

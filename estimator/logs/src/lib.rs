@@ -13,6 +13,7 @@ mod errors;
 mod facts;
 mod fingerprint;
 mod format;
+mod mat;
 mod mcap;
 mod pages;
 #[cfg(feature = "parquet")]
@@ -22,17 +23,19 @@ pub mod preview;
 pub mod pyramid;
 mod raw;
 mod repairs;
+mod room;
 mod rows;
 mod runs;
 mod sidecar;
 mod suggested;
 mod table;
+mod text_clock;
 pub mod units;
 mod watch;
 mod write;
 pub mod written_units;
 
-pub use self::csv::stamps::parse as stamp_ns;
+pub use self::csv::calendar::parse as stamp_ns;
 pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
@@ -122,12 +125,19 @@ fn load_sized(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<
     read(path, format::of(path)?, size, Facts::Given(meta), watch)
 }
 
+/// Format of a file, told by its content.
+pub fn format(path: &Path) -> Result<Format, LogError> {
+    admissible_size(path)?;
+    format::of(path)
+}
+
 /// The column names of a table, for a mapping dialog.
 pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     let size = admissible_size(path)?;
     let nothing = Meta::default();
     match format::of(path)? {
         Format::Csv => Ok(csv::sniff(path)?.headers),
+        Format::Mat => Ok(mat::read(path, size, &Watch::none())?.0.headers),
         Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
         Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
     }
@@ -191,6 +201,10 @@ fn read(
 ) -> Result<Vec<Recording>, LogError> {
     let done = match format {
         Format::Csv => facts.settle(None, path).and_then(|(meta, _)| read_csv(path, &meta, size, watch)),
+        Format::Mat => mat::read(path, size, watch).and_then(|(raw, said)| {
+            let (meta, _) = facts.settle(None, path)?;
+            finish(raw, &meta, path, &said)
+        }),
         Format::Mcap => mcap::read(path, size, watch).and_then(|log| {
             let (meta, stray) = facts.settle(log.sidecar.as_deref(), path)?;
             let (raw, mut said) = log.columns(&meta)?;
@@ -215,15 +229,24 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     let dialect = csv::sniff(path)?;
     let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
-    let table = csv::read(path, &dialect, &plan, size, watch)?;
+    let mut read = csv::read(path, &dialect, &plan, size, watch);
+    // A day above 12 anywhere in the file settles the order of day and month.
+    if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {
+        read = csv::read(path, &dialect, &plan, size, watch).or(read);
+    }
+    let table = read?;
     let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    plan.notes.extend(plan::Plan::doubt_about_dates(table.days));
     assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }
 
 /// From the columns of a container to recordings.
-fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
+fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
     let headers = raw.headers.clone();
-    let plan = plan::plan(&headers, &[], &raw.resolved(meta), path)?;
+    let resolved = raw.resolved(meta);
+    let mut plan = plan::plan(&headers, &raw.units, &resolved, path)?;
+    let days = text_clock::take(&mut raw, &mut plan, &resolved, path)?;
+    plan.notes.extend(plan::Plan::doubt_about_dates(days));
     let table = columnar::table(raw, &plan, path)?;
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }

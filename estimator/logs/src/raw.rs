@@ -69,6 +69,8 @@ pub struct Raw {
     pub headers: Vec<String>,
     /// Full names `topic.field` beside `headers`, by which a sidecar may name a column too; empty where there are none.
     pub aliases: Vec<String>,
+    /// Texts of the units that stand outside the names; empty where there are none.
+    pub units: Vec<String>,
     /// The columns.
     pub columns: Vec<Cells>,
     /// Full names of items of lists by place, and by the name of the item.

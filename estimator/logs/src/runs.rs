@@ -159,7 +159,9 @@ fn starts(time: &[f64], cycles: &[f64]) -> Vec<usize> {
     for row in 1..time.len() {
         let first = starts[starts.len() - 1];
         let (step, span) = (time[row] - time[row - 1], time[row - 1] - time[first]);
-        let is_cycle = clock::cycle_of(step, usual, cycles).is_some();
+        // A time of the day may pause over midnight.
+        let is_night = cycles.contains(&clock::DAY_S) && -step > 0.5 * clock::DAY_S;
+        let is_cycle = is_night || clock::cycle_of(step, usual, cycles).is_some();
         if step < 0.0 && -step >= LEAST_FALL * span && !is_cycle && row - first >= LEAST_ROWS && goes_on(row) {
             starts.push(row);
         }

@@ -1,5 +1,6 @@
 //! The common intermediate of every format: rows by trial, column by column, with their places in the file.
 
+use super::csv::calendar::Days;
 use super::fingerprint::Fingerprints;
 use haptics::recording::Labels;
 
@@ -25,6 +26,8 @@ pub struct Table {
     pub gappy_columns: Vec<usize>,
     /// Needed columns that have values in some rows only: each has a clock of its own.
     pub sparse_columns: Vec<usize>,
+    /// Order of day and month in the dates.
+    pub days: Days,
     /// Contents of every trial, also of those not selected.
     pub fingerprints: Fingerprints,
 }

@@ -4,6 +4,7 @@
 
 pub mod documents;
 pub mod log;
+pub mod mat;
 pub mod mcap;
 pub mod parquet;
 pub mod serial;

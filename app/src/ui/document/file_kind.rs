@@ -15,7 +15,7 @@ pub const LOAD: JobKind = JobKind::new("load");
 pub(crate) const START_BYTES: u64 = 4096;
 
 /// Endings that the log of a sidecar may have.
-pub(crate) const LOG_ENDINGS: [&str; 6] = ["csv", "mcap", "parquet", "tsv", "txt", "dat"];
+pub(crate) const LOG_ENDINGS: [&str; 7] = ["csv", "mcap", "parquet", "mat", "tsv", "txt", "dat"];
 
 /// Kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

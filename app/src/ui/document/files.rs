@@ -17,7 +17,7 @@ const THERE: Duration = Duration::from_millis(250);
 const NO_DIALOG: &str =
     "This system opens no file dialog; type the path into the field, or drop the file on the window.";
 /// Endings of logs.
-const LOGS: &[&str] = &["csv", "txt", "tsv", "dat", "mcap", "parquet"];
+const LOGS: &[&str] = &["csv", "txt", "tsv", "dat", "mcap", "parquet", "mat"];
 
 /// Waiting for a file dialog.
 const DIALOG: JobKind = JobKind::new("dialog").waits();

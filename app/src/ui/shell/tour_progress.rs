@@ -30,7 +30,7 @@ pub(crate) const STEPS: [Step; 7] = [
     },
     Step {
         title: "Open a recording",
-        text: "Drop a log anywhere on the window: CSV, MCAP or Parquet. Columns with foreign names are asked about once.",
+        text: "Drop a log anywhere on the window: CSV, MCAP, Parquet or MATLAB. Columns with foreign names are asked about once.",
         at: Some((Workspace::Calibrate, PanelId::RECORDING)),
     },
     Step {

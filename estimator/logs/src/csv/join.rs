@@ -79,6 +79,8 @@ impl<'a> Join<'a> {
                 all.extend((!all.contains(column)).then_some(*column));
             }
         }
+        self.table.days.is_open |= part.days.is_open;
+        self.table.days.is_settled |= part.days.is_settled;
         self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
         for (all, seen) in self.seen.iter_mut().zip(&part.seen) {
             for text in seen {

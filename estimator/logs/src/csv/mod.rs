@@ -7,6 +7,7 @@
 #[cfg(target_arch = "x86_64")]
 mod batch;
 mod blocks;
+pub mod calendar;
 mod cells;
 mod dialect;
 mod encoding;
@@ -18,7 +19,6 @@ mod plain;
 #[cfg(target_arch = "x86_64")]
 mod simd;
 mod sniff;
-pub mod stamps;
 pub mod text_table;
 
 use super::errors::LogError;
@@ -260,5 +260,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
     }
 }
 
+#[cfg(test)]
+mod calendar_tests;
 #[cfg(test)]
 mod tests;

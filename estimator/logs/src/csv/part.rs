@@ -1,8 +1,8 @@
 //! One block of a table, parsed by itself: places count from its own start.
 
+use super::calendar::{self, Days, Form};
 use super::cells::{Cells, Notation, number, record_end};
 use super::plain::{self, Plain};
-use super::stamps;
 use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::plan::{Plan, Use};
 use crate::raw::MISSING;
@@ -76,6 +76,8 @@ pub struct Part {
     pub text_columns: Vec<usize>,
     /// Columns with a cell without a value, or with no finite number if nobody needs it.
     pub gappy_columns: Vec<usize>,
+    /// Order of day and month in the dates.
+    pub days: Days,
     /// The first thing wrong, with its row and line counted from 0 here; the rows before it are complete.
     pub fault: Option<(usize, u64, Fault)>,
 }
@@ -118,6 +120,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             seen: vec![Vec::new(); plan.select.len()],
             text_columns: Vec::new(),
             gappy_columns: Vec::new(),
+            days: Days::default(),
             fault: None,
         };
         let has_stamps = plan.uses.iter().any(|wanted| matches!(wanted, Use::Stamp { .. }));
@@ -217,7 +220,10 @@ impl<'a, 'p> Reader<'a, 'p> {
         for column in 0..self.layout.width {
             match self.layout.uses[column] {
                 Use::Number { required, factor } => self.cell(column, cells.get(record, column), required, factor)?,
-                Use::Stamp { origin_ns } => self.stamp(column, cells.get(record, column), origin_ns)?,
+                Use::Stamp { origin_ns, form } => {
+                    let date = form.date.map_or(&b""[..], |date| cells.get(record, date));
+                    self.stamp(column, (date, cells.get(record, column)), (origin_ns, form))?;
+                }
                 Use::Ignore => {}
             }
         }
@@ -271,12 +277,18 @@ impl<'a, 'p> Reader<'a, 'p> {
         Err(Fault::Cell(column, what))
     }
 
-    fn stamp(&mut self, column: usize, cell: &[u8], origin_ns: i64) -> Result<(), Fault> {
-        let shown = String::from_utf8_lossy(cell);
-        let Some(ns) = stamps::parse(&shown) else {
+    fn stamp(
+        &mut self,
+        column: usize,
+        (date, time): (&[u8], &[u8]),
+        (origin_ns, form): (i64, Form),
+    ) -> Result<(), Fault> {
+        let shown = String::from_utf8_lossy(&[date, b" ", time].concat()).trim_start().to_owned();
+        let Some(ns) = form.read(&shown) else {
             let what = format!("`{}` is not a time like the others", shown.chars().take(40).collect::<String>());
             return Err(Fault::Cell(column, what));
         };
+        self.part.days.look_at(form, &shown, calendar::is_another_day(ns, origin_ns));
         self.row.push(1e-9 * ns.saturating_sub(origin_ns) as f64);
         Ok(())
     }

@@ -17,11 +17,14 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
     let mut start = Vec::with_capacity(SNIFF_BYTES);
     File::open(path).map_err(io)?.take(SNIFF_BYTES as u64).read_to_end(&mut start).map_err(io)?;
+    if let Some(what) = format::foreign(&start) {
+        return Err(LogError::NotATable { why: what.to_owned(), path: path.to_path_buf() });
+    }
     let (encoding, is_short) = (encoding::of(&start), start.len() < SNIFF_BYTES);
     let whole = |start: &[u8]| if is_short { Ok(start.to_vec()) } else { std::fs::read(path).map_err(io) };
     let mut notes = Vec::new();
     let mut text = None;
-    if encoding != Encoding::Utf8 && format::foreign(&start).is_none() && !is_binary(&start, encoding) {
+    if encoding != Encoding::Utf8 && !is_binary(&start, encoding) {
         text = Some(encoding::decoded(whole(&start)?, encoding));
         notes.extend((encoding == Encoding::Latin1).then(|| "the text is not UTF-8: it is read as Latin-1".to_owned()));
     }

@@ -25,6 +25,7 @@ pub mod write;
 use super::errors::LogError;
 use super::preview::Preview;
 use super::raw::{Cells, Raw};
+use super::room;
 use super::watch::Watch;
 use ::mcap::records::{Channel, Record};
 use haptics::recording::{Meta, Warning};
@@ -35,11 +36,6 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use topic::Topic;
 
-/// Memory that the table may take in any case, bytes.
-const TABLE_BYTES: u64 = 256 << 20;
-/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
-/// not.
-const TABLE_TIMES_FILE: u64 = 32;
 /// Number of messages after which the memory is checked.
 const CHECK_EVERY: u64 = 1024;
 /// Number of messages after which the decoded values are shown.
@@ -260,7 +256,7 @@ impl<'a> Reading<'a> {
 
     fn check_memory(&self) -> Result<(), LogError> {
         let held: usize = self.sources.iter().map(|s| s.topic.bytes() + s.topic.text_bytes()).sum();
-        if held as u64 > TABLE_BYTES.max(TABLE_TIMES_FILE * self.size) {
+        if held as u64 > room::limit(self.size) {
             return Err(self.damaged(format!("it unpacks to more than {} MiB of values", held >> 20)));
         }
         Ok(())

@@ -9,7 +9,7 @@ use super::{footer, guard};
 use crate::errors::LogError;
 use crate::raw::{Cells, Raw};
 use crate::watch::Watch;
-use crate::{pages, units};
+use crate::{pages, room, units};
 use haptics::recording::{Labels, Warning};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -21,12 +21,6 @@ use std::path::Path;
 
 /// The table, the sidecar that the file carries, and warnings about the file.
 pub type Columns = (Raw, Option<String>, Vec<Warning>);
-
-/// Memory that the table may take in any case, bytes.
-const TABLE_BYTES: u64 = 256 << 20;
-/// Memory that the table may take in multiples of the size of the file: real logs stay far below, packed nonsense does
-/// not.
-const TABLE_TIMES_FILE: u64 = 32;
 
 /// Reads the columns of a Parquet file.
 pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError> {
@@ -70,7 +64,7 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
         return Err(LogError::Packed { format: "Parquet", codec, instead: "zstd or snappy", path: path.to_path_buf() });
     }
     let rows = u64::try_from(facts.num_rows()).map_err(|_| damaged("a negative number of rows".to_owned()))?;
-    let (bytes, limit) = (rows.saturating_mul(8 * fields.len() as u64), TABLE_BYTES.max(TABLE_TIMES_FILE * size));
+    let (bytes, limit) = (rows.saturating_mul(8 * fields.len() as u64), room::limit(size));
     let Some(mut room) = limit.checked_sub(bytes) else {
         return Err(damaged(format!("it claims {rows} rows, which a file of {size} bytes does not hold")));
     };

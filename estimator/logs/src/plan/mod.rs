@@ -6,6 +6,9 @@ mod selection;
 
 pub use selection::{Wanted, counts_runs};
 
+pub use clock_column::is_clock;
+
+use super::csv::calendar::Form;
 use super::errors::LogError;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
@@ -43,6 +46,8 @@ pub enum Use {
     Stamp {
         /// Nanoseconds of the first row.
         origin_ns: i64,
+        /// Form of the cells.
+        form: Form,
     },
     /// Not read as numbers.
     Ignore,

@@ -38,7 +38,7 @@ impl Planner<'_> {
     fn shown_unit(&self, column: usize) -> String {
         let text = self.unit_text(column, &[]);
         let suffix = self.headers[column].rsplit_once('_').map_or("", |(_, suffix)| suffix);
-        let is_word = suffix.chars().all(|c| c.is_alphanumeric() || c == '%');
+        let is_word = suffix.chars().all(|c| c.is_alphanumeric() || c == '%') && !is_place(suffix);
         if text.is_empty() && is_word { suffix.to_owned() } else { text.trim_matches(['(', ')', '[', ']']).to_owned() }
     }
 
@@ -55,7 +55,9 @@ impl Planner<'_> {
         if self.stated(column).is_empty() && units::split(header).is_some() {
             return Ok(None);
         }
+        // A number behind the name is the place in a list, no unit: `q_1`.
         let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
+        let parts = parts.filter(|(_, text)| !is_place(text));
         let alone = std::iter::once(match self.stated(column) {
             "" => written_units::in_header(header, &[]),
             stated => (header, stated),
@@ -95,6 +97,10 @@ impl Planner<'_> {
         (is_apart && !forms(name).is_empty())
             .then(|| format!("\"columns\" in the sidecar asks for another motion, `{first}`"))
     }
+}
+
+fn is_place(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
 }
 
 /// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and

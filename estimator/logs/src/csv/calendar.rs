@@ -4,19 +4,98 @@
 const NS: i64 = 1_000_000_000;
 pub const DAY_S: i64 = 86_400;
 
+/// Order of day and month in dates of numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    /// Month first between slashes, day first between points and hyphens.
+    #[default]
+    Usual,
+    /// Day first between slashes, month first between hyphens.
+    Other,
+}
+
+impl Order {
+    /// The other order.
+    pub fn other(self) -> Self {
+        if self == Self::Usual { Self::Other } else { Self::Usual }
+    }
+}
+
+/// Form of the stamps of a table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// Column of the dates, if they stand apart from the times of the day.
+    pub date: Option<usize>,
+    /// True for stamps with a date, false for times of the day alone.
+    pub is_dated: bool,
+    /// Order of day and month.
+    pub order: Order,
+}
+
+impl Form {
+    /// Nanoseconds since the start of 1970, or since midnight of a time alone. `text`: the date, a blank, and the time.
+    pub fn read(self, text: &str) -> Option<i64> {
+        if self.is_dated { with_date(text, self.order) } else { of_day(text) }
+    }
+}
+
+/// Evidence of a table's dates for the order of day and month.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Days {
+    /// True if a date on another day than the first has two readings.
+    pub is_open: bool,
+    /// True if a date has one reading only, for a day above 12.
+    pub is_settled: bool,
+}
+
+impl Days {
+    /// Looks at a stamp, which may be on another day than the first.
+    pub fn look_at(&mut self, form: Form, text: &str, is_another_day: bool) {
+        let settles = settles_order(text).filter(|_| form.is_dated);
+        self.is_settled |= settles == Some(true);
+        self.is_open |= settles == Some(false) && is_another_day;
+    }
+}
+
 /// Nanoseconds since the start of 1970 of a date with a time, or since midnight of a time alone: `2025-04-17T17:00:08.12Z`,
 /// `17.04.2025 17:00:08,12`, `4/17/25 5:00:08 PM`, `17:00:08.12`. A zone is left out of account but for its offset.
 pub fn parse(text: &str) -> Option<i64> {
-    let text = text.trim();
-    let (rest, noon) = half_day(text);
+    with_date(text, Order::Usual).or_else(|| with_date(text, Order::Other)).or_else(|| of_day(text))
+}
+
+fn with_date(text: &str, order: Order) -> Option<i64> {
+    let (rest, noon) = half_day(text.trim());
     let (rest, offset_s) = zone(rest);
-    match rest.split_once(['T', ' ']) {
-        Some((date, time)) => {
-            let day_ns = day(date)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
-            day_ns.checked_add(time_of_day(time.trim(), noon)?)
-        }
-        None => time_of_day(rest, noon),
+    let (date, time) = rest.split_once(['T', ' '])?;
+    let day_ns = day(date, order)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
+    day_ns.checked_add(time_of_day(time.trim(), noon)?)
+}
+
+/// Nanoseconds since midnight of a time of the day without a date.
+pub fn of_day(text: &str) -> Option<i64> {
+    let (rest, noon) = half_day(text.trim());
+    time_of_day(zone(rest).0, noon)
+}
+
+/// True for a date without a time.
+pub fn is_date(text: &str) -> bool {
+    day(text.trim(), Order::Usual).or_else(|| day(text.trim(), Order::Other)).is_some()
+}
+
+/// True for a text whose date settles the order of day and month, false for one that has two readings; none for a date
+/// that is the same in both orders.
+pub fn settles_order(text: &str) -> Option<bool> {
+    let date = text.trim().split(['T', ' ']).next().unwrap_or_default();
+    match (day(date, Order::Usual), day(date, Order::Other)) {
+        (Some(usual), Some(other)) => (usual != other).then_some(false),
+        (None, None) => None,
+        _ => Some(true),
     }
+}
+
+/// True if the two stamps, ns, lie on different days.
+pub fn is_another_day(a_ns: i64, b_ns: i64) -> bool {
+    a_ns.div_euclid(DAY_S * NS) != b_ns.div_euclid(DAY_S * NS)
 }
 
 /// The text without AM or PM, and true for PM.
@@ -48,13 +127,13 @@ fn zone(text: &str) -> (&str, i64) {
 }
 
 /// Days since the start of 1970 of `2025-04-17`, `2025/04/17`, `17.04.2025` or `4/17/2025`.
-fn day(date: &str) -> Option<i64> {
+fn day(date: &str, order: Order) -> Option<i64> {
     let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
     let [a, b, c] = parts.as_slice() else { return None };
     let number = |text: &str| text.parse::<i64>().ok().filter(|_| text.bytes().all(|b| b.is_ascii_digit()));
     let (year, month, day) = match () {
         () if a.len() == 4 => (number(a)?, number(b)?, number(c)?),
-        () if date.contains('/') && number(a)? <= 12 => (number(c)?, number(a)?, number(b)?),
+        () if is_month_first(date, order) => (number(c)?, number(a)?, number(b)?),
         () => (number(c)?, number(b)?, number(a)?),
     };
     let year = if year < 100 { 2000 + year } else { year };
@@ -66,6 +145,10 @@ fn day(date: &str) -> Option<i64> {
     let (era, of_era) = (y.div_euclid(400), y.rem_euclid(400));
     let of_year = (153 * m + 2) / 5 + day - 1;
     Some(era * 146_097 + 365 * of_era + of_era / 4 - of_era / 100 + of_year - 719_468)
+}
+
+fn is_month_first(date: &str, order: Order) -> bool {
+    if date.contains('/') { order == Order::Usual } else { date.contains('-') && order == Order::Other }
 }
 
 /// Nanoseconds since midnight of `17:00`, `17:00:08` or `17:00:08.123456`.
@@ -119,5 +202,16 @@ mod tests {
         for text in ["", "17", "0.5", "2025-04-17", "25:00", "2025-13-01T00:00", "a:b", "12:00:00.x", "-1:00"] {
             assert_eq!(parse(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn a_day_above_twelve_settles_the_order() {
+        assert_eq!(parse("13/04/2026 12:00"), parse("13.04.2026 12:00"));
+        assert_eq!(parse("04/13/2026 12:00"), parse("13.04.2026 12:00"));
+        assert_eq!(parse("04-13-2026 12:00"), parse("13.04.2026 12:00"));
+        assert_eq!(parse("03/04/2026 12:00"), parse("04.03.2026 12:00"));
+        let texts = ["03/04/2026 12:00", "13/04/2026", "04-13-2026", "03/03/2026", "2026/03/04", "03.04.2026", "12:00"];
+        assert_eq!(texts.map(settles_order), [Some(false), Some(true), Some(true), None, None, None, None]);
+        assert!(is_date("2026-04-13") && !is_date("2026-04-13 12:00") && !is_date("12:00") && !is_date("1.2"));
     }
 }
