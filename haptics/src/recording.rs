@@ -25,12 +25,21 @@ pub enum Task {
     Barrel,
     /// A toggle switch.
     Switch,
+    /// The load that hangs on a force/torque sensor, in several orientations.
+    Payload,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 6] =
-        [Self::BlockStack, Self::Crank, Self::Needle, Self::Mechanism, Self::Barrel, Self::Switch];
+    pub const ALL: [Self; 7] = [
+        Self::BlockStack,
+        Self::Crank,
+        Self::Needle,
+        Self::Mechanism,
+        Self::Barrel,
+        Self::Switch,
+        Self::Payload,
+    ];
 
     /// The task of a name.
     pub fn from_name(name: &str) -> Option<Self> {
@@ -46,6 +55,36 @@ impl Task {
             Self::Mechanism => "mechanism",
             Self::Barrel => "barrel",
             Self::Switch => "switch",
+            Self::Payload => "payload",
+        }
+    }
+}
+
+/// Axes of the wrench columns of a force/torque sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WrenchFrame {
+    /// The sensor's own axes: they turn with it.
+    Sensor,
+    /// The axes in which the orientation is given.
+    Base,
+}
+
+impl WrenchFrame {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Sensor => Self::Base,
+            Self::Base => Self::Sensor,
+        }
+    }
+
+    /// The name used in sidecars and in names of columns.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sensor => "sensor",
+            Self::Base => "base",
         }
     }
 }
@@ -82,6 +121,12 @@ pub struct Meta {
     /// The axis that points up: `y` (default), `-y`, `z`, … or `none` for a horizontal plane.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub up: Option<String>,
+    /// Axes of wrench columns whose names do not state them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrench_frame: Option<WrenchFrame>,
+    /// Payload and bias that were removed from the wrench, named `object.name` as in a fit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub compensated: BTreeMap<String, f64>,
     /// Hand geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<HandMeta>,

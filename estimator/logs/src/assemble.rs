@@ -4,6 +4,8 @@ use super::errors::LogError;
 use super::plan::{Plan, Use};
 use super::table::{Group, Table};
 use super::{checks, clock, facts, repairs, sidecar, units};
+use foundation::signal::chain::is_chain;
+use foundation::signal::wrench::is_turned_sensor;
 use haptics::recording::{Channel, Meta, Recording, Warning};
 use std::path::Path;
 
@@ -95,7 +97,7 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         notes.push(note("text-column", Some(name), text));
     }
     let is_known = recording.channels.iter().any(|c| units::is_program_name(&c.name));
-    if !is_known && !foundation::signal::chain::is_chain(recording) {
+    if !is_known && !is_chain(recording) && !is_turned_sensor(recording) {
         let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
         notes.push(note("no-known-column", None, text));
     }

@@ -2,15 +2,18 @@
 
 use super::repairs::{AS_RECORDED, KINDS};
 use super::units;
+use foundation::signal::wrench::doubtful_orientation;
 use haptics::recording::{Meta, Recording, Task, Warning};
 use serde_json::Value;
 
 /// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 16] = [
     "task",
     "rate_hz",
     "gravity_m_s2",
     "up",
+    "wrench_frame",
+    "compensated",
     "hand",
     "columns",
     "scale",
@@ -76,18 +79,26 @@ pub fn wrong_type(sidecar: &Value) -> Option<String> {
 }
 
 fn entry(key: &str, value: &Value) -> Option<String> {
-    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "hand") {
+    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "wrench_frame" | "hand") {
         return None;
     }
     match key {
         "task" => task(value),
         "rate_hz" | "gravity_m_s2" => must(key, value, value.is_number(), "a number"),
         "up" => must(key, value, value.is_string(), "a text like \"y\""),
+        "wrench_frame" => must(
+            key,
+            value,
+            value == "sensor" || value == "base",
+            "\"sensor\" (axes that turn with the sensor) or \"base\" (axes of the orientation)",
+        ),
         "hand" => members(key, value, &hand_member),
         "columns" => members(key, value, &|k, v| {
             must(k, v, v.is_string() || v.is_null(), "a column's name in quotes, or null for none")
         }),
-        "scale" | "sign" | "known" => members(key, value, &|k, v| must(k, v, v.is_number(), "a number")),
+        "scale" | "sign" | "known" | "compensated" => {
+            members(key, value, &|k, v| must(k, v, v.is_number(), "a number"))
+        }
         "prior" => members(key, value, &|k, v| {
             let number = |part: &str| v.get(part).is_some_and(Value::is_number);
             must(k, v, number("mean") && number("std"), "an object with two numbers, \"mean\" and \"std\"")
@@ -114,7 +125,12 @@ fn task(value: &Value) -> Option<String> {
     let known = serde_json::from_value::<Task>(value.clone()).is_ok();
     let folder = foundation::tasks::library::folder();
     let own = folder.map_or_else(String::new, |folder| format!(", or a task of yours in {}", folder.display()));
-    must("task", value, known, &format!("one of block-stack, crank, needle, mechanism, barrel and switch{own}"))
+    must(
+        "task",
+        value,
+        known,
+        &format!("one of block-stack, crank, needle, mechanism, barrel, switch and payload{own}"),
+    )
 }
 
 fn hand_member(key: &str, value: &Value) -> Option<String> {
@@ -240,6 +256,8 @@ pub fn doubts(recording: &Recording) -> Vec<Warning> {
     }
     found.extend(rate_doubt(recording).map(warning));
     found.extend(hand_doubt(recording).map(warning));
+    let orientation = |text: String| Warning { kind: "orientation".to_owned(), column: None, spans: Vec::new(), text };
+    found.extend(doubtful_orientation(recording).map(orientation));
     found
 }
 
