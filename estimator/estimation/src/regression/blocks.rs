@@ -43,6 +43,10 @@ const LOST_LOADING: f64 = 1e-4;
 
 /// Symmetric matrix function by eigenvalues; those that vanish give zero.
 fn by_eigenvalues(matrix: &DMatrix<f64>, of: &dyn Fn(f64) -> f64) -> (DMatrix<f64>, Vec<DVector<f64>>) {
+    // A model without a term has no values.
+    if matrix.is_empty() {
+        return (matrix.clone(), Vec::new());
+    }
     let eigen = matrix.clone().symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
     let mut result = DMatrix::zeros(matrix.nrows(), matrix.nrows());

@@ -198,7 +198,7 @@ fn block_size(residuals: &[DVector<f64>]) -> usize {
         return 1;
     }
     let time = (1.0 + correlation) / (1.0 - correlation).max(1e-3);
-    (2.0 * time).ceil().min((n / 8) as f64).max(1.0) as usize
+    (4.0 * time).ceil().min((n / 5) as f64).max(1.0) as usize
 }
 
 impl Estimate {
