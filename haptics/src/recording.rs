@@ -31,15 +31,8 @@ pub enum Task {
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 7] = [
-        Self::BlockStack,
-        Self::Crank,
-        Self::Needle,
-        Self::Mechanism,
-        Self::Barrel,
-        Self::Switch,
-        Self::Payload,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::BlockStack, Self::Crank, Self::Needle, Self::Mechanism, Self::Barrel, Self::Switch, Self::Payload];
 
     /// The task of a name.
     pub fn from_name(name: &str) -> Option<Self> {

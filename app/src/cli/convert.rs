@@ -3,8 +3,8 @@
 use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
-use estimator::log::Attachment;
 use estimator::identify::payload::compensate::{compensated, removed};
+use estimator::log::Attachment;
 use haptics::recording::{Recording, Warning};
 use haptics::world::World;
 use schemars::JsonSchema;

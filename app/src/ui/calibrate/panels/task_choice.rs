@@ -27,8 +27,7 @@ mod words {
 }
 
 /// Offered tasks.
-const TASKS: [Task; 6] =
-    [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism, Task::Payload];
+const TASKS: [Task; 6] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism, Task::Payload];
 
 /// Selection of the user.
 enum Picked {

@@ -109,7 +109,7 @@ pub fn doubts(seen: &Observed, found: &Estimate) -> Vec<String> {
     }
     let is_fine = better.is_none();
     // A residual of rounding errors is no accuracy.
-    let is_seen = unexplained(found)[1] > 1e-9;
+    let is_few = unexplained(found)[1] > 1e-9 && found.rows.len() < 3 * found.values.len();
     said.extend(better);
     if let Some((weight, error)) = found.weight_n().filter(|(weight, error)| *weight < -SIGNIFICANT * error) {
         said.push(format!(
@@ -125,7 +125,7 @@ pub fn doubts(seen: &Observed, found: &Estimate) -> Vec<String> {
             error.to_degrees()
         ));
     }
-    if let Some(held_out) = found.held_out_rms_n.filter(|held_out| is_seen && *held_out > 1.1 * found.force_rms_n) {
+    if let Some(held_out) = found.held_out_rms_n.filter(|held_out| is_few && *held_out > 1.1 * found.force_rms_n) {
         said.push(format!(
             "the residual of {} is smaller than the error of a new pose: of {} poses, each without taking part is met to {}; more poses show the accuracy",
             amount(found.force_rms_n, "N"),

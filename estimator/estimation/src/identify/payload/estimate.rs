@@ -49,6 +49,8 @@ pub struct Estimate {
     pub values: Vec<f64>,
     /// Covariance of the values, with few degrees of freedom counted in.
     pub covariance: DMatrix<f64>,
+    /// Degrees of freedom of each value's error.
+    pub freedom: Vec<f64>,
     /// False for a value that the recording does not show.
     pub identified: Vec<bool>,
     /// Weight that was stated, N.
@@ -255,6 +257,7 @@ impl Estimate {
             values: all.iter().flat_map(|s| s.values.iter().copied()).collect(),
             names: names.into_iter().map(|name| (object(name), name)).collect(),
             covariance,
+            freedom: all.iter().flat_map(|s| s.freedom.iter().copied()).collect(),
             identified,
             known_weight_n: known_n,
             rms_n: by_component(&force.residuals),

@@ -15,6 +15,8 @@ use nalgebra::{DMatrix, Vector3};
 struct Change {
     values: Vec<f64>,
     covariance: DMatrix<f64>,
+    /// Degrees of freedom: of the less certain one.
+    freedom: Vec<f64>,
     /// Places of the values that both show, in the second set.
     shown: Vec<usize>,
 }
@@ -30,6 +32,7 @@ impl Change {
         Self {
             values: (0..n).map(|i| pairs[i].map_or(0.0, |at| after.values[i] - before.values[at])).collect(),
             covariance,
+            freedom: (0..n).map(|i| pairs[i].map_or(1.0, |at| after.freedom[i].min(before.freedom[at]))).collect(),
             // A drift is each recording's own.
             shown: (0..n)
                 .filter(|i| after.identified[*i] && pairs[*i].is_some() && !after.names[*i].1.contains("drift"))
@@ -95,7 +98,7 @@ pub(super) fn diagnosed(first: &Recording, second: &Recording) -> Result<Finding
         .iter()
         .filter_map(|group| {
             let at: Vec<usize> = change.shown.iter().copied().filter(|i| (group.owns)(&after.names[*i])).collect();
-            (!at.is_empty()).then(|| (group, tested(&change.values, &change.covariance, at, rows)))
+            (!at.is_empty()).then(|| (group, tested((&change.values, &change.covariance, &change.freedom), at, rows)))
         })
         .collect();
     let named: Vec<&str> = groups.iter().filter(|(_, t)| t.posterior() >= CERTAIN_FROM).map(|(g, _)| g.id).collect();

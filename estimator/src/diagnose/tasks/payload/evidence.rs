@@ -2,11 +2,12 @@
 
 use crate::diagnose::contract::{Alternative, Cause, Gain, NextExperiment, NotExcited, PassedOver, parameter};
 use crate::diagnose::hypotheses::{force_bias, force_drift, force_gain, mass_change};
-use crate::diagnose::selection::held_out_gain::chi_square_tail;
 use estimation::identify::payload::{Estimate, PAYLOAD, SEPARATES};
+use estimation::regression::long_run_variance::inflation;
 use foundation::words::amount;
 use haptics::law::Kind;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 /// Values that one cause changes.
 pub(super) struct Group {
@@ -39,30 +40,30 @@ pub(super) static GROUPS: [Group; 3] = [
     },
 ];
 
-/// Values of a group with their joint test.
+/// Values of a group with their test.
 pub(super) struct Tested {
     /// Indices of the values.
     pub at: Vec<usize>,
-    /// Quadratic form of the values with the inverse of their covariance.
-    pub square: f64,
-    /// [`Self::square`] less the cost of the values, 2 ln(likelihood): k ln n.
+    /// Probability that chance makes the largest of them so large, the others counted in.
+    pub p_value: f64,
+    /// 2 ln(likelihood) of that probability, less its cost ln n.
     pub score: f64,
 }
 
-/// Joint test of some values against 0; `rows`: number of poses.
-pub(super) fn tested(values: &[f64], covariance: &DMatrix<f64>, at: Vec<usize>, rows: usize) -> Tested {
-    let part = DMatrix::from_fn(at.len(), at.len(), |i, j| covariance[(at[i], at[j])]);
-    // In units of their own errors: forces and torques have different sizes.
-    let scale = DVector::from_fn(at.len(), |i, _| part[(i, i)].max(f64::MIN_POSITIVE).sqrt().recip());
-    let part = DMatrix::from_diagonal(&scale) * part * DMatrix::from_diagonal(&scale);
-    let values = DVector::from_fn(at.len(), |i, _| values[at[i]] * scale[i]);
-    // With few poses the covariance of many values is singular: each alone then, the largest counts.
-    let joint = part.cholesky().map(|c| values.dot(&c.solve(&values)));
-    let alone = values.amax().powi(2);
-    let is_full = 3 * rows > 2 * covariance.nrows();
-    let square = joint.filter(|_| is_full).unwrap_or(alone);
-    let cost = at.len() as f64 * (rows.max(2) as f64).ln();
-    Tested { square, score: square - cost, at }
+/// Test of some values against 0, by the most significant one: few poses do not show a covariance of many values well enough
+/// for a joint test. `of`: values, covariance, and degrees of freedom; `rows`: number of poses.
+pub(super) fn tested(of: (&[f64], &DMatrix<f64>, &[f64]), at: Vec<usize>, rows: usize) -> Tested {
+    let (values, covariance, freedom) = of;
+    let chance = |i: &usize| {
+        // The error contains the width of Student's t.
+        let error = covariance[(*i, *i)].max(f64::MIN_POSITIVE).sqrt() / inflation(freedom[*i]).sqrt();
+        StudentsT::new(0.0, 1.0, freedom[*i].max(1.0)).map_or(1.0, |t| 2.0 * t.sf((values[*i] / error).abs()))
+    };
+    let p_value = (at.len() as f64 * at.iter().map(chance).fold(1.0, f64::min)).clamp(f64::MIN_POSITIVE, 1.0);
+    let square = ChiSquared::new(1.0).map_or(0.0, |d| d.inverse_cdf(1.0 - p_value));
+    // Beyond the resolution of 1 − p the tail of the square is its logarithm.
+    let square = if square.is_finite() && p_value > 1e-14 { square } else { -2.0 * p_value.ln() };
+    Tested { score: square - (rows.max(2) as f64).ln(), p_value, at }
 }
 
 impl Tested {
@@ -136,7 +137,7 @@ pub(super) fn cause(
         id: group.id.to_owned(),
         kind: group.kind,
         parameters: test.at.iter().map(shown).collect(),
-        p_value: (GROUPS.len() as f64 * chi_square_tail(test.square, test.at.len() as f64)).min(1.0),
+        p_value: (GROUPS.len() as f64 * test.p_value).min(1.0),
         posterior: test.posterior(),
         standing: None,
         gain,

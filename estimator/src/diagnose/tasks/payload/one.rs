@@ -95,7 +95,8 @@ fn groups(found: &Estimate) -> Vec<(&'static Group, Tested)> {
     let of = |group: &'static Group| {
         let at: Vec<usize> =
             (0..found.names.len()).filter(|i| found.identified[*i] && (group.owns)(&found.names[*i])).collect();
-        (!at.is_empty()).then(|| (group, tested(&found.values, &found.covariance, at, found.rows.len())))
+        (!at.is_empty())
+            .then(|| (group, tested((&found.values, &found.covariance, &found.freedom), at, found.rows.len())))
     };
     GROUPS.iter().filter_map(of).collect()
 }
@@ -110,7 +111,7 @@ pub(super) fn by_gain(causes: &mut [Cause]) {
 pub(super) fn undecided(diagnosis: &mut Diagnosis, found: &Estimate) {
     let (other, next) = open();
     let bias: Vec<usize> = (0..found.names.len()).filter(|i| found.names[*i].1.starts_with("force_bias")).collect();
-    let test = Tested { at: bias, square: 0.0, score: 0.0 };
+    let test = Tested { at: bias, p_value: 1.0, score: 0.0 };
     let held_out = HeldOut { before: Vec::new(), after: Vec::new(), noise_n: 0.0 };
     let mut first =
         cause(&GROUPS[0], &test, (found, &found.values, &found.covariance), &held_out, "or the weight of the load");
