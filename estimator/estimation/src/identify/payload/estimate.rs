@@ -189,7 +189,7 @@ pub fn left_by(rows: &[Row], model: Model, size: usize) -> Left {
 }
 
 /// Number of neighbouring poses of a block, from the correlation of their residuals: some correlation times, and at least
-/// eight blocks.
+/// five blocks.
 fn block_size(residuals: &[DVector<f64>]) -> usize {
     let power: f64 = residuals.iter().map(DVector::norm_squared).sum();
     let next: f64 = residuals.windows(2).map(|w| w[0].dot(&w[1])).sum();
@@ -200,7 +200,7 @@ fn block_size(residuals: &[DVector<f64>]) -> usize {
         return 1;
     }
     let time = (1.0 + correlation) / (1.0 - correlation).max(1e-3);
-    (4.0 * time).ceil().min((n / 5) as f64).max(1.0) as usize
+    (2.0 * time).ceil().min((n / 5) as f64).max(1.0) as usize
 }
 
 impl Estimate {
@@ -248,14 +248,12 @@ impl Estimate {
             is_seen && rows.len() > 1 && error <= size
         };
         let identified = all.iter().flat_map(|s| s.identified.iter().copied()).enumerate().map(is_shown).collect();
-        let object =
-            |name: &str| if name == FORCE[0] || TORQUE[..3].contains(&name) { super::PAYLOAD } else { super::SENSOR };
         Ok(Self {
             frame,
             model,
             middle_s: seen.middle_s,
             values: all.iter().flat_map(|s| s.values.iter().copied()).collect(),
-            names: names.into_iter().map(|name| (object(name), name)).collect(),
+            names: names.into_iter().map(|name| (object_of(name), name)).collect(),
             covariance,
             freedom: all.iter().flat_map(|s| s.freedom.iter().copied()).collect(),
             identified,
@@ -285,6 +283,11 @@ impl Estimate {
     pub fn weight_n(&self) -> Option<(f64, f64)> {
         self.known_weight_n.map(|weight| (weight, 0.0)).or_else(|| self.value(FORCE[0]))
     }
+}
+
+/// Object that a value is of.
+fn object_of(name: &str) -> &'static str {
+    if name == FORCE[0] || TORQUE[..3].contains(&name) { super::PAYLOAD } else { super::SENSOR }
 }
 
 /// Root mean square of the readings: of the force, N, and of the torque, N m.

@@ -1,12 +1,13 @@
 //! Two sets of poses of one sensor: the change of its load and of its bias between them.
 
 use super::evidence::{GROUPS, Group, HeldOut, Tested, cause, not_excited, passed_over, tested};
-use super::one::{by_gain, residual, root_mean, undecided, whiteness_p};
-use crate::diagnose::contract::{Baseline, CERTAIN_FROM, Diagnosis, Final, Verdict};
+use super::one::{baseline, by_gain, end, residual, undecided};
+use crate::diagnose::contract::{CERTAIN_FROM, Diagnosis, Verdict};
 use crate::diagnose::findings::Findings;
 use crate::diagnose::hypotheses::{force_bias, mass_change};
 use estimation::identify::payload::doubts::doubts;
 use estimation::identify::payload::{Estimate, Left, Model, Observed, Row, left_by, observe};
+use estimation::regression::long_run_variance::inflation;
 use foundation::estimate::EstimateError;
 use haptics::recording::{Recording, WrenchFrame};
 use nalgebra::{DMatrix, Vector3};
@@ -15,7 +16,7 @@ use nalgebra::{DMatrix, Vector3};
 struct Change {
     values: Vec<f64>,
     covariance: DMatrix<f64>,
-    /// Degrees of freedom: of the less certain one.
+    /// Degrees of freedom of each error.
     freedom: Vec<f64>,
     /// Places of the values that both show, in the second set.
     shown: Vec<usize>,
@@ -32,13 +33,24 @@ impl Change {
         Self {
             values: (0..n).map(|i| pairs[i].map_or(0.0, |at| after.values[i] - before.values[at])).collect(),
             covariance,
-            freedom: (0..n).map(|i| pairs[i].map_or(1.0, |at| after.freedom[i].min(before.freedom[at]))).collect(),
+            freedom: (0..n).map(|i| pairs[i].map_or(1.0, |at| welch((before, at), (after, i)))).collect(),
             // A drift is each recording's own.
             shown: (0..n)
                 .filter(|i| after.identified[*i] && pairs[*i].is_some() && !after.names[*i].1.contains("drift"))
                 .collect(),
         }
     }
+}
+
+/// Degrees of freedom of the difference of two values (Welch 1947).
+fn welch(a: (&Estimate, usize), b: (&Estimate, usize)) -> f64 {
+    let of = |(set, at): (&Estimate, usize)| {
+        let freedom = set.freedom[at].max(1.0);
+        (set.covariance[(at, at)] / inflation(freedom), freedom)
+    };
+    let ((va, na), (vb, nb)) = (of(a), of(b));
+    let parts = va * va / na + vb * vb / nb;
+    if parts > 0.0 { (va + vb).powi(2) / parts } else { na.min(nb) }
 }
 
 /// Values of the load and of the bias that a set shows, as a force in the sensor's axes.
@@ -78,15 +90,7 @@ pub(super) fn diagnosed(first: &Recording, second: &Recording) -> Result<Finding
     let noise_n = seen.noise_n.unwrap_or(after.force_rms_n);
     let kept = left(&before, &after, &[mass_change::ID, force_bias::ID]);
     let mut diagnosis = Diagnosis {
-        baseline: Baseline {
-            model: format!("as in {}", first.name),
-            rms_n: kept.rms_n,
-            heldout_rms_n: root_mean(&kept.held_out),
-            whiteness_p: whiteness_p(&kept),
-            of: Some(format!("force of the sensor in {}", second.name)),
-            unit: Some("N".to_owned()),
-            ..Baseline::default()
-        },
+        baseline: baseline(format!("as in {}", first.name), format!("force of the sensor in {}", second.name), &kept),
         noise_floor_n: noise_n,
         not_excited: not_excited(true),
         warnings,
@@ -107,21 +111,20 @@ pub(super) fn diagnosed(first: &Recording, second: &Recording) -> Result<Finding
         let all = [mass_change::ID, force_bias::ID];
         all.into_iter().filter(|id| !named.contains(id) || but == Some(*id)).collect()
     };
-    let end = left(&before, &after, &without(None));
+    let changed = left(&before, &after, &without(None));
     let how = format!("differs between {} and {}", first.name, second.name);
     for (group, test) in &groups {
         if named.contains(&group.id) {
             let left = left(&before, &after, &without(Some(group.id)));
-            let held_out = HeldOut { before: left.held_out, after: end.held_out.clone(), noise_n };
+            let held_out = HeldOut { before: left.held_out, after: changed.held_out.clone(), noise_n };
             diagnosis.causes.push(cause(group, test, (&after, &change.values, &change.covariance), &held_out, &how));
         } else {
             diagnosis.passed_over.push(passed_over(group, test));
         }
     }
     by_gain(&mut diagnosis.causes);
-    diagnosis.end =
-        Final { heldout_rms_n: root_mean(&end.held_out), whiteness_p: whiteness_p(&end), heldout_rms_nm: None };
-    diagnosis.residuals = vec![residual(after.rows.len(), kept.rms_n, end.rms_n, seen.noise_n)];
+    diagnosis.end = end(&changed);
+    diagnosis.residuals = vec![residual(after.rows.len(), kept.rms_n, changed.rms_n, seen.noise_n)];
     diagnosis.verdict = if diagnosis.causes.is_empty() { Verdict::None } else { Verdict::Causes };
     let is_divided = [&before, &after].into_iter().all(|set| set.weight_n().is_some());
     let spread_n = before.force_rms_n.hypot(after.force_rms_n).hypot(noise_n);

@@ -19,7 +19,7 @@ fn model(full: Model, ids: &[&str], but: Option<&str>) -> Model {
 }
 
 /// Root mean square of held-out squares.
-pub(super) fn root_mean(squares: &[f64]) -> f64 {
+fn root_mean(squares: &[f64]) -> f64 {
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
@@ -39,17 +39,9 @@ pub(super) fn diagnosed(recording: &Recording) -> Result<Findings, EstimateError
     let nothing = Model { load: false, bias: false, drift: false };
     let base = left_by(rows, nothing, found.block);
     let noise_n = seen.noise_n.unwrap_or(found.force_rms_n);
-    let baseline = Baseline {
-        model: if known_n == 0.0 { "no-load".to_owned() } else { "known-load".to_owned() },
-        rms_n: base.rms_n,
-        heldout_rms_n: root_mean(&base.held_out),
-        whiteness_p: whiteness_p(&base),
-        of: Some("force of the sensor".to_owned()),
-        unit: Some("N".to_owned()),
-        ..Baseline::default()
-    };
+    let name = if known_n == 0.0 { "no-load" } else { "known-load" };
     let mut diagnosis = Diagnosis {
-        baseline,
+        baseline: baseline(name.to_owned(), "force of the sensor".to_owned(), &base),
         noise_floor_n: noise_n,
         not_excited: not_excited(found.model.drift),
         warnings,
@@ -76,8 +68,7 @@ pub(super) fn diagnosed(recording: &Recording) -> Result<Findings, EstimateError
     by_gain(&mut diagnosis.causes);
     diagnosis.passed_over =
         groups.iter().filter(|(g, _)| !named.contains(&g.id)).map(|(group, test)| passed_over(group, test)).collect();
-    diagnosis.end =
-        Final { heldout_rms_n: root_mean(&after.held_out), whiteness_p: whiteness_p(&after), heldout_rms_nm: None };
+    diagnosis.end = end(&after);
     diagnosis.residuals = vec![residual(rows.len(), base.rms_n, after.rms_n, seen.noise_n)];
     diagnosis.verdict = if diagnosis.causes.is_empty() { Verdict::None } else { Verdict::Causes };
     if is_unexplained(&found) && !diagnosis.causes.is_empty() {
@@ -88,6 +79,24 @@ pub(super) fn diagnosed(recording: &Recording) -> Result<Findings, EstimateError
         undecided(&mut diagnosis, &found);
     }
     Ok(Findings::from(diagnosis))
+}
+
+/// Figures of the model that was started from.
+pub(super) fn baseline(model: String, of: String, left: &Left) -> Baseline {
+    Baseline {
+        model,
+        rms_n: left.rms_n,
+        heldout_rms_n: root_mean(&left.held_out),
+        whiteness_p: whiteness_p(left),
+        of: Some(of),
+        unit: Some("N".to_owned()),
+        ..Baseline::default()
+    }
+}
+
+/// Figures of the model in the end.
+pub(super) fn end(left: &Left) -> Final {
+    Final { heldout_rms_n: root_mean(&left.held_out), whiteness_p: whiteness_p(left), heldout_rms_nm: None }
 }
 
 /// Groups with values that the poses show, and their tests.
@@ -138,6 +147,6 @@ pub(super) fn residual(rows: usize, before_n: f64, after_n: f64, noise_n: Option
 }
 
 /// Probability of residuals at least as correlated if those of neighbouring poses were independent.
-pub(super) fn whiteness_p(left: &Left) -> f64 {
+fn whiteness_p(left: &Left) -> f64 {
     chi_square_tail(left.correlated, 1.0)
 }
