@@ -29,6 +29,8 @@ pub fn lacks(world: &World, task: Task) -> Option<&'static str> {
         Task::Barrel => (has_shape(Shape::Barrel), "barrel"),
         Task::Switch => (world.switch.is_some(), "switch"),
         Task::Mechanism => (world.mechanism.is_some(), "mechanism"),
+        // A payload is measured, not practised.
+        Task::Payload => (false, "sensor with a load; measure one and fit it"),
     };
     (!there).then_some(what)
 }

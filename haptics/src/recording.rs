@@ -25,12 +25,14 @@ pub enum Task {
     Barrel,
     /// A toggle switch.
     Switch,
+    /// The load that hangs on a force/torque sensor, in several orientations.
+    Payload,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 6] =
-        [Self::BlockStack, Self::Crank, Self::Needle, Self::Mechanism, Self::Barrel, Self::Switch];
+    pub const ALL: [Self; 7] =
+        [Self::BlockStack, Self::Crank, Self::Needle, Self::Mechanism, Self::Barrel, Self::Switch, Self::Payload];
 
     /// The task of a name.
     pub fn from_name(name: &str) -> Option<Self> {
@@ -46,6 +48,36 @@ impl Task {
             Self::Mechanism => "mechanism",
             Self::Barrel => "barrel",
             Self::Switch => "switch",
+            Self::Payload => "payload",
+        }
+    }
+}
+
+/// Axes of the wrench columns of a force/torque sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WrenchFrame {
+    /// The sensor's own axes: they turn with it.
+    Sensor,
+    /// The axes in which the orientation is given.
+    Base,
+}
+
+impl WrenchFrame {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Sensor => Self::Base,
+            Self::Base => Self::Sensor,
+        }
+    }
+
+    /// The name used in sidecars and in names of columns.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sensor => "sensor",
+            Self::Base => "base",
         }
     }
 }

@@ -3,11 +3,13 @@
 use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
+use estimator::identify::payload::compensate::{compensated, removed};
 use estimator::log::Attachment;
-use haptics::recording::Warning;
+use haptics::recording::{Recording, Warning};
 use haptics::world::World;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +25,10 @@ pub struct Convert {
     /// Calibrated world to carry along in an MCAP file
     #[arg(long)]
     world: Option<PathBuf>,
+    /// Remove the weight of a sensor's load and the bias of the sensor from the wrench: as the log itself shows them, or poses
+    /// of the same sensor
+    #[arg(long, value_name = "POSES", num_args = 0..=1, require_equals = true)]
+    compensate: Option<Option<PathBuf>>,
     #[command(flatten)]
     source: LogArgs,
 }
@@ -38,23 +44,52 @@ pub(crate) struct Said {
     samples: usize,
     /// What looks wrong in the samples.
     pub(crate) warnings: Vec<Warning>,
+    /// Weight and bias that `--compensate` removed, named `object.name` as in a fit.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    compensated: BTreeMap<String, f64>,
 }
 
 impl Convert {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         self.spare_the_input()?;
-        let recordings = self.source.load(&self.log)?;
+        let recordings = self.compensated(self.source.load(&self.log)?)?;
         let attachments = self.attachments()?;
         super::progress::during("writing", |_| estimator::log::write(&recordings, &self.out, &attachments))?;
-        let samples: usize = recordings.iter().map(haptics::recording::Recording::len).sum();
+        let samples: usize = recordings.iter().map(Recording::len).sum();
         let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
         let mut text = format!("{}: {} recording(s), {samples} samples", self.out.display(), recordings.len());
         for warning in &warnings {
             let _ = write!(text, "\n  ! {}", warning.text); // writing into a string cannot fail
         }
+        let compensated = recordings.first().filter(|_| self.compensate.is_some());
+        let compensated = compensated.map(|r| r.meta.compensated.clone()).unwrap_or_default();
+        if !compensated.is_empty() {
+            let parts: Vec<String> = compensated.iter().map(|(name, value)| format!("{name} {value:.5}")).collect();
+            let _ = write!(text, "\n  removed: {}", parts.join(", "));
+        }
         let warnings = warnings.into_iter().cloned().collect();
-        let said = Said { out: self.out.clone(), recordings: recordings.len(), samples, warnings };
+        let said = Said { out: self.out.clone(), recordings: recordings.len(), samples, warnings, compensated };
         Ok(Output { text, json: serde_json::to_value(&said)? })
+    }
+
+    /// The recordings without the load and the bias of their sensor, if that is asked for.
+    fn compensated(&self, recordings: Vec<Recording>) -> anyhow::Result<Vec<Recording>> {
+        let Some(poses) = &self.compensate else { return Ok(recordings) };
+        let elsewhere = match poses {
+            Some(path) => {
+                let poses = super::read(path, None)?;
+                let [poses] = poses.as_slice() else {
+                    anyhow::bail!("{} holds {} recordings; choose one with \"select\"", path.display(), poses.len())
+                };
+                Some(removed(poses)?.without_drift())
+            }
+            None => None,
+        };
+        let one = |recording: &Recording| match &elsewhere {
+            Some(removed) => Ok(compensated(recording, removed)?),
+            None => Ok(compensated(recording, &removed(recording)?)?),
+        };
+        recordings.iter().map(one).collect()
     }
 
     /// Error if the output would overwrite the input or its sidecar.

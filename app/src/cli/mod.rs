@@ -104,7 +104,7 @@ struct AppArgs {
     /// World to open in the trainer: a file, or stack, crank, needle, barrel, switch, guide or table
     #[arg(long)]
     world: Option<PathBuf>,
-    /// Task of the log: block-stack, crank, needle, mechanism, barrel, switch, a task of yours, or its JSON file
+    /// Task of the log: block-stack, crank, needle, mechanism, barrel, switch, payload, a task of yours, or its JSON file
     #[arg(long, value_parser = find_task)]
     task: Option<Chosen>,
     /// Close the window when its first picture stands, and say so: what `touchstone bench` measures
@@ -118,7 +118,7 @@ struct LogArgs {
     /// Sidecar, when it is not `<stem>.meta.json` beside the log
     #[arg(long)]
     meta: Option<PathBuf>,
-    /// What was done: block-stack, crank, needle, mechanism, barrel, switch, a task of yours, or its JSON file (docs/tasks.md);
+    /// What was done: block-stack, crank, needle, mechanism, barrel, switch, payload, a task of yours, or its JSON file (docs/tasks.md);
     /// told from the sidecar and the columns when not given
     #[arg(long)]
     task: Option<String>,

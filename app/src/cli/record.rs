@@ -127,6 +127,9 @@ impl Record {
             Task::Mechanism => {
                 anyhow::bail!("there is no built-in world for a mechanism; name one with --world")
             }
+            Task::Payload => {
+                anyhow::bail!("the load of a sensor is measured with a sensor: there is no world to record it in")
+            }
         }
     }
 

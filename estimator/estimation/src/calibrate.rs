@@ -48,6 +48,10 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
         Task::Crank => builder.crank(recording, segmentation),
         Task::Needle => builder.needle(recording),
         Task::Switch => builder.switch(recording),
+        Task::Payload => {
+            builder.note_all("payload");
+            builder.note_all("sensor");
+        }
         Task::Mechanism => {
             builder.world.floor = None;
             builder.world.mechanism = Some(mechanism::world(fit, recording));

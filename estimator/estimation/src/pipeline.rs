@@ -1,7 +1,7 @@
 //! The whole way from recordings to a calibrated world, for the command line, the app and the tests alike.
 
 use crate::calibrate;
-use crate::identify::{barrel, block, crank, mechanism, needle, priors, switch};
+use crate::identify::{barrel, block, crank, mechanism, needle, payload, priors, switch};
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, segment_by, task_of};
 use foundation::cancellation;
@@ -83,6 +83,10 @@ pub fn analyse_prepared(
         }
         Task::Switch => {
             let fits = recordings.iter().map(switch::fit).collect::<Result<Vec<_>, _>>()?;
+            (combine(fits), states(recordings, task, options))
+        }
+        Task::Payload => {
+            let fits = recordings.iter().map(payload::fit).collect::<Result<Vec<_>, _>>()?;
             (combine(fits), states(recordings, task, options))
         }
         Task::Barrel => each(recordings, |r| barrel::fit_by(options.method, r, options.thresholds))?,

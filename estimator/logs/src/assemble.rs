@@ -5,6 +5,8 @@ use super::fingerprint::Shared;
 use super::plan::{Plan, Use};
 use super::table::{Group, Table};
 use super::{checks, clock, facts, repairs, runs, sidecar, units};
+use foundation::signal::chain::is_chain;
+use foundation::signal::wrench::is_turned_sensor;
 use haptics::recording::{Channel, Meta, Recording, TimeWindow, Warning};
 use std::path::Path;
 
@@ -147,7 +149,7 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         notes.push(note("text-column", Some(name), text));
     }
     let is_known = recording.channels.iter().any(|c| units::is_program_name(&c.name));
-    if !is_known && !foundation::signal::chain::is_chain(recording) {
+    if !is_known && !is_chain(recording) && !is_turned_sensor(recording) {
         let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
         notes.push(note(super::NO_KNOWN_COLUMN, None, text));
     }

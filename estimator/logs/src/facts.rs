@@ -2,29 +2,12 @@
 
 use super::repairs::KINDS;
 use super::units;
+use foundation::signal::wrench::doubtful_orientation;
 use haptics::recording::{Meta, Recording, Task, TimeWindow, Warning};
 use serde_json::Value;
 
-/// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 17] = [
-    "task",
-    "rate_hz",
-    "gravity_m_s2",
-    "up",
-    "hand",
-    "columns",
-    "scale",
-    "select",
-    "from_s",
-    "to_s",
-    "windows",
-    "sign",
-    "known",
-    "prior",
-    "bounds",
-    "simulated_object",
-    "as_recorded",
-];
+/// Key of simulated recordings, which is for people. Other keys without a type are kept, with a warning.
+const SIMULATED_OBJECT: &str = "simulated_object";
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero.
@@ -79,18 +62,28 @@ pub fn wrong_type(sidecar: &Value) -> Option<String> {
 }
 
 fn entry(key: &str, value: &Value) -> Option<String> {
-    if value.is_null() && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "hand" | "from_s" | "to_s") {
+    if value.is_null()
+        && matches!(key, "task" | "rate_hz" | "gravity_m_s2" | "up" | "wrench_frame" | "hand" | "from_s" | "to_s")
+    {
         return None;
     }
     match key {
         "task" => task(value),
         "rate_hz" | "gravity_m_s2" | "from_s" | "to_s" => must(key, value, value.is_number(), "a number"),
         "up" => must(key, value, value.is_string(), "a text like \"y\""),
+        "wrench_frame" => must(
+            key,
+            value,
+            value == "sensor" || value == "base",
+            "\"sensor\" (axes that turn with the sensor) or \"base\" (axes of the orientation)",
+        ),
         "hand" => members(key, value, &hand_member),
         "columns" => members(key, value, &|k, v| {
             must(k, v, v.is_string() || v.is_null(), "a column's name in quotes, or null for none")
         }),
-        "scale" | "sign" | "known" => members(key, value, &|k, v| must(k, v, v.is_number(), "a number")),
+        "scale" | "sign" | "known" | "compensated" => {
+            members(key, value, &|k, v| must(k, v, v.is_number(), "a number"))
+        }
         "prior" => members(key, value, &|k, v| {
             let number = |part: &str| v.get(part).is_some_and(Value::is_number);
             must(k, v, number("mean") && number("std"), "an object with two numbers, \"mean\" and \"std\"")
@@ -122,7 +115,12 @@ fn task(value: &Value) -> Option<String> {
     let known = serde_json::from_value::<Task>(value.clone()).is_ok();
     let folder = foundation::tasks::library::folder();
     let own = folder.map_or_else(String::new, |folder| format!(", or a task of yours in {}", folder.display()));
-    must("task", value, known, &format!("one of block-stack, crank, needle, mechanism, barrel and switch{own}"))
+    must(
+        "task",
+        value,
+        known,
+        &format!("one of block-stack, crank, needle, mechanism, barrel, switch and payload{own}"),
+    )
 }
 
 fn hand_member(key: &str, value: &Value) -> Option<String> {
@@ -247,7 +245,7 @@ pub fn doubts(recording: &Recording) -> Vec<Warning> {
         ..Warning::default()
     };
     let mut found = Vec::new();
-    for key in meta.other.keys().filter(|k| !KEYS.contains(&k.as_str())) {
+    for key in meta.other.keys().filter(|key| *key != SIMULATED_OBJECT) {
         found.push(warning(format!("the sidecar's key `{key}` means nothing to the program; it is kept as it is")));
     }
     let named = |n: &str| {
@@ -261,6 +259,8 @@ pub fn doubts(recording: &Recording) -> Vec<Warning> {
     }
     found.extend(rate_doubt(recording).map(warning));
     found.extend(hand_doubt(recording).map(warning));
+    let orientation = |text: String| Warning { kind: "orientation".to_owned(), column: None, spans: Vec::new(), text };
+    found.extend(doubtful_orientation(recording).map(orientation));
     found
 }
 

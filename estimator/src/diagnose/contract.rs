@@ -427,7 +427,7 @@ pub struct NamedInTwins {
 
 /// Probability from which a cause is certain.
 /// Derived: the level of all confidence intervals.
-const CERTAIN_FROM: f64 = 0.95;
+pub(crate) const CERTAIN_FROM: f64 = 0.95;
 
 /// True if a cause, or one of the alternatives to it, is certainly there.
 pub fn is_certain(cause: &Cause, alternatives: &[Alternative]) -> bool {

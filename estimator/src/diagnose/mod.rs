@@ -51,7 +51,9 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Findings,
     let repaired = without_spikes(recordings);
     let recordings = repaired.as_deref().unwrap_or(recordings);
     let mut found = of_task(task, recordings, options)?;
-    found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
+    if task != Task::Payload {
+        found.settled = answer::resolved_questions::settled(recordings, &found, &|some| of_task(task, some, options));
+    }
     let told = |w: &&Warning| [NO_CLOCK, UNIT, SPIKES].contains(&w.kind.as_str());
     let doubtful = recordings.iter().flat_map(|r| r.warnings.iter().filter(told));
     found.warnings.extend(doubtful.map(|w| w.text.clone()));
@@ -77,6 +79,7 @@ fn without_spikes(recordings: &[Recording]) -> Option<Vec<Recording>> {
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Findings, EstimateError> {
     match task {
+        Task::Payload => tasks::payload::payload(recordings),
         Task::Crank => delay_correction::corrected(recordings, |some, back| tasks::crank::crank(some, options, back)),
         Task::Mechanism => tasks::mechanism::one_of_mechanisms(recordings, options),
         _ => pinched(task, recordings, options),
@@ -159,6 +162,10 @@ pub fn validate(
             Task::BlockStack | Task::Barrel => tasks::carried_block::channels(one, options)?,
             Task::Needle => tasks::needle::channels(one, options)?,
             Task::Switch => tasks::switch::channels(one, options)?,
+            Task::Payload => {
+                let text = "--validate has no meaning for the load of a sensor; name both recordings behind `diagnose` to compare them";
+                return Err(EstimateError::Other(text.to_owned()));
+            }
         };
         let order: Vec<&str> = diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
         validation::on_other_recordings::measure(&diagnosis.kept, &order, &channels)

@@ -1,6 +1,6 @@
 //! The sidecar: facts about a recording that its table does not hold. `docs/use/own-logs.md` is made from these types.
 
-use super::Task;
+use super::{Task, WrenchFrame};
 use crate::hand::Hand;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,14 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-absent" = "y"), example = &"z")]
     pub up: Option<String>,
+    /// Axes of wrench columns whose names do not state them: `sensor` or `base`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-absent" = "sensor"), example = &"base")]
+    pub wrench_frame: Option<WrenchFrame>,
+    /// Load and bias that were removed from the wrench, named as in a fit; written by `convert --compensate`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "nothing was removed"), example = json!({ "payload.weight_N": 10.8 }))]
+    pub compensated: BTreeMap<String, f64>,
     /// Geometry of the hand, for joint angles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-absent" = "the hand of the program"), example = json!({ "link_m": 0.08, "base1_m": [-0.04, 0.0], "base2_m": [0.04, 0.0] }))]

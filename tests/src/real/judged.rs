@@ -4,8 +4,9 @@ use super::questions::{Expected, Question};
 use crate::shared_recordings;
 use estimator::diagnose::{Diagnosis, Options, diagnose};
 use estimator::estimate::{Fit, Parameter};
-use estimator::identify::mechanism;
-use haptics::recording::Recording;
+use estimator::identify::{mechanism, payload};
+use estimator::segment::task_of;
+use haptics::recording::{Recording, Task};
 
 /// Judgement of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +56,9 @@ pub fn ask(question: &Question) -> Option<Judged> {
 }
 
 fn of_fit(recordings: &[Recording], judge: &dyn Fn(&Fit) -> Judged) -> Judged {
-    mechanism::fit(recordings).map_or_else(refused, |fit| judge(&fit))
+    let is_payload = recordings.first().is_some_and(|r| task_of(r, None).is_ok_and(|task| task == Task::Payload));
+    let fit = if is_payload { payload::fit(&recordings[0]) } else { mechanism::fit(recordings) };
+    fit.map_or_else(refused, |fit| judge(&fit))
 }
 
 fn of_diagnosis(question: &Question, recordings: &[Recording], judge: &dyn Fn(&Diagnosis) -> Judged) -> Judged {

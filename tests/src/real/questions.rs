@@ -123,10 +123,8 @@ const DOOR: (&str, &str) = (
     "cabinet_pull/kitchen_cabinet_run1.csv",
     r#"{"columns":{"x_m":"tip_x_m","y_m":"tip_y_m","z_m":"tip_z_m","fx_N":"fx_wrist_sensor_N","fy_N":"fy_wrist_sensor_N","fz_N":"fz_wrist_sensor_N"}}"#,
 );
-const POSES: (&str, &str) = (
-    "wrist_payload/poses_day2.csv",
-    r#"{"columns":{"fx_N":"fx_base_N","fy_N":"fy_base_N","fz_N":"fz_base_N"},"up":"z"}"#,
-);
+const DAY_1: (&str, &str) = ("wrist_payload/poses_day1.csv", "{}");
+const DAY_2: (&str, &str) = ("wrist_payload/poses_day2.csv", "{}");
 const WIPING: (&str, &str) = ("wiping_segments/demos.csv", r#"{"columns":{"trial":"demo","t_s":"time_s"}}"#);
 const CUBES: (&str, &str) =
     ("cube_toss/tosses.csv", r#"{"columns":{"trial":"toss"},"up":"z","known":{"half_width_m":0.0524}}"#);
@@ -200,7 +198,11 @@ pub static QUESTIONS: &[Question] = &[
         &["local-resistance", "return-spring"],
         &["axis-sign", "force-bias", "channel-fault"],
     ),
-    not_none(POSES, "poses of a wrist are no path: not nothing"),
+    value(DAY_1, "weight of a payload, N", "weight_N", [10.80, 10.81]),
+    value(DAY_1, "bias of the sensor along z, N", "force_bias_z_N", [-13.08, -13.07]),
+    value(DAY_2, "weight of a payload, N", "weight_N", [12.145, 12.155]),
+    value(DAY_2, "bias of the sensor along x, N", "force_bias_x_N", [-3.46, -3.45]),
+    named(DAY_2, None, "the bias carries most of the reading", &["force-bias"], &["mass-change"]),
     not_none(WIPING, "wiping is no motion along a line: not nothing"),
     named(CUBES, None, "lengths are 2 % short", &["length-scale"], &["load-friction", "velocity-loss"]),
     named(ENERGY, Some("mass+viscous"), "no cause shows behind a torque that follows the speed", &[], COULOMB),

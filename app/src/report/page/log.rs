@@ -51,6 +51,7 @@ fn kind(content: &Content) -> String {
         Ok(Task::Mechanism) => "A mechanism that moves along one coordinate",
         Ok(Task::Barrel) => "A barrel",
         Ok(Task::Switch) => "A switch",
+        Ok(Task::Payload) => "The load of a force/torque sensor",
         Err(_) => "A recording whose fit did not succeed",
     };
     match content.recordings.len() {

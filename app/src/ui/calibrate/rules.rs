@@ -39,7 +39,9 @@ impl Rules {
             SystemState::HoldOnGround | SystemState::HoldAboveGround | SystemState::SlidingOnGround => {
                 matches!(like, Task::BlockStack | Task::Barrel)
             }
-            SystemState::Turning | SystemState::Holding => matches!(like, Task::Crank | Task::Mechanism | Task::Switch),
+            SystemState::Turning | SystemState::Holding => {
+                matches!(like, Task::Crank | Task::Mechanism | Task::Switch | Task::Payload)
+            }
             _ => like == Task::Needle,
         })
     }

@@ -201,8 +201,7 @@ impl Draft {
             }
         }
         // Runs are recordings of one object.
-        let words =
-            |r: &Row| !r.facts.numeric && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
+        let words = |r: &Row| !r.facts.numeric && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
         // A table of several objects: the first is selected until the user chooses another.
         if self.meta.select.is_empty()
             && let Some(row) = self.rows.iter().find(|r| words(r) && several(&r.facts))

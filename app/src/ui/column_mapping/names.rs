@@ -90,6 +90,7 @@ pub fn offered(task: Option<Task>) -> Vec<&'static Name> {
         None => true,
         Some(Task::BlockStack | Task::Barrel) => matches!(form, Form::Any | Form::Tips | Form::Joints),
         Some(Task::Crank | Task::Needle | Task::Switch) => form != Form::Coordinate,
+        Some(Task::Payload) => matches!(form, Form::Any | Form::Tool),
         Some(Task::Mechanism) => matches!(form, Form::Any | Form::Tool | Form::Coordinate),
     };
     NAMES.iter().filter(|n| fits(n.form)).collect()

@@ -159,7 +159,7 @@ pub fn missing(recording: &Recording) -> Option<String> {
         Task::Mechanism if recording.time_s.is_none() && !has("x_m") => {
             Some("There is no clock: name the time t_s, or state the rate.".to_owned())
         }
-        Task::Mechanism => None,
+        Task::Mechanism | Task::Payload => None,
         Task::Needle | Task::Switch => {
             Some(format!("Recordings of the task {} can be looked at, not fitted yet.", task.name()))
         }

@@ -14,6 +14,7 @@ pub mod markov;
 pub mod motion;
 mod needle;
 mod numbers;
+pub mod poses;
 pub(crate) mod resting;
 pub mod rules;
 pub mod runs;
@@ -26,6 +27,7 @@ pub mod threshold;
 use foundation::cancellation;
 use foundation::estimate::EstimateError;
 use foundation::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals, times};
+use foundation::signal::wrench::is_payload;
 use foundation::tasks::Thresholds;
 use foundation::tasks::definition::Definition;
 use grasps::Hand;
@@ -38,6 +40,9 @@ pub fn task_of(recording: &Recording, stated: Option<Task>) -> Result<Task, Esti
     let has = |name: &str| recording.channel(name).is_some();
     if let Some(task) = stated.or(recording.meta.task) {
         return Ok(task);
+    }
+    if is_payload(recording) {
+        return Ok(Task::Payload);
     }
     if has("q_m") || has("q_rad") || (has("x_m") && has("y_m") && !is_two_fingered(recording)) {
         return Ok(Task::Mechanism);
@@ -81,7 +86,7 @@ fn by_definition(
 ) -> Result<Segmentation, EstimateError> {
     match task.like {
         Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, task, given),
-        Task::Crank | Task::Mechanism | Task::Switch => {
+        Task::Crank | Task::Mechanism | Task::Switch | Task::Payload => {
             let mut motion = Motion::of(recording, given, task)?;
             let warnings = std::mem::take(&mut motion.warnings);
             let (time_s, thresholds) = (&motion.time_s, motion.thresholds);

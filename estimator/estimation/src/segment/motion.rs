@@ -1,5 +1,6 @@
 //! Cranks, mechanisms and switches: speed and load, from which the rules tell not touched, held still and moved.
 
+use super::poses::{REST_RAD_S, angular_speed};
 use super::resting::Resting;
 use super::rules::beyond;
 use super::runs::LEAST_SAMPLES;
@@ -42,6 +43,18 @@ impl Motion {
                 samples: time_s.len(),
                 what: " for a segmentation".to_owned(),
                 needed: LEAST_SAMPLES,
+            });
+        }
+        if task.like == Task::Payload {
+            let learned = || Thresholds { velocity_m_s: REST_RAD_S, force_n: 0.0 };
+            return Ok(Self {
+                time_s,
+                speed: angular_speed(recording)?,
+                load: None,
+                thresholds: task.thresholds(given, learned),
+                leave_load: task.thresholds.leave,
+                least_change_s: 0.0,
+                warnings: Vec::new(),
             });
         }
         if !is_two_fingered(recording) {

@@ -37,7 +37,7 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
         return None;
     }
     // Labels that only say whether a handle is held say nothing of turning and holding it still.
-    let moved = matches!(found.like()?, Task::Crank | Task::Mechanism | Task::Switch);
+    let moved = matches!(found.like()?, Task::Crank | Task::Mechanism | Task::Switch | Task::Payload);
     let apart = truth.contains(&Some(SystemState::Holding));
     let one = |state: SystemState| match state {
         SystemState::Holding if moved && !apart => SystemState::Turning,

@@ -12,3 +12,4 @@ pub mod pieces;
 pub mod task;
 pub mod thinned;
 pub mod transform;
+pub mod wrench;

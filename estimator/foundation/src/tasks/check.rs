@@ -64,7 +64,7 @@ impl Definition {
                         "ordered subtasks need steps in `first` and `repeat`, and `most` from 1 to {MOST_CARRIES}"
                     ));
                 }
-                if matches!(self.like, Task::Crank | Task::Mechanism | Task::Switch | Task::Needle) {
+                if matches!(self.like, Task::Crank | Task::Mechanism | Task::Switch | Task::Needle | Task::Payload) {
                     return Some(format!("a task like {} has no expected order; use `each`", self.like.name()));
                 }
                 o.first.iter().chain(&o.repeat).collect()

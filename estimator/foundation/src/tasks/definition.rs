@@ -131,6 +131,7 @@ pub fn signals(like: Task) -> &'static [(&'static str, &'static [&'static str])]
             &[("contact", SIZES), ("grip", SIGNS), ("net_force_y", SIGNS), ("velocity_x", SIGNS), ("velocity_y", SIGNS)]
         }
         Task::Crank | Task::Mechanism | Task::Switch => &[("load", SIZES), ("speed", SIZES)],
+        Task::Payload => &[("speed", SIZES)],
         Task::Needle => &[("phase", &["free", "insertion", "penetration", "extraction"])],
     }
 }
@@ -145,6 +146,7 @@ impl Definition {
             Task::Mechanism => ("mechanism.json", include_str!("../../../../assets/tasks/mechanism.json")),
             Task::Switch => ("switch.json", include_str!("../../../../assets/tasks/switch.json")),
             Task::Needle => ("needle.json", include_str!("../../../../assets/tasks/needle.json")),
+            Task::Payload => ("payload.json", include_str!("../../../../assets/tasks/payload.json")),
         };
         Self::parse(text, name)
     }

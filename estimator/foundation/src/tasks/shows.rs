@@ -44,6 +44,7 @@ pub fn parameters(like: Task) -> &'static [&'static str] {
             "shaft_friction_N",
             "weight_N",
         ],
+        Task::Payload => &["force_bias", "torque_bias", "weight_N", "com_m"],
         Task::Switch => &[
             "force_bias",
             "peak_force_N",

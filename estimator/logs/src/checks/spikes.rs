@@ -3,6 +3,7 @@
 use super::findings::{about, is_position, limited, place};
 use super::profile::Profile;
 use crate::units;
+use foundation::signal::wrench::is_turned_sensor;
 use haptics::recording::{Channel, Recording, Span, Warning};
 use std::ops::Range;
 
@@ -132,6 +133,10 @@ fn bridged(values: &[f64], left_out: &[usize]) -> Vec<f64> {
 
 /// Samples of the spikes of a channel. A leap that other channels feel too is a blow, and no fault of a sensor.
 fn places(recording: &Recording, channel: &Channel, profile: &Profile) -> Vec<usize> {
+    // Rows of a table of poses do not follow each other: one alone among others is a pose, not a spike.
+    if recording.time_s.is_none() && is_turned_sensor(recording) {
+        return Vec::new();
+    }
     let mut found = spikes(&channel.values, is_position(channel), SPIKE_SHARE * profile.spread());
     found.retain(|&i| !felt_elsewhere(recording, channel, i));
     found

@@ -4,6 +4,7 @@ use super::{Planner, canonical};
 use crate::errors::LogError;
 use crate::units::{self, Dimension};
 use crate::written_units::{self, Written};
+use foundation::signal::wrench::MATRIX;
 
 impl Planner<'_> {
     /// A column that the sidecar does not mention.
@@ -20,6 +21,9 @@ impl Planner<'_> {
             }
             _ => {}
         }
+        if let Some(name) = self.orientation(column) {
+            return self.add(name, String::new(), column, 1.0, false);
+        }
         if let Some((name, si, factor)) = self.program_name(column)? {
             if let Some(why) = self.is_unwanted(&name) {
                 self.plan.notes.push(format!("the column `{header}` is not used: {why}"));
@@ -32,6 +36,14 @@ impl Planner<'_> {
             None => (header.clone(), self.shown_unit(column), 1.0),
         };
         self.add(name, unit, column, factor, false)
+    }
+
+    /// Name of the program for a part of an orientation: `quat_x`, `ori_x`, `/tool.pose.orientation.x`. A scalar that comes
+    /// first is told by its name alone. None if several columns are called so.
+    fn orientation(&self, column: usize) -> Option<String> {
+        let name = part_of_orientation(&self.headers[column])?;
+        let alike = self.headers.iter().filter(|header| part_of_orientation(header).as_ref() == Some(&name));
+        (alike.count() == 1 && !self.mapped(&name)).then_some(name)
     }
 
     /// Unit of an extra channel, as the file has it.
@@ -101,6 +113,19 @@ impl Planner<'_> {
 
 fn is_place(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// `qx` to `qw`, or `r11` to `r33`, for a name of such a part.
+fn part_of_orientation(header: &str) -> Option<String> {
+    let name = header.to_ascii_lowercase();
+    if MATRIX.contains(&name.as_str()) {
+        return Some(name);
+    }
+    let part = name.chars().last().filter(|part| "xyzw".contains(*part))?;
+    let stem = &name[..name.len() - 1];
+    let is_quaternion = ["q", "quat_", "quaternion_", "ori_", "orientation_", "orientation."].contains(&stem)
+        || stem.ends_with(".orientation.");
+    is_quaternion.then(|| format!("q{part}"))
 }
 
 /// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and

@@ -66,3 +66,16 @@ fn select_matches_text_and_numbers() {
     assert!(Wanted::new(0, &Value::from("00")).matches(b"00"));
     assert!(Wanted::new(0, &Value::from("drawer")).matches(b"drawer"));
 }
+
+#[test]
+fn parts_of_an_orientation_have_one_name() {
+    let found = |text: &str| {
+        let plan = plan(&headers(text), &[], &Meta::default(), Path::new("a")).expect("fine");
+        names(&plan).into_iter().map(str::to_owned).collect::<Vec<_>>().join(",")
+    };
+    assert_eq!(found("quat_w,quat_x,quat_y,quat_z"), "qw,qx,qy,qz");
+    assert_eq!(found("/tool.pose.orientation.x,/tool.pose.position.x,R11"), "qx,/tool.pose.position.x,r11");
+    // Two topics with an orientation: neither is meant.
+    assert_eq!(found("/a.orientation.x,/b.orientation.x"), "/a.orientation.x,/b.orientation.x");
+    assert_eq!(found("ori_x,iq_x,box"), "qx,iq_x,box");
+}

@@ -7,6 +7,7 @@ pub(crate) mod free_motion;
 pub(crate) mod mechanism;
 pub(crate) mod needle;
 pub(crate) mod one_coordinate;
+pub(crate) mod payload;
 pub(crate) mod sliding_block;
 pub(crate) mod switch;
 pub(crate) mod thrown_body;

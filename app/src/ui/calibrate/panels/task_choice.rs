@@ -27,7 +27,7 @@ mod words {
 }
 
 /// Offered tasks.
-const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
+const TASKS: [Task; 6] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism, Task::Payload];
 
 /// Selection of the user.
 enum Picked {

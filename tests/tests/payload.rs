@@ -1,0 +1,140 @@
+//! Payload of a force/torque sensor from outside: fit, diagnosis, compensation, and refusals on the command line.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+use tests::{shared_recordings, touchstone};
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(touchstone()).args(arguments).output().expect("the program starts")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
+}
+
+fn sentence(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), said.trim().lines().count()), (Some(1), 1), "{said}");
+    said
+}
+
+/// A weight of 8 N at (0, 0, 0.1) m and a bias of (1, -2, 3) N, in poses that turn about x and about y by `degrees`.
+///
+/// Turned by a about x, the sensor sees gravity along (0, -sin a, -cos a); about y along (sin a, 0, -cos a).
+fn poses(names: &str, degrees: &[f64], push_n: f64) -> String {
+    let mut text = format!("{names}\n");
+    for (axis, degrees) in [0, 1].into_iter().flat_map(|axis| degrees.iter().map(move |d| (axis, *d))) {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let (half, w) = (0.5 * degrees.to_radians()).sin_cos();
+        let (q, down) =
+            if axis == 0 { ([half, 0.0], [0.0, -sine, -cosine]) } else { ([0.0, half], [sine, 0.0, -cosine]) };
+        let [x, y, z] = down.map(|d| 8.0 * d);
+        // (0, 0, 0.1) × weight.
+        let torque = [-0.1 * y, 0.1 * x, 0.0];
+        let row = [q[0], q[1], 0.0, w, x + 1.0 + push_n, y - 2.0, z + 3.0, torque[0], torque[1], torque[2]];
+        text.push_str(&row.map(|v| format!("{v:.6}")).join(","));
+        text.push('\n');
+    }
+    text
+}
+
+const NAMES: &str =
+    "ori_x,ori_y,ori_z,ori_w,fx_sensor_N,fy_sensor_N,fz_sensor_N,tx_sensor_Nm,ty_sensor_Nm,tz_sensor_Nm";
+const ROUND: [f64; 5] = [0.0, 80.0, -75.0, 130.0, 170.0];
+
+fn written(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("written");
+    path.to_string_lossy().into_owned()
+}
+
+fn value(fit: &Value, name: &str) -> f64 {
+    let all = fit["parameters"].as_array().expect("parameters");
+    all.iter().find(|p| p["name"] == name).and_then(|p| p["value"].as_f64()).unwrap_or_else(|| panic!("{name}"))
+}
+
+#[test]
+fn poses_are_told_fitted_and_removed_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = written(folder.path(), "poses.csv", &poses(NAMES, &ROUND, 0.0));
+    let fit = json(&["fit", &log]);
+    assert_eq!(fit["task"], "payload");
+    for (name, wanted) in [("weight_N", 8.0), ("com_z_m", 0.1), ("force_bias_y_N", -2.0), ("torque_bias_x_Nm", 0.0)] {
+        assert!((value(&fit, name) - wanted).abs() < 1e-5, "{name}: {}", value(&fit, name));
+    }
+    let touched = written(folder.path(), "touched.csv", &poses(NAMES, &ROUND, 4.0));
+    let out = folder.path().join("contact.csv").to_string_lossy().into_owned();
+    let said = json(&["convert", &touched, &out, &format!("--compensate={log}")]);
+    assert!((said["compensated"]["payload.weight_N"].as_f64().expect("a weight") - 8.0).abs() < 1e-5);
+    let left = estimator::log::load(Path::new(&out), None).expect("a log").remove(0);
+    for (name, wanted) in [("fx_sensor_N", 4.0), ("fy_sensor_N", 0.0), ("fz_sensor_N", 0.0), ("ty_sensor_Nm", 0.0)] {
+        assert!(left.channel(name).expect("a column").iter().all(|v| (v - wanted).abs() < 1e-4), "{name}");
+    }
+    let again = folder.path().join("again.csv").to_string_lossy().into_owned();
+    assert!(sentence(&["convert", &out, &again, "--compensate"]).contains("already"));
+    assert!(!Path::new(&again).exists());
+}
+
+#[test]
+fn what_changed_is_named_and_one_orientation_leaves_it_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = written(folder.path(), "first.csv", &poses(NAMES, &ROUND, 0.0));
+    let moved = written(folder.path(), "moved.csv", &poses(NAMES, &[10.0, 70.0, -60.0, 120.0, 160.0], 1.5));
+    let found = json(&["diagnose", &first, &moved]);
+    assert_eq!((&found["verdict"], &found["causes"][0]["id"]), (&"causes".into(), &"force-bias".into()));
+    assert_eq!(found["causes"].as_array().map(Vec::len), Some(1), "{found}");
+    let shown = found["causes"][0]["parameters"][0].clone();
+    assert!(shown["name"] == "force_bias_x_N" && (shown["value"].as_f64().expect("a change") - 1.5).abs() < 1e-4);
+    let one = written(folder.path(), "one.csv", &poses(NAMES, &[0.0], 0.0));
+    assert_eq!(json(&["diagnose", &one])["verdict"], "ambiguous");
+}
+
+#[test]
+fn statements_that_cannot_be_are_refused_or_doubted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = written(folder.path(), "poses.csv", &poses(NAMES, &ROUND, 0.0));
+    let out = folder.path().join("out.csv").to_string_lossy().into_owned();
+    let meta = |text: &str| written(folder.path(), "poses.meta.json", text);
+    meta(r#"{"wrench_frame": "tool"}"#);
+    assert!(sentence(&["fit", &log]).contains("wrench_frame is the text \"tool\""));
+    meta(r#"{"wrench_frame": "base"}"#);
+    assert!(sentence(&["fit", &log]).contains("fx_sensor_N"));
+    meta(r#"{"task": "crank"}"#);
+    assert!(!run(&["fit", &log]).status.success());
+    meta("{}");
+    assert!(
+        sentence(&["record", "--task", "payload", "--operator", "scripted", "--seconds", "1", "--out", &out])
+            .contains("no world to record it in")
+    );
+    let slide = written(folder.path(), "slide.csv", "t_s,q_m,f_N\n0,0,1\n0.1,0.1,1\n0.2,0.3,1\n");
+    assert!(sentence(&["convert", &slide, &out, "--compensate"]).contains("has no orientation"));
+    let long = poses(NAMES, &ROUND, 0.0).replacen("0.000000,0.000000,0.000000,1.000000", "0.5,0,0,1", 1);
+    let said = json(&["info", &written(folder.path(), "long.csv", &long)]);
+    assert!(said["warnings"].to_string().contains("instead of 1"), "{said}");
+}
+
+#[test]
+fn a_tool_that_wipes_is_no_payload_by_its_columns() {
+    let sidecar = r#"{"columns":{"trial":"demo","t_s":"time_s"}}"#;
+    let Some(wiping) = shared_recordings("wiping_segments/demos.csv", sidecar) else {
+        println!("skipped: the wiping recordings are not here");
+        return;
+    };
+    for recording in &wiping {
+        let task = estimator::segment::task_of(recording, None).expect("a task");
+        assert_eq!(task, haptics::recording::Task::Mechanism, "{}", recording.name);
+        // Stated all the same, it is doubted.
+        let fit = estimator::identify::payload::fit(recording).expect("a fit");
+        assert!(
+            fit.warnings.iter().any(|w| w.contains("doubtful") || w.contains("do not follow")),
+            "{:?}",
+            fit.warnings
+        );
+    }
+    let cubes = shared_recordings("cube_toss/tosses.csv", r#"{"columns":{"trial":"toss"},"up":"z"}"#).expect("cubes");
+    assert!(cubes.iter().all(|cube| !estimator::signal::wrench::is_payload(cube)));
+}
