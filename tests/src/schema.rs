@@ -7,7 +7,7 @@
 use serde_json::Value;
 
 /// Keywords that say nothing about what is valid.
-const WORDS: [&str; 5] = ["$schema", "$defs", "title", "description", "default"];
+const WORDS: [&str; 7] = ["$schema", "$defs", "title", "description", "default", "examples", "x-absent"];
 
 /// What is wrong with a document, one sentence a fault.
 pub fn faults(schema: &Value, document: &Value) -> Vec<String> {

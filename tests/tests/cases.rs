@@ -69,7 +69,7 @@ fn advice_to_sort() {
         assert!(all[0].warnings.iter().any(|w| w.text.contains("runs over")), "{:?}", all[0].warnings);
     }
     if let Some(error) = refusal("advice-to-sort/coarse_stamps_with_rate.csv") {
-        assert!(error.contains(r#""columns": {"t_s": null}"#) && !error.contains("sort"), "{error}");
+        assert!(error.contains(r#""columns": {"t_s": null}"#) && !error.contains("sort the"), "{error}");
     }
 }
 
@@ -110,7 +110,8 @@ fn hysteresis_taken_for_a_delay() {
     assert_eq!(ids(&control), ["return-spring"]);
     for file in ["bend_01mm.csv", "bend_1mm_and_spring.csv"] {
         let bent = diagnosis(&format!("hysteresis-taken-for-a-delay/{file}")).expect("the file is there");
-        assert!(!ids(&bent).contains(&"time-delay"), "{file}: {:?}", ids(&bent));
+        let is_sure = |cause: &estimator::diagnose::Cause| cause.id == "time-delay" && cause.posterior > 0.6;
+        assert!(!bent.causes.iter().any(is_sure), "{file}: {:?}", bent.causes);
     }
 }
 
@@ -213,7 +214,7 @@ fn spreadsheet_marks() {
 fn tare_jump() {
     let Some(found) = diagnosis("tare-jump/one_step.csv") else { return };
     assert_eq!(ids(&found), ["force-step"]);
-    let values: Vec<f64> = found.causes[0].parameters.iter().filter_map(|p| p.value).collect();
+    let values: Vec<f64> = found.causes[0].parameters.iter().map(|p| p.value).collect();
     let has = |right: f64, off: f64| values.iter().any(|v| (v - right).abs() < off);
     assert!(has(-3.1, 0.1) && has(21.37, 0.05), "{values:?}");
 }

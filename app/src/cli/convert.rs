@@ -5,6 +5,7 @@ use anyhow::Context;
 use clap::Args;
 use estimator::identify::payload::compensate::{compensated, removed};
 use estimator::log::Attachment;
+use estimator::log::Part;
 use haptics::recording::{Recording, Warning};
 use haptics::world::World;
 use schemars::JsonSchema;
@@ -12,6 +13,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+/// Value of `--compensate` without poses: the log itself.
+const ITSELF: &str = "IN";
 
 /// Arguments of `convert`.
 #[derive(Args)]
@@ -27,8 +31,8 @@ pub struct Convert {
     world: Option<PathBuf>,
     /// Remove the weight of a sensor's load and the bias of the sensor from the wrench: as the log itself shows them, or poses
     /// of the same sensor
-    #[arg(long, value_name = "POSES", num_args = 0..=1, require_equals = true)]
-    compensate: Option<Option<PathBuf>>,
+    #[arg(long, value_name = "POSES", num_args = 0..=1, require_equals = true, default_missing_value = ITSELF)]
+    compensate: Option<PathBuf>,
     #[command(flatten)]
     source: LogArgs,
 }
@@ -75,16 +79,14 @@ impl Convert {
     /// The recordings without the load and the bias of their sensor, if that is asked for.
     fn compensated(&self, recordings: Vec<Recording>) -> anyhow::Result<Vec<Recording>> {
         let Some(poses) = &self.compensate else { return Ok(recordings) };
-        let elsewhere = match poses {
-            Some(path) => {
-                let poses = super::read(path, None)?;
-                let [poses] = poses.as_slice() else {
-                    anyhow::bail!("{} holds {} recordings; choose one with \"select\"", path.display(), poses.len())
-                };
-                Some(removed(poses)?.without_drift())
-            }
-            None => None,
-        };
+        let mut elsewhere = None;
+        if poses != Path::new(ITSELF) {
+            let recordings = super::read(poses, None, &Part::default())?;
+            let [one] = recordings.as_slice() else {
+                anyhow::bail!("{} holds {} recordings; choose one with \"select\"", poses.display(), recordings.len())
+            };
+            elsewhere = Some(removed(one)?.without_drift());
+        }
         let one = |recording: &Recording| match &elsewhere {
             Some(removed) => Ok(compensated(recording, removed)?),
             None => Ok(compensated(recording, &removed(recording)?)?),

@@ -44,7 +44,9 @@ impl PartArgs {
         anyhow::ensure!(is_paired, "several windows of time need as many --from-s as --to-s");
         let window = |k: usize| TimeWindow { from_s: starts.get(k).copied(), to_s: ends.get(k).copied() };
         let windows: Vec<TimeWindow> = (0..count).map(window).collect();
-        let empty = windows.iter().find_map(|w| w.from_s.zip(w.to_s).filter(|(from, to)| !(from < to)));
+        let empty = windows
+            .iter()
+            .find_map(|w| w.from_s.zip(w.to_s).filter(|(from, to)| from.is_nan() || to.is_nan() || from >= to));
         anyhow::ensure!(
             empty.is_none(),
             "--from-s must be smaller than --to-s; they are {:?}",

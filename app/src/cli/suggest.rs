@@ -65,9 +65,9 @@ impl Search<'_> {
         self.entries != before
     }
 
-    /// One step; the problem that stays when there is no further one.
-    fn step(&mut self) -> anyhow::Result<Option<Option<String>>> {
-        let (has_step, problem) = match self.read()? {
+    /// One step: true if there was one, and the problem that it is about.
+    fn step(&mut self) -> anyhow::Result<(bool, Option<String>)> {
+        Ok(match self.read()? {
             Ok(recordings) => {
                 let mut warnings = recordings.iter().flat_map(|r| &r.warnings);
                 let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()));
@@ -83,8 +83,7 @@ impl Search<'_> {
                 };
                 (has_step, Some(error.to_string()))
             }
-        };
-        Ok((!has_step).then_some(problem))
+        })
     }
 }
 
@@ -107,7 +106,8 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
     let mut search = Search { log, entries: before.clone(), has_guessed: false };
     let mut open = None;
     for _ in 0..ROUNDS {
-        if let Some(problem) = search.step()? {
+        let (has_step, problem) = search.step()?;
+        if !has_step {
             open = problem;
             break;
         }

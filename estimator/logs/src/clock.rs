@@ -55,11 +55,11 @@ pub fn times(
             row,
             line,
             column: headers[column].clone(),
-            how: if goes_back { "goes backwards" } else { "stands still" },
+            goes_back,
             previous: time[i],
             time: time[i + 1],
             rate_hz: mean_rate(&time),
-            advice: advice(&time, (goes_back, line == 0), meta.rate_hz),
+            advice: advice(&time, (goes_back, line == 0), meta.rate_hz).into(),
             path: path.to_path_buf(),
         });
     }
@@ -167,13 +167,19 @@ pub fn unit_doubt(time: &[f64]) -> Option<Warning> {
     let rate_hz = step.recip();
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
     let text = format!(
-        "the times are whole numbers and run at {rate_hz:.3e} Hz; as {name} they run at {:.4} Hz: if they are, state \"scale\": \
+        "the times are whole numbers and run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \
          {{\"t_s\": {unit:e}}} in the sidecar, and if they count samples, \"columns\": {{\"t_s\": null}} and \"rate_hz\"",
-        rate_hz / unit
+        shown(rate_hz),
+        shown(rate_hz / unit)
     );
     let suggested = json!({ "scale": { "t_s": unit } }).as_object().cloned();
     let (kind, column) = (super::checks::UNIT.to_owned(), Some("t_s".to_owned()));
     Some(Warning { kind, column, text, suggested, ..Warning::default() })
+}
+
+/// A rate in four decimals, or in two digits when it is slow.
+fn shown(rate_hz: f64) -> String {
+    if rate_hz < 1e-3 { format!("{rate_hz:.1e}") } else { ((rate_hz * 1e4).round() / 1e4).to_string() }
 }
 
 /// Puts needed columns that have values in some rows only on the clock of the one with fewest.

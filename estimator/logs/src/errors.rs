@@ -165,7 +165,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The same name twice.
-    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, header), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
+    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, header.as_deref()), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
     DuplicateColumn {
         /// The name.
         column: String,
@@ -174,7 +174,7 @@ pub enum LogError {
         /// The second's.
         second: String,
         /// Header of the first column, if the second has another one.
-        header: Option<String>,
+        header: Option<Box<str>>,
         /// The file.
         path: PathBuf,
     },
@@ -188,7 +188,7 @@ pub enum LogError {
         /// Columns of the file.
         present: String,
         /// Entries of `columns` with which it is not needed.
-        instead: BTreeMap<String, String>,
+        instead: Box<BTreeMap<String, String>>,
         /// The file.
         path: PathBuf,
     },
@@ -247,7 +247,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Time does not increase.
-    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
+    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", how = if *goes_back { "goes backwards" } else { "stands still" }, at = place(*row, *line), column = plain(column), path = path.display())]
     Time {
         /// Row of data, from 1.
         row: usize,
@@ -255,14 +255,14 @@ pub enum LogError {
         line: u64,
         /// The time column.
         column: String,
-        /// `goes backwards` or `stands still`.
-        how: &'static str,
+        /// True if time goes backwards, false if it stands still.
+        goes_back: bool,
         /// Before, s.
         previous: f64,
         /// There, s.
         time: f64,
         /// The way out.
-        advice: String,
+        advice: Box<str>,
         /// Mean rate of the rows if time only stands still, Hz.
         rate_hz: Option<f64>,
         /// The file.
@@ -299,9 +299,9 @@ pub enum LogError {
 }
 
 /// Choice among two columns, as an entry of the sidecar.
-fn chosen(column: &str, header: &Option<String>) -> String {
-    let entry = |header: &String| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(header));
-    header.as_ref().map_or(String::new(), entry)
+fn chosen(column: &str, header: Option<&str>) -> String {
+    let entry = |header: &str| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(header));
+    header.map_or(String::new(), entry)
 }
 
 /// Entries of `columns`, at the end of a sentence.

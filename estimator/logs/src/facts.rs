@@ -259,7 +259,13 @@ pub fn doubts(recording: &Recording) -> Vec<Warning> {
     }
     found.extend(rate_doubt(recording).map(warning));
     found.extend(hand_doubt(recording).map(warning));
-    let orientation = |text: String| Warning { kind: "orientation".to_owned(), column: None, spans: Vec::new(), text };
+    let orientation = |text: String| Warning {
+        kind: "orientation".to_owned(),
+        column: None,
+        spans: Vec::new(),
+        text,
+        ..Warning::default()
+    };
     found.extend(doubtful_orientation(recording).map(orientation));
     found
 }

@@ -19,6 +19,9 @@ const LEAST_FALL: f64 = 0.5;
 /// A run: its name where there are several, and its rows.
 pub type Run = (Option<String>, Group);
 
+/// Rows within a window of time, with their times, s.
+pub type Part = (Option<TimeWindow>, Group, Option<Vec<f64>>);
+
 /// Runs of a table, with a sentence about them.
 pub struct Apart {
     /// The runs, in the order of the file.
@@ -41,7 +44,7 @@ pub fn apart(groups: Vec<Run>, plan: &Plan, headers: &[String], path: &Path) -> 
                 "time goes on where `{name}` changes, so the file is one run; \"select\": {{\"{name}\": …}} takes a part of \
                  it, and \"columns\": {{\"trial\": \"{name}\"}} makes each value a recording"
             );
-            (vec![(None, merged(groups))], Some(text))
+            (vec![(None, merged(&groups))], Some(text))
         }
         (true, guessed) => {
             let text = guessed.then(|| format!("each value of `{name}` is a run, and each run a recording"));
@@ -108,8 +111,8 @@ fn stretches(groups: &[Run]) -> Vec<Stretch> {
 }
 
 /// The groups as one, in the order of the file.
-fn merged(groups: Vec<Run>) -> Group {
-    let order = stretches(&groups);
+fn merged(groups: &[Run]) -> Group {
+    let order = stretches(groups);
     let width = groups.first().map_or(0, |(_, group)| group.columns.len());
     let mut whole = Group::new(vec![Vec::new(); width], Labels::default());
     let mut rows = 0;
@@ -186,7 +189,7 @@ pub fn within(
     windows: &[TimeWindow],
     (group, time_s): (Group, Option<Vec<f64>>),
     path: &Path,
-) -> Result<Vec<(Option<TimeWindow>, Group, Option<Vec<f64>>)>, LogError> {
+) -> Result<Vec<Part>, LogError> {
     if windows.is_empty() {
         return Ok(vec![(None, group, time_s)]);
     }

@@ -75,8 +75,8 @@ mod tests {
         let (error, log) = mended("t_s,x_mm,fx_N\n0,1,2\n1,2,3\n", None);
         assert!(error.contains("\"f_N\": \"fx_N\", \"q_m\": \"x_mm\""), "{error}");
         assert!(log[0].channel("q_m").expect("one")[1] == 0.002 && log[0].channel("f_N").is_some());
-        let coarse: String = (0..40).map(|i| format!("{},{}\n", i / 10, f64::from(i).sin())).collect();
-        let (_, log) = mended(&format!("t_s,q_m\n{coarse}"), None);
+        let coarse: Vec<String> = (0..40).map(|i| format!("{},{}", i / 10, f64::from(i).sin())).collect();
+        let (_, log) = mended(&format!("t_s,q_m\n{}\n", coarse.join("\n")), None);
         assert!((log[0].rate_hz().expect("a rate") - 13.0).abs() < 0.1);
     }
 

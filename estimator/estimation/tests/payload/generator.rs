@@ -4,6 +4,7 @@
 use haptics::recording::{Channel, Recording};
 use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
 use rand_distr::StandardNormal;
+use std::f64::consts::TAU;
 
 pub type V = [f64; 3];
 /// Scalar first, as the columns of the program are not.
@@ -159,9 +160,9 @@ fn path(form: Form, rng: &mut StdRng) -> Vec<(f64, Q, usize)> {
         }
         Form::Slow(seconds) => {
             // Slow turns about three axes with periods that have no common multiple; 0.1 to 0.4 rad/s.
-            let phase = [(); 6].map(|()| rng.random_range(0.0..6.28));
+            let phase = [(); 6].map(|()| rng.random_range(0.0..TAU));
             let at = |t: f64| {
-                let part = |k: usize, reach: f64, period: f64| reach * (6.283 * t / period + phase[k]).sin();
+                let part = |k: usize, reach: f64, period: f64| reach * (TAU * t / period + phase[k]).sin();
                 let roll = about([1.0, 0.0, 0.0], part(0, 1.6, 47.0) + part(1, 0.4, 19.0));
                 let pitch = about([0.0, 1.0, 0.0], part(2, 1.4, 61.0) + part(3, 0.4, 23.0));
                 times(times(about([0.0, 0.0, 1.0], part(4, 1.0, 71.0)), pitch), roll)

@@ -44,7 +44,7 @@ pub fn doubtful_orientation(recording: &Recording) -> Option<String> {
         let volume = |i: usize| Matrix3::from_row_iterator(m.iter().map(|column| column[i])).determinant();
         ("rotation matrix r11 to r33", (0..recording.len()).map(volume).collect())
     };
-    let is_off = |length: &f64| !((length - 1.0).abs() <= UNIT_TOLERANCE);
+    let is_off = |length: &f64| length.is_nan() || (length - 1.0).abs() > UNIT_TOLERANCE;
     let first = lengths.iter().position(is_off)?;
     let off = lengths.iter().filter(|length| is_off(length)).count();
     let what = if kind.starts_with('q') { "length" } else { "determinant" };

@@ -81,7 +81,7 @@ fn rates(recording: &Recording) -> Vec<Warning> {
         });
         let ratio = (least * most).sqrt();
         let (factor, how, wrong) = named.into_iter().find(|(factor, ..)| is_near(factor)).map_or_else(
-            || (ratio, format!("{ratio:.2} times"), format!("a factor of {:.2}", ratio.max(ratio.recip()))),
+            || (ratio, format!("{} times", short(ratio)), format!("a factor of {}", short(ratio.max(ratio.recip())))),
             |(factor, how, name)| (factor, how, name.to_owned()),
         );
         let text = format!(
@@ -91,6 +91,11 @@ fn rates(recording: &Recording) -> Vec<Warning> {
         found.push(doubt(recording, &velocity.name, text, &[(&velocity.name, factor)]));
     }
     found
+}
+
+/// A ratio in three digits.
+fn short(ratio: f64) -> String {
+    if (0.1..1000.0).contains(&ratio) { format!("{ratio:.2}") } else { format!("{ratio:.1e}") }
 }
 
 /// `vx1_m_s` → `x1_m`, `dq_rad_s` → `q_rad`.

@@ -98,7 +98,7 @@ fn names(paths: &[&str]) -> String {
 }
 
 fn note(text: String) -> Warning {
-    Warning { kind: "variables".to_owned(), column: None, spans: Vec::new(), text }
+    Warning { kind: "variables".to_owned(), column: None, spans: Vec::new(), text, ..Warning::default() }
 }
 
 /// The columns by their short names if those are unique, and the number of the run.

@@ -144,7 +144,7 @@ impl Planner<'_> {
             column: column.to_owned(),
             why,
             present: list(self.headers),
-            instead: BTreeMap::new(),
+            instead: Box::default(),
             path: self.path.to_path_buf(),
         }
     }
@@ -167,7 +167,7 @@ impl Planner<'_> {
             column: name.to_owned(),
             first: place(first),
             second: place(second),
-            header: Some(self.headers[first].clone()).filter(|header| *header != self.headers[second]),
+            header: Some(self.headers[first].as_str()).filter(|header| *header != self.headers[second]).map(Box::from),
             path: self.path.to_path_buf(),
         }
     }
@@ -339,7 +339,7 @@ impl Planner<'_> {
             };
             let one =
                 |(there, _): (&str, &str)| Some((name(there)?.to_owned(), self.headers[target(there)?.column].clone()));
-            *instead = halves.by_ref().filter_map(one).collect();
+            **instead = halves.by_ref().filter_map(one).collect();
         }
         Err(error)
     }

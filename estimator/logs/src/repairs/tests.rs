@@ -110,7 +110,7 @@ fn numbers_that_stand_for_no_value_are_left_out_with_their_rows() {
     assert_eq!((kinds(&repair(&mut dropped)), dropped.len()), (vec!["sentinel"], 3930));
     let mut released = put(1, 0.0, &[700..720, 1900..1950]);
     assert_eq!((repair(&mut released).len(), released.len()), (0, 4000));
-    let mut kept = put(0, -999.0, &[900..940]);
+    let mut kept = put(0, -999.0, &runs);
     kept.meta.as_recorded = vec!["sentinels".to_owned(), "spikes".to_owned()];
     assert!(repair(&mut kept).is_empty() && kept.len() == 4000);
 }

@@ -182,9 +182,12 @@ fn facts(constraint: &Constraint) -> Vec<String> {
     facts
 }
 
+/// A warning: its text, its intervals, and entries of the sidecar that settle it.
+type Remark = (String, Vec<(f64, f64)>, Option<Suggested>);
+
 fn warnings(ui: &mut Ui, document: &mut Document, calibration: &Calibration, jobs: &mut Jobs<Session>) {
     let Some(prepared) = document.prepared().cloned() else { return };
-    let mut texts: Vec<(String, Vec<(f64, f64)>, Option<Suggested>)> = Vec::new();
+    let mut texts: Vec<Remark> = Vec::new();
     for warning in &prepared.recording.warnings {
         texts.push((sentence(&warning.text), places(&prepared, warning), warning.suggested.clone()));
     }

@@ -196,7 +196,7 @@ fn block_size(residuals: &[DVector<f64>]) -> usize {
     let n = residuals.len();
     let correlation = next / power;
     // Three components a pose; two standard deviations of the correlation of independent ones.
-    if !(correlation * correlation * 3.0 * n as f64 > 4.0) || correlation <= 0.0 {
+    if correlation.is_nan() || correlation * correlation * 3.0 * n as f64 <= 4.0 || correlation <= 0.0 {
         return 1;
     }
     let time = (1.0 + correlation) / (1.0 - correlation).max(1e-3);
