@@ -4,8 +4,7 @@ use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
 use estimator::identify::payload::compensate::{compensated, removed};
-use estimator::log::Attachment;
-use estimator::log::Part;
+use estimator::log::{Attachment, Encoding, Part, write_encoded};
 use haptics::recording::{Recording, Warning};
 use haptics::world::World;
 use schemars::JsonSchema;
@@ -33,6 +32,9 @@ pub struct Convert {
     /// of the same sensor
     #[arg(long, value_name = "POSES", num_args = 0..=1, require_equals = true, default_missing_value = ITSELF)]
     compensate: Option<PathBuf>,
+    /// Write the messages of an MCAP file in JSON instead of protobuf
+    #[arg(long)]
+    json_messages: bool,
     #[command(flatten)]
     source: LogArgs,
 }
@@ -58,7 +60,13 @@ impl Convert {
         self.spare_the_input()?;
         let recordings = self.compensated(self.source.load(&self.log)?)?;
         let attachments = self.attachments()?;
-        super::progress::during("writing", |_| estimator::log::write(&recordings, &self.out, &attachments))?;
+        anyhow::ensure!(
+            !self.json_messages || self.is_mcap(),
+            "only an MCAP file has messages in JSON; name the output .mcap: {}",
+            self.out.display()
+        );
+        let encoding = if self.json_messages { Encoding::Json } else { Encoding::Protobuf };
+        super::progress::during("writing", |_| write_encoded(&recordings, &self.out, &attachments, encoding))?;
         let samples: usize = recordings.iter().map(Recording::len).sum();
         let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
         let mut text = format!("{}: {} recording(s), {samples} samples", self.out.display(), recordings.len());
@@ -117,10 +125,17 @@ impl Convert {
         Ok(())
     }
 
+    fn is_mcap(&self) -> bool {
+        self.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap"))
+    }
+
     fn attachments(&self) -> anyhow::Result<Vec<Attachment>> {
         let Some(path) = &self.world else { return Ok(Vec::new()) };
-        let mcap = self.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap"));
-        anyhow::ensure!(mcap, "only an MCAP file can carry a world; name the output .mcap: {}", self.out.display());
+        anyhow::ensure!(
+            self.is_mcap(),
+            "only an MCAP file can carry a world; name the output .mcap: {}",
+            self.out.display()
+        );
         World::load(path).with_context(|| path.display().to_string())?;
         let data = std::fs::read(path).with_context(|| path.display().to_string())?;
         let name = "world.json".to_owned();

@@ -10,6 +10,7 @@ pub mod hmm;
 pub mod identify;
 pub mod online;
 pub mod pipeline;
+mod plausible;
 pub mod regression;
 pub mod segment;
 pub mod simulate;

@@ -2,6 +2,7 @@
 
 use crate::calibrate;
 use crate::identify::{barrel, block, crank, mechanism, needle, payload, priors, switch};
+use crate::plausible;
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, segment_by, task_of};
 use foundation::cancellation;
@@ -92,6 +93,7 @@ pub fn analyse_prepared(
         Task::Barrel => each(recordings, |r| barrel::fit_by(options.method, r, options.thresholds))?,
     };
     doubt(&mut fit);
+    plausible::doubt(&mut fit);
     priors::apply(&mut fit, &first.meta);
     for (recording, found) in recordings.iter().zip(&mut segmentations) {
         if let Some(found) = found.as_mut().filter(|found| found.score.is_none()) {

@@ -197,6 +197,18 @@ fn a_carried_sidecar_holds_and_a_stray_one_is_named() {
 }
 
 #[test]
+fn messages_in_json_come_back_to_the_same_bits() {
+    let folder = folder();
+    let path = folder.path().join("x.mcap");
+    let mut recording = sample(r#"{"task": "mechanism"}"#);
+    recording.channels[0].values[..5].copy_from_slice(&[-0.0, 5e-324, f64::MAX, 0.1 + 0.2, -1e-300]);
+    let two = ["a, \"b\"", "2"].map(|trial| Recording { trial: Some(trial.to_owned()), ..recording.clone() });
+    write_encoded(&two, &path, &[], Encoding::Json).expect("writes");
+    let back = load(&path, None).expect("loads");
+    assert_eq!((bits(&back), comparable(&back)), (bits(&two), comparable(&two)));
+}
+
+#[test]
 fn what_cannot_be_kept_is_refused() {
     let folder = folder();
     let mut recording = sample("{}");

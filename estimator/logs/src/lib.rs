@@ -39,6 +39,7 @@ pub use self::csv::calendar::parse as stamp_ns;
 pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
+pub use self::mcap::write::Encoding;
 pub use checks::{UNIT, repaired, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
@@ -49,7 +50,7 @@ pub use sidecar::{
 };
 pub use suggested::put_into as put_suggested;
 pub use watch::Watch;
-pub use write::{write, write_csv};
+pub use write::{write, write_csv, write_encoded};
 
 /// Kind of the warning about spikes of one sample, and about values that no hand reaches.
 pub const SPIKES: &str = "outlier";

@@ -1,6 +1,7 @@
 //! Writing recordings so that they read back exactly: the format that the ending of a file names, and CSV.
 
 use super::errors::LogError;
+use super::mcap::write::Encoding;
 use super::rows::{Attachment, Value, cell, columns};
 use super::sidecar;
 use haptics::recording::Recording;
@@ -11,13 +12,23 @@ use std::path::Path;
 /// Writes the recordings of one log to one file, in the format that its ending names: `csv` (with its sidecar beside it),
 /// `mcap` or `parquet` (which carry their sidecar). All must have the same columns; several are told apart by their trials.
 pub fn write(recordings: &[Recording], path: &Path, attachments: &[Attachment]) -> Result<(), LogError> {
+    write_encoded(recordings, path, attachments, Encoding::Protobuf)
+}
+
+/// [`write`] with the encoding of the messages of an MCAP file.
+pub fn write_encoded(
+    recordings: &[Recording],
+    path: &Path,
+    attachments: &[Attachment],
+    encoding: Encoding,
+) -> Result<(), LogError> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
         "csv" => {
             write_table(recordings, path)?;
             recordings.first().map_or(Ok(()), |first| sidecar::write(first, path).map(drop))
         }
-        "mcap" => super::mcap::write::write(recordings, path, attachments),
+        "mcap" => super::mcap::write::write(recordings, path, attachments, encoding),
         #[cfg(feature = "parquet")]
         "parquet" => super::parquet::write(recordings, path),
         #[cfg(not(feature = "parquet"))]

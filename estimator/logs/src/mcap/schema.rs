@@ -4,6 +4,7 @@ use crate::rows::Value;
 use prost_reflect::prost::{Message as _, encoding};
 use prost_reflect::prost_types::field_descriptor_proto::{Label, Type};
 use prost_reflect::prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
+use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 
 /// Full name of the message.
@@ -62,6 +63,26 @@ pub fn put(index: usize, value: &Value<'_>, message: &mut Vec<u8>) {
         Value::Number(value) => encoding::double::encode(number(index), value, message),
         Value::Text(text) => encoding::string::encode(number(index), &(*text).to_owned(), message),
     }
+}
+
+/// JSON Schema of a row: (name, true for text) of each column.
+pub fn of_json(columns: &[(String, bool)]) -> Vec<u8> {
+    let kind = |is_text: bool| json!({ "type": if is_text { "string" } else { "number" } });
+    let properties: Map<String, Json> = columns.iter().map(|(name, is_text)| (name.clone(), kind(*is_text))).collect();
+    json!({ "type": "object", "title": MESSAGE, "properties": properties }).to_string().into_bytes()
+}
+
+/// Appends a row as an object of JSON. Every number has the shortest form that reads back to the same bits.
+pub fn put_json<'v>(names: &[String], values: impl Iterator<Item = Value<'v>>, message: &mut Vec<u8>) {
+    let member = |(name, value): (&String, Value<'_>)| {
+        let value = match value {
+            Value::Number(number) => json!(number),
+            Value::Text(text) => json!(text),
+        };
+        (name.clone(), value)
+    };
+    let row: Map<String, Json> = names.iter().zip(values).map(member).collect();
+    message.extend_from_slice(Json::Object(row).to_string().as_bytes());
 }
 
 /// A column's name as an identifier of protobuf.

@@ -2,7 +2,7 @@
 
 use super::metadata::STREAMED;
 use super::records;
-use super::write::{Sink, metadata};
+use super::write::{Encoding, Sink, metadata};
 use crate::errors::LogError;
 use crate::rows::{Attachment, Value};
 use crate::sidecar::portable_meta;
@@ -75,7 +75,8 @@ impl McapStream {
             }
         }
         let failed = |e: McapError| failure(&e, path);
-        let mut sink = Sink::create(path, &named, false, streamed(meta), attachments).map_err(failed)?;
+        let mut sink =
+            Sink::create(path, &named, false, streamed(meta), (attachments, Encoding::Protobuf)).map_err(failed)?;
         sink.flush().map_err(failed)?;
         let file = OpenOptions::new().write(true).open(path).map_err(|e| refusal(&e, path))?;
         let whole = file.metadata().map_err(|e| refusal(&e, path))?.len();

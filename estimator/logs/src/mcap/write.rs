@@ -1,4 +1,4 @@
-//! MCAP out: one topic of protobuf messages, one a sample, that Foxglove, PlotJuggler and Rerun open, and that reads back
+//! MCAP out: one topic of protobuf or JSON messages, one a sample, that Foxglove, PlotJuggler and Rerun open, and that reads back
 //! to the same bits.
 
 use super::metadata::{METADATA, SIDECAR, STREAMED, channel_metadata};
@@ -18,10 +18,22 @@ use std::path::Path;
 /// The topic of a recording.
 pub const TOPIC: &str = "/recording";
 
+/// Encoding of the messages of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// Protocol buffers: small, and read fast.
+    #[default]
+    Protobuf,
+    /// JSON: read by any script.
+    Json,
+}
+
 /// A file that is being written.
 pub(super) struct Sink {
     writer: Writer<BufWriter<File>>,
     channel: u16,
+    /// Names of the columns for JSON messages; empty for protobuf.
+    names: Vec<String>,
     sequence: u32,
     message: Vec<u8>,
 }
@@ -33,7 +45,7 @@ impl Sink {
         columns: &[(String, bool)],
         clockless: bool,
         metadata: BTreeMap<String, String>,
-        attachments: &[Attachment],
+        (attachments, encoding): (&[Attachment], Encoding),
     ) -> Result<Self, McapError> {
         let file = BufWriter::with_capacity(1 << 18, File::create(path)?);
         let library = concat!("touchstone ", env!("CARGO_PKG_VERSION"));
@@ -54,17 +66,26 @@ impl Sink {
                 data: Cow::Borrowed(&attachment.data),
             })?;
         }
+        if encoding == Encoding::Json {
+            let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+            let own = names.iter().map(|name| (name.clone(), name.clone())).collect();
+            let schema = writer.add_schema(schema::MESSAGE, "jsonschema", &schema::of_json(columns))?;
+            let channel = writer.add_channel(schema, TOPIC, "json", &channel_metadata(&own, clockless))?;
+            return Ok(Self { writer, channel, names, sequence: 0, message: Vec::new() });
+        }
         let row = RowSchema::new(columns);
         let schema = writer.add_schema(schema::MESSAGE, "protobuf", &row.descriptor)?;
         let channel = writer.add_channel(schema, TOPIC, "protobuf", &channel_metadata(&row.columns, clockless))?;
-        Ok(Self { writer, channel, sequence: 0, message: Vec::new() })
+        Ok(Self { writer, channel, names: Vec::new(), sequence: 0, message: Vec::new() })
     }
 
     /// Appends one row; `values` in the order of the columns.
     pub fn row<'v>(&mut self, log_time: u64, values: impl Iterator<Item = Value<'v>>) -> Result<(), McapError> {
         self.message.clear();
-        for (index, value) in values.enumerate() {
-            schema::put(index, &value, &mut self.message);
+        if self.names.is_empty() {
+            values.enumerate().for_each(|(index, value)| schema::put(index, &value, &mut self.message));
+        } else {
+            schema::put_json(&self.names, values, &mut self.message);
         }
         let header =
             MessageHeader { channel_id: self.channel, sequence: self.sequence, log_time, publish_time: log_time };
@@ -116,7 +137,12 @@ fn plain(value: &serde_json::Value) -> String {
 }
 
 /// Writes the recordings of one file as MCAP.
-pub fn write(recordings: &[Recording], path: &Path, attachments: &[Attachment]) -> Result<(), LogError> {
+pub fn write(
+    recordings: &[Recording],
+    path: &Path,
+    attachments: &[Attachment],
+    encoding: Encoding,
+) -> Result<(), LogError> {
     let columns = columns(recordings, path)?;
     let failed = |e: McapError| LogError::Write { reason: super::records::one_line(&e), path: path.to_path_buf() };
     if let Some(why) = not_finite(recordings) {
@@ -126,7 +152,8 @@ pub fn write(recordings: &[Recording], path: &Path, attachments: &[Attachment]) 
     let mut metadata = metadata(&portable_meta(&first.meta));
     // Reserved for streams.
     metadata.remove(STREAMED);
-    let mut sink = Sink::create(path, &columns, first.time_s.is_none(), metadata, attachments).map_err(failed)?;
+    let carried = (attachments, encoding);
+    let mut sink = Sink::create(path, &columns, first.time_s.is_none(), metadata, carried).map_err(failed)?;
     for (recording, times) in recordings.iter().zip(log_times_ns(recordings)) {
         for (row, &log_time) in times.iter().enumerate() {
             let values = (0..columns.len()).map(|column| cell(recording, column, row));
