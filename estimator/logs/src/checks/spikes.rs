@@ -84,38 +84,48 @@ pub fn warning(
 /// The recording with a line between its neighbours in the place of every spike, and a warning for each channel that had
 /// one. `None` if none had.
 pub fn repaired(recording: &Recording) -> Option<(Recording, Vec<Warning>)> {
-    let mut other = recording.clone();
-    let mut said = Vec::new();
-    for (k, channel) in recording.channels.iter().enumerate().filter(|(_, c)| units::is_program_name(&c.name)) {
-        let mut found = Vec::new();
-        // A spike hides others beside it.
-        for _ in 0..ROUNDS {
-            let new = places(recording, &other.channels[k], &Profile::of(&other.channels[k].values));
-            if new.is_empty() {
-                break;
-            }
-            found.extend(new);
-            found.sort_unstable();
-            found.dedup();
-            other.channels[k].values = bridged(&channel.values, &found);
-        }
-        let Some(&first) = found.first() else { continue };
-        let off = found.iter().map(|&i| (channel.values[i] - other.channels[k].values[i]).abs()).fold(0.0, f64::max);
-        let text = format!(
-            "{} has {} sample(s) that are spikes, the first at {}, up to {off:.4} {} away from their neighbours, which take their place",
-            channel.name,
-            found.len(),
-            place(recording, first),
-            channel.unit
-        );
-        said.push(about(
-            "outlier",
-            channel,
-            limited(found.iter().map(|&i| Span { first: i, end: i + 1 }).collect()),
-            text,
-        ));
+    let channels = &recording.channels;
+    let known: Vec<usize> = (0..channels.len()).filter(|&k| units::is_program_name(&channels[k].name)).collect();
+    let work = |i: usize| without_spikes(recording, &channels[known[i]]);
+    let found = super::parallel(known.len(), recording.len() * known.len(), work);
+    if found.iter().all(Option::is_none) {
+        return None;
     }
-    (!said.is_empty()).then_some((other, said))
+    let (mut other, mut said) = (recording.clone(), Vec::new());
+    for (k, (values, warning)) in known.iter().zip(found).filter_map(|(k, one)| Some((*k, one?))) {
+        other.channels[k].values = values;
+        said.push(warning);
+    }
+    Some((other, said))
+}
+
+/// The values of a channel with lines in the place of its spikes, and a warning. `None` without spikes.
+fn without_spikes(recording: &Recording, channel: &Channel) -> Option<(Vec<f64>, Warning)> {
+    let mut found = places(recording, channel, &Profile::of(&channel.values));
+    let mut first = *found.first()?;
+    let mut other = Channel { values: bridged(&channel.values, &found), ..channel.clone() };
+    // A spike hides others beside it.
+    for _ in 1..ROUNDS {
+        let new = places(recording, &other, &Profile::of(&other.values));
+        if new.is_empty() {
+            break;
+        }
+        found.extend(new);
+        found.sort_unstable();
+        found.dedup();
+        first = found[0];
+        other.values = bridged(&channel.values, &found);
+    }
+    let off = found.iter().map(|&i| (channel.values[i] - other.values[i]).abs()).fold(0.0, f64::max);
+    let text = format!(
+        "{} has {} sample(s) that are spikes, the first at {}, up to {off:.4} {} away from their neighbours, which take their place",
+        channel.name,
+        found.len(),
+        place(recording, first),
+        channel.unit
+    );
+    let spans = found.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
+    Some((other.values, about("outlier", channel, limited(spans), text)))
 }
 
 /// The values with lines in the place of some samples, none of which is the first or the last.
