@@ -118,7 +118,7 @@ struct LogArgs {
     /// Sidecar, when it is not `<stem>.meta.json` beside the log
     #[arg(long)]
     meta: Option<PathBuf>,
-    /// What was done: block-stack, crank, needle, mechanism, barrel, switch, payload, a task of yours, or its JSON file (docs/tasks.md);
+    /// Task of the log: block-stack, crank, needle, mechanism, barrel, switch, payload, a task of yours, or its JSON file (docs/tasks.md);
     /// told from the sidecar and the columns when not given
     #[arg(long)]
     task: Option<String>,

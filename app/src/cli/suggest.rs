@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Suggestions that follow from each other.
 const ROUNDS: usize = 8;
 
-/// What `info --suggest --json` prints.
+/// Output of `info --suggest --json`.
 #[derive(JsonSchema, Serialize)]
 pub(crate) struct Said {
     /// The sidecar's file.

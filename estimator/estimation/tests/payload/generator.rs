@@ -173,16 +173,9 @@ fn path(form: Form, rng: &mut StdRng) -> Vec<(f64, Q, usize)> {
     }
 }
 
-/// True values of a recording: the bias is a straight line through what it really was.
-#[derive(Clone, Debug)]
-pub struct Truth {
-    pub sensor: Sensor,
-    pub bias_n: V,
-    pub drift_n_s: V,
-}
-
-/// A recording with the quaternion as it is read out, x y z w, and the wrench in the sensor's axes.
-pub fn make(form: Form, sensor: Sensor, seed: u64) -> (Recording, Truth) {
+/// A recording with the quaternion as it is read out, x y z w, and the wrench in the sensor's axes. Beside it stand its
+/// true bias, N, and drift, N/s: those of a straight line through the bias as it wandered.
+pub fn make(form: Form, sensor: Sensor, seed: u64) -> (Recording, [V; 2]) {
     let mut rng = StdRng::seed_from_u64(seed);
     let path = path(form, &mut rng);
     let with_clock = !matches!(form, Form::Table(_));
@@ -220,8 +213,7 @@ pub fn make(form: Form, sensor: Sensor, seed: u64) -> (Recording, Truth) {
         ..Recording::default()
     };
     let middle_s = 0.5 * (biases[0].0 + biases[biases.len() - 1].0);
-    let truth = line(&biases, middle_s);
-    (recording, Truth { sensor, bias_n: truth[0], drift_n_s: truth[1] })
+    (recording, line(&biases, middle_s))
 }
 
 /// Value in the middle and slope of the straight line through the biases.
@@ -236,31 +228,4 @@ fn line(biases: &[(f64, V)], middle_s: f64) -> [V; 2] {
     };
     let all = [of(0), of(1), of(2)];
     [all.map(|(value, _)| value), all.map(|(_, slope)| slope)]
-}
-
-/// The same recording with the wrench turned to the base's axes.
-pub fn in_base(recording: &Recording) -> Recording {
-    let mut other = recording.clone();
-    let at = |name: &str, i: usize| recording.channel(name).expect("a column")[i];
-    for i in 0..recording.len() {
-        let q = [at("qw", i), at("qx", i), at("qy", i), at("qz", i)];
-        for names in [["fx_N", "fy_N", "fz_N"], ["tx_Nm", "ty_Nm", "tz_Nm"]] {
-            let turned = turn(q, names.map(|name| at(name, i)));
-            for (name, value) in names.into_iter().zip(turned) {
-                other.channels.iter_mut().find(|c| c.name == name).expect("a column").values[i] = value;
-            }
-        }
-    }
-    other
-}
-
-/// Columns with other names for the same values.
-pub fn renamed(recording: &Recording, names: &[(&str, &str)]) -> Recording {
-    let mut other = recording.clone();
-    for channel in &mut other.channels {
-        if let Some((_, to)) = names.iter().find(|(from, _)| *from == channel.name) {
-            channel.name = (*to).to_owned();
-        }
-    }
-    other
 }

@@ -5,7 +5,7 @@ mod generator;
 use estimation::identify::payload::compensate::{compensated, removed};
 use estimation::pipeline::{Options, analyse};
 use foundation::estimate::Fit;
-use generator::{Form, Sensor, Truth, V, about, in_base, make, renamed, turn};
+use generator::{Form, Sensor, V, about, make, turn};
 use haptics::recording::{Recording, Task, WrenchFrame};
 use rand::{SeedableRng as _, rngs::StdRng};
 use std::collections::BTreeMap;
@@ -21,10 +21,44 @@ fn drawn(seed: u64) -> Sensor {
 }
 
 /// A recording whose sidecar states the sensor's axes.
+/// True values of a recording.
+struct Truth {
+    sensor: Sensor,
+    bias_n: V,
+    drift_n_s: V,
+}
+
+/// The same recording with the wrench turned to the base's axes.
+fn in_base(recording: &Recording) -> Recording {
+    let mut other = recording.clone();
+    let at = |name: &str, i: usize| recording.channel(name).expect("a column")[i];
+    for i in 0..recording.len() {
+        let q = [at("qw", i), at("qx", i), at("qy", i), at("qz", i)];
+        for names in [["fx_N", "fy_N", "fz_N"], ["tx_Nm", "ty_Nm", "tz_Nm"]] {
+            let turned = turn(q, names.map(|name| at(name, i)));
+            for (name, value) in names.into_iter().zip(turned) {
+                other.channels.iter_mut().find(|c| c.name == name).expect("a column").values[i] = value;
+            }
+        }
+    }
+    other
+}
+
+/// Columns with other names for the same values.
+fn renamed(recording: &Recording, names: &[(&str, &str)]) -> Recording {
+    let mut other = recording.clone();
+    for channel in &mut other.channels {
+        if let Some((_, to)) = names.iter().find(|(from, _)| *from == channel.name) {
+            channel.name = (*to).to_owned();
+        }
+    }
+    other
+}
+
 fn stated(form: Form, sensor: Sensor, seed: u64) -> (Recording, Truth) {
-    let (mut recording, truth) = make(form, sensor, seed);
+    let (mut recording, [bias_n, drift_n_s]) = make(form, sensor, seed);
     recording.meta.wrench_frame = Some(WrenchFrame::Sensor);
-    (recording, truth)
+    (recording, Truth { sensor, bias_n, drift_n_s })
 }
 
 fn number(name: &str, usual: u64) -> u64 {

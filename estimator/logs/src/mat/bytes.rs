@@ -111,7 +111,7 @@ impl<'a> Bytes<'a> {
         let (order, left) = (self.order, size.saturating_mul(MOST_UNPACKED));
         let (room, watch) = (&mut *self.room, self.watch);
         let value = read(&mut Bytes { from: &mut inflated, order, left, room, watch, is_packed: true })?;
-        // The checksum stands at the end, behind padding at the most.
+        // The checksum stands at the end, behind no more than padding.
         let end = std::io::copy(&mut (&mut inflated).take(MOST_PADDING + 1), &mut std::io::sink());
         if end.map_err(|_| damaged("a compressed variable does not fit its checksum"))? > MOST_PADDING {
             return Err(damaged("a compressed variable is longer than it says"));

@@ -89,7 +89,7 @@ impl Removed {
         [down * self.weight_n + bias(0), self.moment_nm.cross(&down) + bias(1)]
     }
 
-    /// What is removed, named as in a fit.
+    /// Values that are removed, named as in a fit.
     fn named(&self) -> Vec<(String, f64)> {
         let mut all = vec![(format!("{PAYLOAD}.weight_N"), self.weight_n)];
         let triples = [
