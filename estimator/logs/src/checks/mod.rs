@@ -14,6 +14,7 @@ mod scale;
 mod spikes;
 
 pub(crate) use findings::{is_position, limited, place};
+pub(crate) use profile::extremes;
 pub use repeats::copied;
 pub use scale::UNIT;
 pub use spikes::repaired;

@@ -48,7 +48,7 @@ impl Profile {
 }
 
 /// Smallest and largest value, and how many are equal to the one before: in lanes, so that the compiler can use wide registers.
-fn extremes(values: &[f64]) -> (f64, f64, usize) {
+pub(crate) fn extremes(values: &[f64]) -> (f64, f64, usize) {
     const LANES: usize = 8;
     let less = |a: f64, b: f64| if a < b { a } else { b };
     let more = |a: f64, b: f64| if a > b { a } else { b };

@@ -1,9 +1,8 @@
 //! Rows without a measurement that hold a number in its place: −999, 65535, or 0 where a sensor dropped out.
 
-use crate::checks::{is_position, place};
+use crate::checks::{extremes, is_position, limited, place};
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
-use std::collections::BTreeSet;
 
 /// Digits of numbers that stand for no value, whatever the power of ten: nines, and the ends of integers of 15 to 32 bits.
 const CODES: [f64; 10] = [
@@ -28,63 +27,49 @@ const MOST: f64 = 0.5;
 
 /// Leaves the rows out in which a channel of the program holds a number that stands for no value.
 pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
-    let mut rows: BTreeSet<usize> = BTreeSet::new();
+    let mut is_out = vec![false; recording.len()];
     let mut found = Vec::new();
     for channel in recording.channels.iter().filter(|c| units::is_program_name(&c.name)) {
-        let mut own: BTreeSet<usize> = BTreeSet::new();
-        // Two numbers may be in use.
-        for _ in 0..2 {
-            let Some((value, spans)) = sentinel(channel, &own) else { break };
-            let count: usize = spans.iter().map(|span| span.end - span.first).sum();
-            let text = format!(
-                "{} is exactly {value} in {count} row(s), the first at {}: no sensor measured that, and these rows are left out",
-                channel.name,
-                place(recording, spans[0].first)
-            );
-            own.extend(spans.iter().flat_map(|span| span.first..span.end));
-            let spans = crate::checks::limited(spans);
-            found.push(Warning {
-                kind: "sentinel".to_owned(),
-                column: Some(channel.name.clone()),
-                spans,
-                text,
-                ..Warning::default()
-            });
-        }
-        rows.append(&mut own);
+        let Some((value, spans)) = sentinel(channel) else { continue };
+        let count: usize = spans.iter().map(|span| span.end - span.first).sum();
+        spans.iter().for_each(|span| is_out[span.first..span.end].fill(true));
+        let text = format!(
+            "{} is exactly {value} in {count} row(s), the first at {}: no sensor measured that, and these rows are left out",
+            channel.name,
+            place(recording, spans[0].first)
+        );
+        let (kind, column, spans) = ("sentinel".to_owned(), Some(channel.name.clone()), limited(spans));
+        found.push(Warning { kind, column, spans, text, ..Warning::default() });
     }
-    if !rows.is_empty() {
-        let kept: Vec<usize> = (0..recording.len()).filter(|row| !rows.contains(row)).collect();
+    if !found.is_empty() {
+        let kept: Vec<usize> = (0..is_out.len()).filter(|&row| !is_out[row]).collect();
         super::keep(recording, &kept);
+        // Another number may stand for no value beside the first.
+        found.extend(take_out(recording));
     }
     found
 }
 
-/// A number that stands for no value, with its rows; `without`: rows that are out already.
-fn sentinel(channel: &Channel, without: &BTreeSet<usize>) -> Option<(f64, Vec<Span>)> {
+/// A number that stands for no value, with its rows.
+fn sentinel(channel: &Channel) -> Option<(f64, Vec<Span>)> {
     let values = &channel.values;
-    let sound = || values.iter().enumerate().filter(|(row, _)| !without.contains(row)).map(|(_, v)| *v);
-    let (low, high) = sound().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    let zero = (is_position(channel) && low != 0.0 && high != 0.0).then_some(0.0);
-    let candidates = [low, high].into_iter().filter(|v| is_code(*v)).chain(zero.filter(|_| values.contains(&0.0)));
-    let mut usual = None;
+    let (low, high, _) = extremes(values);
+    let zero = (is_position(channel) && values.contains(&0.0)).then_some(0.0);
+    let candidates = [low, high].into_iter().filter(|v| is_code(*v)).chain(zero);
     candidates.into_iter().find_map(|value| {
-        let spans: Vec<Span> = runs(values, value);
-        if spans.iter().any(|span| without.contains(&span.first)) {
-            return None;
-        }
+        let spans = runs(values, value);
         let count: usize = spans.iter().map(|span| span.end - span.first).sum();
         if count as f64 > MOST * values.len() as f64 {
             return None;
         }
-        let leap = LEAP * *usual.get_or_insert_with(|| usual_step(values));
+        let leap = LEAP * largest_usual_step(values, value);
         let is_far = |row: Option<usize>| row.and_then(|row| values.get(row)).map(|v| (v - value).abs() > leap);
         let fits = |span: &Span| {
             let (before, after) = (is_far(span.first.checked_sub(1)), is_far(Some(span.end)));
             // A zero at an end may be the start of a motion.
             before.unwrap_or(value != 0.0) && after.unwrap_or(value != 0.0)
         };
-        (spans.iter().all(fits) && count < values.len()).then_some((value, spans))
+        spans.iter().all(fits).then_some((value, spans))
     })
 }
 
@@ -113,9 +98,10 @@ fn runs(values: &[f64], value: f64) -> Vec<Span> {
     spans
 }
 
-/// The largest usual step from row to row.
-fn usual_step(values: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
+/// The largest usual step from row to row, without steps to and from a number; infinite if there is no other.
+fn largest_usual_step(values: &[f64], without: f64) -> f64 {
+    let pairs = values.windows(2).filter(|w| w[0] != without && w[1] != without && w[0] != w[1]);
+    let mut steps: Vec<f64> = pairs.map(|w| (w[1] - w[0]).abs()).collect();
     let at = (USUAL * steps.len() as f64) as usize;
-    if at >= steps.len() { 0.0 } else { *steps.select_nth_unstable_by(at, f64::total_cmp).1 }
+    if at >= steps.len() { f64::INFINITY } else { *steps.select_nth_unstable_by(at, f64::total_cmp).1 }
 }

@@ -110,6 +110,21 @@ fn numbers_that_stand_for_no_value_are_left_out_with_their_rows() {
     assert_eq!((kinds(&repair(&mut dropped)), dropped.len()), (vec!["sentinel"], 3930));
     let mut released = put(1, 0.0, &[700..720, 1900..1950]);
     assert_eq!((repair(&mut released).len(), released.len()), (0, 4000));
+    // A position that is never near 0, and one with two places only.
+    let mut far = swing(4000);
+    far.channels[0].values.iter_mut().for_each(|v| *v += 20.0);
+    far.channels[0].values[700..720].fill(0.0);
+    assert_eq!((kinds(&repair(&mut far)), far.len()), (vec!["sentinel"], 3980));
+    let mut places = swing(4000);
+    places.channels[0].values.iter_mut().enumerate().for_each(|(i, v)| *v = if i % 900 < 600 { 0.3 } else { 0.0 });
+    assert!(repair(&mut places).is_empty());
+    // Two numbers in use, and one that stands in every twentieth row.
+    let mut two = put(0, -999.0, &runs);
+    two.channels[0].values[2000..2010].fill(65_535.0);
+    assert_eq!((kinds(&repair(&mut two)), two.len()), (vec!["sentinel"; 2], 3946));
+    let mut often = put(1, -999.0, &[]);
+    (0..4000).step_by(20).for_each(|row| often.channels[1].values[row] = -999.0);
+    assert_eq!((kinds(&repair(&mut often)), often.len()), (vec!["sentinel"], 3800));
     let mut kept = put(0, -999.0, &runs);
     kept.meta.as_recorded = vec!["sentinels".to_owned(), "spikes".to_owned()];
     assert!(repair(&mut kept).is_empty() && kept.len() == 4000);
