@@ -102,7 +102,8 @@ impl About<'_> {
         recording.warnings.extend(recording.time_s.as_deref().and_then(clock::unit_doubt));
         let repairs = repairs::repair(&mut recording);
         recording.warnings.extend(repairs);
-        recording.warnings.extend(checks::warnings(&recording));
+        let is_repaired = repairs::is_wanted(&recording, "spikes");
+        recording.warnings.extend(checks::warnings_of(&recording, !is_repaired));
         recording.warnings.extend(checks::copied(&recording, self.plan, self.copies));
         Ok(recording)
     }

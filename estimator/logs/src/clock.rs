@@ -117,7 +117,8 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
 
 /// Adds a cycle wherever a counter ran over.
 fn unwrapped(time: &mut [f64], cycles: &[f64]) -> Option<String> {
-    let usual = usual_step(time)?;
+    let falls = time.windows(2).any(|w| w[1] < w[0]);
+    let usual = falls.then(|| usual_step(time)).flatten()?;
     let (mut added, mut times, mut first) = (0.0, 0, 0);
     for i in 1..time.len() {
         let step = time[i] + added - time[i - 1];
@@ -159,12 +160,11 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
 
 /// Doubt about the unit of a clock whose stamps are whole numbers and slower than a measurement of motion.
 pub fn unit_doubt(time: &[f64]) -> Option<Warning> {
-    let step = usual_step(time).filter(|step| *step >= 1.0 && time.len() >= FEWEST_STAMPS)?;
     let is_whole = |t: &f64| t.fract() == 0.0;
-    if !time.iter().all(is_whole) {
+    if time.len() < FEWEST_STAMPS || !time.iter().all(is_whole) {
         return None;
     }
-    let rate_hz = step.recip();
+    let rate_hz = usual_step(time)?.recip();
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
     let text = format!(
         "the times are whole numbers and run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \

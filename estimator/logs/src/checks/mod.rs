@@ -30,8 +30,15 @@ const SMALL: usize = 200_000;
 
 /// All warnings about the samples of one recording, each with the samples it is about.
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
+    warnings_of(recording, true)
+}
+
+/// [`warnings`], without those about spikes if they have been repaired.
+pub fn warnings_of(recording: &Recording, with_spikes: bool) -> Vec<Warning> {
     let channels = &recording.channels;
-    let own = parallel(channels.len(), recording.len() * channels.len(), |i| of_channel(recording, &channels[i]));
+    let own = parallel(channels.len(), recording.len() * channels.len(), |i| {
+        of_channel(recording, &channels[i], with_spikes)
+    });
     let (profiles, own): (Vec<Profile>, Vec<Vec<Warning>>) = own.into_iter().unzip();
     let about_all: [&(dyn Fn() -> Vec<Warning> + Sync); 4] = [
         &|| clock::warnings(recording),
@@ -47,14 +54,16 @@ pub fn warnings(recording: &Recording) -> Vec<Warning> {
     found
 }
 
-fn of_channel(recording: &Recording, channel: &Channel) -> (Profile, Vec<Warning>) {
+fn of_channel(recording: &Recording, channel: &Channel, with_spikes: bool) -> (Profile, Vec<Warning>) {
     let profile = Profile::of(&channel.values);
     let known = units::is_program_name(&channel.name);
     let mut found = Vec::new();
     let limit = held::saturated(recording, channel, &profile);
     if known {
         let impossible = spikes::impossible(channel, &profile);
-        found.extend(spikes::warning(recording, channel, &profile, impossible.as_ref()));
+        if with_spikes {
+            found.extend(spikes::warning(recording, channel, &profile, impossible.as_ref()));
+        }
         found.extend(impossible);
         found.extend(held::stuck(recording, channel, &profile, limit.as_ref()));
     }

@@ -5,9 +5,9 @@ use super::profile::{Profile, holds};
 use crate::fingerprint::Shared;
 use crate::plan::Plan;
 use crate::units;
+use foundation::signal::thinned::thinned;
 use haptics::recording::{Channel, Recording, Span, Warning};
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 /// More equal rows than this in a row are a rest or a stuck recorder, not a repeated sample.
 const MOST_REPEATS: usize = 5;
@@ -45,12 +45,11 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
 /// torque of the program's is the one that was not measured: a position is often recorded twice.
 fn copies_beside(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Vec<Warning> {
     let channels = &recording.channels;
-    let mut first_of: HashMap<u64, usize> = HashMap::new();
+    let mut first_of: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut found = Vec::new();
     for k in (0..channels.len()).filter(|&k| !profiles[k].is_constant() && moves(&channels[k].values)) {
-        let mut hasher = DefaultHasher::new();
-        channels[k].values.iter().for_each(|value| value.to_bits().hash(&mut hasher));
-        let first = *first_of.entry(hasher.finish()).or_insert(k);
+        let some: Vec<u64> = thinned(recording.len()).map(|row| channels[k].values[row].to_bits()).collect();
+        let first = *first_of.entry(some).or_insert(k);
         let is_told = known.contains(&first) && known.contains(&k);
         if first == k || is_told || channels[first].values != channels[k].values {
             continue;

@@ -25,8 +25,6 @@ const CLUSTER_STEPS: f64 = 20.0;
 const WORTH_A_LOOK: f64 = 2.5;
 /// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
 const FELT_STEPS: f64 = 2.0;
-/// Rounds after which hardly any spike is left.
-const ROUNDS: usize = 3;
 /// Largest number of samples of a spike: junk falls on two neighbours now and then.
 const LONGEST: usize = 2;
 /// Largest distance to which a spike comes back, as a share of its height.
@@ -105,14 +103,14 @@ fn without_spikes(recording: &Recording, channel: &Channel) -> Option<(Vec<f64>,
     let mut first = *found.first()?;
     let mut other = Channel { values: bridged(&channel.values, &found), ..channel.clone() };
     // A spike hides others beside it.
-    for _ in 1..ROUNDS {
-        let new = places(recording, &other, &Profile::of(&other.values));
-        if new.is_empty() {
-            break;
-        }
-        found.extend(new);
+    loop {
+        let before = found.len();
+        found.extend(places(recording, &other, &Profile::of(&other.values)));
         found.sort_unstable();
         found.dedup();
+        if found.len() == before {
+            break;
+        }
         first = found[0];
         other.values = bridged(&channel.values, &found);
     }

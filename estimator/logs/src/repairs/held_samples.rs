@@ -1,5 +1,6 @@
 //! Channels that repeat their last value until the next one comes: a logger that is faster than its source.
 
+use crate::checks::extremes;
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
@@ -31,11 +32,12 @@ pub fn take_out(recording: &mut Recording) -> Option<Warning> {
 /// Name of a channel that holds its values, the usual number of rows between new ones, and the rows of new ones.
 fn held(channel: &Channel) -> Option<(String, usize, Vec<usize>)> {
     let values = &channel.values;
-    let changes: Vec<usize> = (1..values.len()).filter(|&i| values[i] != values[i - 1]).collect();
-    // A cheap look first: most channels change with nearly every row.
-    if changes.len() < LEAST_CHANGES || 2 * changes.len() > values.len() + 2 {
+    // Most channels change with nearly every row.
+    let count = values.len() - extremes(values).2;
+    if count < LEAST_CHANGES + 1 || 2 * count > values.len() + 4 {
         return None;
     }
+    let changes: Vec<usize> = (1..values.len()).filter(|&i| values[i] != values[i - 1]).collect();
     let mut gaps: Vec<usize> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = gaps.len() / 2;
     let every = *gaps.select_nth_unstable(middle).1;

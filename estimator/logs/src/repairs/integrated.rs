@@ -5,11 +5,11 @@ use haptics::recording::{Channel, Recording, Warning};
 
 /// Adds the positions of velocities, and of accelerations, to a recording without any position.
 pub fn complete(recording: &mut Recording) -> Vec<Warning> {
-    let Some(time) = recording.time_s.clone().filter(|time| time.len() > 1) else { return Vec::new() };
     let is_position = |c: &Channel| units::is_program_name(&c.name) && matches!(c.unit.as_str(), "m" | "rad");
     if recording.channels.iter().any(is_position) {
         return Vec::new();
     }
+    let Some(time) = recording.time_s.clone().filter(|time| time.len() > 1) else { return Vec::new() };
     let mut said = Vec::new();
     let mut add = |recording: &mut Recording, of: &Channel, (name, unit): (String, &str), values, drift: String| {
         let text = format!("{name} is the integral of {}: its zero is not known, and it drifts. {drift}", of.name);

@@ -19,7 +19,6 @@ type Step = fn(&mut Recording) -> Vec<Warning>;
 /// Repairs a recording; the warnings tell what was done.
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
-    let wanted = |recording: &Recording, kind: &str| !recording.meta.as_recorded.iter().any(|listed| listed == kind);
     let steps: [(&str, Step); 4] = [
         (KINDS[0], sentinels::take_out),
         (KINDS[1], |recording| bursts::spread(recording).into_iter().collect()),
@@ -27,11 +26,11 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
         (KINDS[3], wrapped_angles::unwrap),
     ];
     for (kind, step) in steps {
-        if wanted(recording, kind) {
+        if is_wanted(recording, kind) {
             found.extend(step(recording));
         }
     }
-    if wanted(recording, KINDS[4])
+    if is_wanted(recording, KINDS[4])
         && let Some((other, said)) = checks::repaired(recording)
     {
         recording.channels = other.channels;
@@ -39,6 +38,11 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     }
     found.extend(integrated::complete(recording));
     found
+}
+
+/// True unless the sidecar switches the repairs of a kind off.
+pub fn is_wanted(recording: &Recording, kind: &str) -> bool {
+    !recording.meta.as_recorded.iter().any(|listed| listed == kind)
 }
 
 /// Leaves all rows but these out.

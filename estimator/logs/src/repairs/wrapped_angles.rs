@@ -1,6 +1,6 @@
 //! Angles of an encoder that starts anew after a turn.
 
-use crate::checks::place;
+use crate::checks::{extremes, place};
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 use std::f64::consts::{PI, TAU};
@@ -53,10 +53,11 @@ pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
 
 /// Samples at which an angle leaps by about a whole turn.
 fn leaps(channel: &Channel) -> Vec<usize> {
-    let is_angle = channel.unit == "rad" && units::is_program_name(&channel.name);
-    let (low, high) =
-        channel.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    if !is_angle || high - low > ONE_TURN || high - low < TAU - NEAR_A_TURN {
+    if channel.unit != "rad" || !units::is_program_name(&channel.name) {
+        return Vec::new();
+    }
+    let (low, high, _) = extremes(&channel.values);
+    if high - low > ONE_TURN || high - low < TAU - NEAR_A_TURN {
         return Vec::new();
     }
     let leap = |i: &usize| ((channel.values[*i] - channel.values[*i - 1]).abs() - TAU).abs() < NEAR_A_TURN;
