@@ -32,7 +32,9 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
     for channel in recording.channels.iter().filter(|c| units::is_program_name(&c.name)) {
         let Some((value, spans)) = sentinel(channel) else { continue };
         let count: usize = spans.iter().map(|span| span.end - span.first).sum();
-        spans.iter().for_each(|span| is_out[span.first..span.end].fill(true));
+        for span in &spans {
+            is_out[span.first..span.end].fill(true);
+        }
         let text = format!(
             "{} is exactly {value} in {count} row(s), the first at {}: no sensor measured that, and these rows are left out",
             channel.name,
