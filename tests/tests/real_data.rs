@@ -5,8 +5,11 @@ use estimator::constraint;
 use estimator::estimate::{ConstraintKind, Fit};
 use estimator::identify::mechanism;
 use estimator::log;
+use estimator::segment::{SystemState, segment};
 use haptics::recording::{Meta, Recording, Span, Warning};
-use tests::{shared_data, shared_recordings as load};
+use std::collections::BTreeMap;
+use tests::real::questions::QUESTIONS;
+use tests::{shared_data, shared_recordings as load, skipped, workspace};
 
 #[test]
 fn real_recordings_raise_no_false_warnings() {
@@ -141,7 +144,7 @@ fn doors_turn_and_drawers_slide() {
         let meta: Meta = serde_json::from_str(&meta).expect("a sidecar");
         let Some(path) = shared_data("articulated_paths/paths.csv") else { return };
         let Ok(trials) = log::load_with_meta(&path, &meta) else {
-            tests::skipped(&format!("{name} is not in this copy of the data"));
+            skipped(&format!("{name} is not in this copy of the data"));
             continue;
         };
         let (mut decided, mut parts_decided, mut parts) = (0, 0, 0);
@@ -255,7 +258,7 @@ fn the_double_pendulum_shows_the_second_link_as_published_and_the_length_of_the_
         ("viscous1_Nm_s", 0.001),
         ("viscous2_Nm_s", 0.001),
     ];
-    let mut found = std::collections::BTreeMap::new();
+    let mut found = BTreeMap::new();
     for (name, expected) in published {
         if let Some((value, error)) = printed(&fit, "chain", name) {
             println!(
@@ -281,4 +284,64 @@ fn the_double_pendulum_shows_the_second_link_as_published_and_the_length_of_the_
     let quality = fit.quality.expect("the ends are held out");
     assert!(quality.heldout_relative < 0.3, "{quality:?}");
     assert!(fit.warnings.iter().any(|w| w.contains("hardly moves")), "one joint was held: {:?}", fit.warnings);
+}
+
+/// Boundaries of the wiping that a person labelled, s: demonstration, contact made, contact lost. The force of the third one
+/// stands still for its first 351 samples and is no measurement there.
+const WIPED_S: [(&str, f64, f64); 3] = [("1", 2.28, 10.74), ("2", 3.04, 10.83), ("4", 2.98, 8.96)];
+
+#[test]
+fn wiping_begins_and_ends_where_a_person_saw_it() {
+    let sidecar = r#"{"columns":{"trial":"demo","t_s":"time_s"},"task":"mechanism","up":"z"}"#;
+    let Some(recordings) = load("wiping_segments/demos.csv", sidecar) else { return };
+    for (trial, made_s, lost_s) in WIPED_S {
+        let demo = recordings.iter().find(|r| r.trial.as_deref() == Some(trial)).expect("the demonstration");
+        let states = segment(demo, None, None).expect("segments").states;
+        let mut free = states.iter().filter(|s| s.state == SystemState::FreeMotion);
+        let (first, after) = (free.next().expect("it comes freely"), free.next().expect("it goes away again"));
+        assert!((first.t1 - made_s).abs() < 0.3, "demonstration {trial}: contact from {} s on", first.t1);
+        assert!((after.t0 - lost_s).abs() < 0.3, "demonstration {trial}: contact up to {} s", after.t0);
+    }
+}
+
+/// Facts about each set, in at most this many lines.
+const MOST_LINES: usize = 10;
+
+#[test]
+fn every_set_is_read_with_a_short_sidecar() {
+    let stated = QUESTIONS.iter().map(|question| (question.log, question.sidecar));
+    let others = [
+        ("articulated_paths/paths.csv", r#"{"select":{"mechanism":"drawer"},"rate_hz":30}"#),
+        (
+            "davinci_tool/tool_runs.csv",
+            r#"{"columns":{"trial":"run","q_rad":"spindle_angle_rad","tau_Nm":"spindle_torque_Nm"}}"#,
+        ),
+        (
+            "double_pendulum/excitation_C1.csv",
+            r#"{"columns":{"trial":"run","q_rad":"q1_rad","tau_Nm":"torque1_measured_Nm"}}"#,
+        ),
+        ("rack_pinion/force_2kHz.csv", r#"{"columns":{"f_N":"force_N"}}"#),
+        ("rack_pinion/velocity_1500Hz.csv", r#"{"columns":{"dq_m_s":"velocity_m_s"}}"#),
+        ("tissue_indentation/sample_A.csv", r#"{"columns":{"q_m":"tip_position_m","f_N":"force_N"}}"#),
+        ("tissue_indentation/brain_gray_matter.csv", r#"{"columns":{"q_m":"tip_position_m","f_N":"force_N"}}"#),
+        ("wrist_payload/static_drift.csv", "{}"),
+    ];
+    let sidecars: BTreeMap<&str, &str> = stated.chain(others).collect();
+    let folder = workspace().join("../shared/data");
+    if !folder.is_dir() {
+        skipped("the sets are not here (../shared/data)");
+        return;
+    }
+    for set in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        let files = std::fs::read_dir(&set).into_iter().flatten().map(|entry| entry.expect("an entry").path());
+        for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "csv")) {
+            let name = [&set, &file].map(|p| p.file_name().expect("a name").to_string_lossy()).join("/");
+            let sidecar = sidecars.get(name.as_str()).unwrap_or_else(|| panic!("no sidecar is known for {name}"));
+            let meta: Meta = serde_json::from_str(sidecar).expect("a sidecar");
+            let lines = serde_json::to_string_pretty(&meta).expect("a text").lines().count();
+            let read = log::load_with_meta(&file, &meta).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let is_known = !read[0].warnings.iter().any(|w| w.kind == log::NO_KNOWN_COLUMN);
+            assert!(lines <= MOST_LINES && is_known, "{name}: {lines} lines, {:?}", read[0].warnings);
+        }
+    }
 }

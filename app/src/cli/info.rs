@@ -68,7 +68,13 @@ fn describe(recording: &Recording) -> String {
     }
     for channel in &recording.channels {
         let (low, high) = range(&channel.values);
-        let _ = writeln!(text, "  {:<22} {:>12.6} … {:<12.6} {}", channel.name, low, high, channel.unit);
+        let (name, unit) = (&channel.name, &channel.unit);
+        // Six decimals of a nanonewton are zeros.
+        let _ = if (1e-12..1e-3).contains(&high.abs().max(low.abs())) {
+            writeln!(text, "  {name:<22} {low:>12.5e} … {high:<12.5e} {unit}")
+        } else {
+            writeln!(text, "  {name:<22} {low:>12.6} … {high:<12.6} {unit}")
+        };
     }
     for warning in &recording.warnings {
         let _ = writeln!(text, "  ! {}", warning.text);

@@ -6,7 +6,7 @@ mod context;
 mod decide;
 pub mod existence;
 pub mod felt;
-mod frame;
+pub(crate) mod frame;
 mod guided;
 mod noise;
 mod normals;

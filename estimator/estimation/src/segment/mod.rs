@@ -20,6 +20,7 @@ pub mod rules;
 pub mod runs;
 pub mod score;
 mod segmentation;
+mod single_tool;
 pub mod slid;
 pub mod subtasks;
 pub mod threshold;

@@ -1,14 +1,12 @@
 //! Cranks, mechanisms and switches: speed and load, from which the rules tell not touched, held still and moved.
 
 use super::poses::{REST_RAD_S, angular_speed};
-use super::resting::Resting;
 use super::rules::beyond;
 use super::runs::LEAST_SAMPLES;
+use super::single_tool::speed_and_load;
 use super::threshold::{Levels, choose, percentile};
 use foundation::estimate::EstimateError;
-use foundation::signal::task::{
-    TaskSignals, TipSeries, calmed, calmed_series, is_two_fingered, task_signals, times, tip_series,
-};
+use foundation::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals, times};
 use foundation::tasks::definition::Definition;
 use foundation::tasks::{Sign, SystemState, Thresholds};
 use haptics::Vec2;
@@ -58,7 +56,7 @@ impl Motion {
             });
         }
         if !is_two_fingered(recording) {
-            return single_tool(recording, time_s, given, task);
+            return Self::of_single_tool(recording, time_s, given, task);
         }
         let signals = calmed(&task_signals(recording)?);
         let levels = Levels::of(&signals);
@@ -79,6 +77,21 @@ impl Motion {
             least_change_s: 0.0,
             warnings: levels.warnings(),
         })
+    }
+
+    fn of_single_tool(
+        recording: &Recording,
+        time_s: Vec<f64>,
+        given: Option<Thresholds>,
+        task: &Definition,
+    ) -> Result<Self, EstimateError> {
+        let (speed, load) = speed_and_load(recording, &time_s)?;
+        let usual = percentile(&mut speed.clone(), 0.95);
+        let learned_n = load.as_ref().map_or(0.0, |l| l.force_n);
+        let thresholds = task.thresholds(given, || Thresholds { velocity_m_s: 0.1 * usual, force_n: learned_n });
+        let (leave_load, least_change_s) = load.as_ref().map_or((1.0, 0.0), |l| (l.leave, l.least_change_s));
+        let (load, warnings) = load.map_or((None, Vec::new()), |l| (Some(l.values), l.warnings));
+        Ok(Self { time_s, speed, load, thresholds, leave_load, least_change_s, warnings })
     }
 
     /// The state of every sample by the task's rules alone.
@@ -129,101 +142,6 @@ fn push_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
         signals.tips[finger].force.as_ref().map_or(0.0, |f| (f[i] - levels.bias_n[finger]).norm())
     };
     (0..signals.len()).map(|i| push(0, i).max(push(1, i))).collect()
-}
-
-/// Share of the usual load that a threshold keeps at least: leaning and friction are not noise, and not the event either.
-const LOAD_SHARE: f64 = 0.05;
-/// Level of a load above noise of this standard deviation, in multiples of it, from which it is told; below a share of
-/// that it is none again.
-const NOISE_MULTIPLE: f64 = 4.0;
-const NOISY_LEAVE: f64 = 0.6;
-/// Noise and bias that stay below the threshold by this multiple of the noise change nothing.
-const CLEAR_OF_NOISE: f64 = 4.0;
-/// Contact is not made and lost faster in a noisy recording, s.
-const LEAST_CHANGE_S: f64 = 0.15;
-
-/// Load of a single tool, and its threshold.
-struct Load {
-    values: Vec<f64>,
-    force_n: f64,
-    leave: f64,
-    least_change_s: f64,
-    warnings: Vec<String>,
-}
-
-impl Load {
-    fn of(time_s: &[f64], force_n: &[Vec2], position_m: &[Vec2]) -> Self {
-        let plain: Vec<f64> = force_n.iter().map(Vec2::norm).collect();
-        let usual_n = percentile(&mut plain.clone(), 0.95);
-        let simple = Self {
-            values: plain,
-            force_n: LOAD_SHARE * usual_n,
-            leave: 1.0,
-            least_change_s: 0.0,
-            warnings: Vec::new(),
-        };
-        // Half of the threshold is no bias that would be taken for a contact, whatever else it is.
-        let Some(rest) = Resting::of(time_s, force_n, position_m, 0.5 * simple.force_n) else { return simple };
-        if rest.farthest_n() + CLEAR_OF_NOISE * rest.noise_n <= simple.force_n {
-            return simple;
-        }
-        let calm = calmed_series(time_s, force_n);
-        let values: Vec<f64> = calm.iter().zip(time_s).map(|(f, t)| (f - rest.bias_at(*t)).norm()).collect();
-        let usual_n = percentile(&mut values.clone(), 0.95);
-        let mut warnings = Vec::new();
-        if rest.bias_n.norm() > (2.0 * rest.noise_n).max(0.005) {
-            warnings.push(format!(
-                "the force of the tool rests at ({:.3}, {:.3}) N in free motion; this bias is subtracted",
-                rest.bias_n.x, rest.bias_n.y
-            ));
-        }
-        if rest.drifts() {
-            warnings.push(format!(
-                "the force of the tool rests elsewhere at other times, up to {:.3} N from zero: its sensor drifts, which is taken into account here",
-                rest.farthest_n()
-            ));
-        }
-        Self {
-            values,
-            force_n: (NOISE_MULTIPLE * rest.noise_of(time_s, &calm)).max(LOAD_SHARE * usual_n),
-            leave: NOISY_LEAVE,
-            least_change_s: LEAST_CHANGE_S,
-            warnings,
-        }
-    }
-}
-
-/// Speed and load of a single tool, or of a mechanism's coordinate.
-fn single_tool(
-    recording: &Recording,
-    time_s: Vec<f64>,
-    given: Option<Thresholds>,
-    task: &Definition,
-) -> Result<Motion, EstimateError> {
-    let coordinate = ["q_m", "q_rad"].into_iter().find_map(|name| recording.channel(name));
-    let clockless =
-        || EstimateError::Clockless { what: "telling rest from motion".to_owned(), recording: recording.name.clone() };
-    let (speed, load) = if let Some(q) = coordinate {
-        let measured = recording.channel("dq_m_s").or_else(|| recording.channel("dq_rad_s"));
-        let rate = if let Some(rate) = measured {
-            rate.to_vec()
-        } else {
-            let time = recording.time_s.as_ref().ok_or_else(clockless)?;
-            foundation::signal::task::smooth(time, q).slope
-        };
-        (rate.iter().map(|v| v.abs()).collect::<Vec<_>>(), None)
-    } else {
-        let TipSeries { velocity, force, position } = tip_series(recording, "")?;
-        let velocity = velocity.ok_or_else(clockless)?;
-        let load = force.map(|force| Load::of(&time_s, &force, &position));
-        (velocity.iter().map(Vec2::norm).collect(), load)
-    };
-    let usual = percentile(&mut speed.clone(), 0.95);
-    let learned_n = load.as_ref().map_or(0.0, |l| l.force_n);
-    let thresholds = task.thresholds(given, || Thresholds { velocity_m_s: 0.1 * usual, force_n: learned_n });
-    let (leave_load, least_change_s) = load.as_ref().map_or((1.0, 0.0), |l| (l.leave, l.least_change_s));
-    let (load, warnings) = load.map_or((None, Vec::new()), |l| (Some(l.values), l.warnings));
-    Ok(Motion { time_s, speed, load, thresholds, leave_load, least_change_s, warnings })
 }
 
 #[cfg(test)]

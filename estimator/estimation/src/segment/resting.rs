@@ -8,6 +8,7 @@ use super::threshold::percentile;
 use crate::constraint::circle;
 use foundation::signal::noise::quantum;
 use haptics::Vec2;
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Length of the blocks of a recording that are compared with each other, s and samples.
@@ -33,21 +34,21 @@ const MOST_POINTS: usize = 4000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resting {
     /// Mean force, N: the sensor's bias.
-    pub bias_n: Vec2,
+    pub bias_n: Vector3<f64>,
     /// Standard deviation of a component as recorded, N.
     pub noise_n: f64,
     /// Samples that were taken as free motion, in order.
     pub free: Vec<usize>,
     /// Times, s, and levels, N, of the force at rest, one rest after the other: two and more if the sensor drifts, else
     /// none.
-    drift: Vec<(f64, Vec2)>,
+    drift: Vec<(f64, Vector3<f64>)>,
 }
 
 /// A block of the recording.
 struct Piece {
     first: usize,
     end: usize,
-    mean_n: Vec2,
+    mean_n: Vector3<f64>,
     /// Standard deviation of a component, N.
     scatter_n: f64,
 }
@@ -56,25 +57,26 @@ impl Resting {
     /// Finds the force at rest; `None` where no force comes back again and again, or where only a held crank could make it.
     ///
     /// `certain_n`: a level of this size needs no circle to be believed.
-    pub fn of(time_s: &[f64], force_n: &[Vec2], position_m: &[Vec2], certain_n: f64) -> Option<Self> {
-        let pieces = pieces(time_s, force_n);
+    pub fn of(time_s: &[f64], force_n: &[Vector3<f64>], position_m: &[Vec2], certain_n: f64) -> Option<Self> {
+        let axes = axes(force_n);
+        let pieces = pieces(time_s, force_n, axes);
         let mut scatters: Vec<f64> = pieces.iter().map(|p| p.scatter_n).collect();
-        let axis = |pick: fn(&Vec2) -> f64| quantum(&force_n.iter().map(pick).collect::<Vec<_>>());
-        let noise_n = percentile(&mut scatters, 0.1).max(axis(|f| f.x).max(axis(|f| f.y)) / 12.0_f64.sqrt());
+        let axis = |k: usize| quantum(&force_n.iter().map(|f| f[k]).collect::<Vec<_>>());
+        let noise_n = percentile(&mut scatters, 0.1).max((0..3).map(axis).fold(0.0, f64::max) / 12.0_f64.sqrt());
         if noise_n <= 0.0 {
             return None;
         }
-        let usual_n = percentile(&mut force_n.iter().map(Vec2::norm).collect::<Vec<_>>(), 0.95);
+        let usual_n = percentile(&mut force_n.iter().map(Vector3::norm).collect::<Vec<_>>(), 0.95);
         let mut still: Vec<&Piece> = pieces.iter().filter(|p| p.scatter_n <= STILL * noise_n).collect();
         still.sort_by(|a, b| a.mean_n.norm().total_cmp(&b.mean_n.norm()));
-        let mut tried: Vec<Vec2> = Vec::new();
+        let mut tried: Vec<Vector3<f64>> = Vec::new();
         for seed in still.iter().take(MOST_SEEDS) {
             if tried.iter().any(|t| (t - seed.mean_n).norm() < 0.5 * NEAR * noise_n) {
                 continue;
             }
             tried.push(seed.mean_n);
             let members = members(&still, seed.mean_n, NEAR * noise_n);
-            let found = Self::from(&members, force_n);
+            let found = Self::from(&members, force_n, axes);
             let small = found.bias_n.norm() <= LARGEST_BIAS * usual_n;
             if members.len() >= LEAST_PIECES
                 && small
@@ -93,7 +95,7 @@ impl Resting {
         pieces: &[Piece],
         noise_n: f64,
         most_n: f64,
-        (force_n, position_m): (&[Vec2], &[Vec2]),
+        (force_n, position_m): (&[Vector3<f64>], &[Vec2]),
     ) -> Vec<Range<usize>> {
         let is_here = |p: &Piece| self.free.binary_search(&p.first).is_ok();
         let rests =
@@ -107,7 +109,7 @@ impl Resting {
     }
 
     /// The same with further rests of a sensor that drifts.
-    fn drifting(mut self, rests: Vec<Range<usize>>, time_s: &[f64], force_n: &[Vec2]) -> Self {
+    fn drifting(mut self, rests: Vec<Range<usize>>, time_s: &[f64], force_n: &[Vector3<f64>]) -> Self {
         if rests.is_empty() {
             return self;
         }
@@ -116,14 +118,14 @@ impl Resting {
         let mean = |run: &[usize]| {
             let count = run.len() as f64;
             let when_s = run.iter().map(|i| time_s[*i]).sum::<f64>() / count;
-            (when_s, run.iter().map(|i| force_n[*i]).sum::<Vec2>() / count)
+            (when_s, run.iter().map(|i| force_n[*i]).sum::<Vector3<f64>>() / count)
         };
         self.drift = self.free.chunk_by(|a, b| a + 1 == *b).map(mean).collect();
         self
     }
 
     /// The force at rest at a time, N: interpolated between the rests before and after if the sensor drifts.
-    pub fn bias_at(&self, time_s: f64) -> Vec2 {
+    pub fn bias_at(&self, time_s: f64) -> Vector3<f64> {
         let next = self.drift.partition_point(|(t, _)| *t < time_s);
         match (next.checked_sub(1).and_then(|k| self.drift.get(k)), self.drift.get(next)) {
             (Some((t0, before)), Some((t1, after))) => before.lerp(after, (time_s - t0) / (t1 - t0).max(1e-12)),
@@ -142,32 +144,37 @@ impl Resting {
         !self.drift.is_empty()
     }
 
-    fn from(members: &[&Piece], force_n: &[Vec2]) -> Self {
+    fn from(members: &[&Piece], force_n: &[Vector3<f64>], axes: f64) -> Self {
         let mut free: Vec<usize> = members.iter().flat_map(|p| p.first..p.end).collect();
         free.sort_unstable();
         let count = free.len().max(1) as f64;
-        let bias_n = free.iter().map(|i| force_n[*i]).sum::<Vec2>() / count;
+        let bias_n = free.iter().map(|i| force_n[*i]).sum::<Vector3<f64>>() / count;
         let squares: f64 = free.iter().map(|i| (force_n[*i] - bias_n).norm_squared()).sum();
-        Self { bias_n, noise_n: (0.5 * squares / count).sqrt(), free, drift: Vec::new() }
+        Self { bias_n, noise_n: (squares / (axes * count)).sqrt(), free, drift: Vec::new() }
     }
 
     /// Standard deviation of a component of another series (the calmed force) over the same samples, N.
-    pub fn noise_of(&self, time_s: &[f64], force_n: &[Vec2]) -> f64 {
+    pub fn noise_of(&self, time_s: &[f64], force_n: &[Vector3<f64>]) -> f64 {
         let squares: f64 = self.free.iter().map(|i| (force_n[*i] - self.bias_at(time_s[*i])).norm_squared()).sum();
-        (0.5 * squares / self.free.len().max(1) as f64).sqrt()
+        (squares / (axes(force_n) * self.free.len().max(1) as f64)).sqrt()
     }
 }
 
-fn pieces(time_s: &[f64], force_n: &[Vec2]) -> Vec<Piece> {
+/// Number of axes in which a force was measured: 2 or 3.
+fn axes(force_n: &[Vector3<f64>]) -> f64 {
+    if force_n.iter().all(|force| force.z == 0.0) { 2.0 } else { 3.0 }
+}
+
+fn pieces(time_s: &[f64], force_n: &[Vector3<f64>], axes: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut first = 0;
     for i in 1..=time_s.len() {
         let complete = i - first >= PIECE_SAMPLES && time_s[i - 1] - time_s[first] >= PIECE_S;
         if complete {
             let own = &force_n[first..i];
-            let mean_n = own.iter().sum::<Vec2>() / own.len() as f64;
+            let mean_n = own.iter().sum::<Vector3<f64>>() / own.len() as f64;
             let squares: f64 = own.iter().map(|f| (f - mean_n).norm_squared()).sum();
-            let scatter_n = (0.5 * squares / (own.len() - 1) as f64).sqrt();
+            let scatter_n = (squares / (axes * (own.len() - 1) as f64)).sqrt();
             pieces.push(Piece { first, end: i, mean_n, scatter_n });
             first = i;
         }
@@ -176,19 +183,19 @@ fn pieces(time_s: &[f64], force_n: &[Vec2]) -> Vec<Piece> {
 }
 
 /// The blocks about a level, which is moved to their own middle once.
-fn members<'a>(still: &[&'a Piece], level_n: Vec2, near_n: f64) -> Vec<&'a Piece> {
-    let about = |level: Vec2| -> Vec<&'a Piece> {
+fn members<'a>(still: &[&'a Piece], level_n: Vector3<f64>, near_n: f64) -> Vec<&'a Piece> {
+    let about = |level: Vector3<f64>| -> Vec<&'a Piece> {
         still.iter().copied().filter(|p| (p.mean_n - level).norm() <= near_n).collect()
     };
     let first = about(level_n);
     if first.is_empty() {
         return first;
     }
-    about(first.iter().map(|p| p.mean_n).sum::<Vec2>() / first.len() as f64)
+    about(first.iter().map(|p| p.mean_n).sum::<Vector3<f64>>() / first.len() as f64)
 }
 
 /// True if samples are off the circle that the tool follows under load.
-fn is_off_circle(free: &[usize], force_n: &[Vec2], bias_n: Vec2, position_m: &[Vec2]) -> bool {
+fn is_off_circle(free: &[usize], force_n: &[Vector3<f64>], bias_n: Vector3<f64>, position_m: &[Vec2]) -> bool {
     let mut is_free = vec![false; force_n.len()];
     for i in free {
         is_free[*i] = true;

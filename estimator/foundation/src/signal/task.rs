@@ -5,6 +5,7 @@ use crate::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::hand::{Finger, JointAngles};
 use haptics::recording::Recording;
+use nalgebra::SVector;
 
 /// Tip motion and force of one finger, or of a single tool. One entry a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,13 +185,14 @@ fn calm_half(time_s: &[f64]) -> usize {
     ((CALM_HALF_S / period_s).round() as usize).min(n / 20)
 }
 
-fn calmed_by(series: &[Vec2], half: usize) -> Vec<Vec2> {
-    let axis = |pick: fn(&Vec2) -> f64| parabolic_mean(&series.iter().map(pick).collect::<Vec<_>>(), half);
-    axis(|v| v.x).into_iter().zip(axis(|v| v.y)).map(|(x, y)| Vec2::new(x, y)).collect()
+fn calmed_by<const AXES: usize>(series: &[SVector<f64, AXES>], half: usize) -> Vec<SVector<f64, AXES>> {
+    let axis = |k: usize| parabolic_mean(&series.iter().map(|v| v[k]).collect::<Vec<_>>(), half);
+    let axes: [Vec<f64>; AXES] = std::array::from_fn(axis);
+    (0..series.len()).map(|i| SVector::from_fn(|k, _| axes[k][i])).collect()
 }
 
 /// A force or velocity calmed for the segmentation, as in [`calmed`].
-pub fn calmed_series(time_s: &[f64], series: &[Vec2]) -> Vec<Vec2> {
+pub fn calmed_series<const AXES: usize>(time_s: &[f64], series: &[SVector<f64, AXES>]) -> Vec<SVector<f64, AXES>> {
     match calm_half(time_s) {
         0 => series.to_vec(),
         half => calmed_by(series, half),

@@ -1,6 +1,6 @@
 //! Backlash as a hypothesis: a gap of searched width cuts off the force behind it.
 
-use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
+use super::candidate::{Candidate, LEAST_SHARE, Shape};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
@@ -48,7 +48,7 @@ fn behind(data: &Dictionary<'_>, way: f64) -> [Candidate; 2] {
     [(data.resisting, false), (data.predicted, true)].map(|(behind, whole)| {
         let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
         stick_phases::plays(data.track, way, whole, &mut column);
-        let share = Shape::Share { least: LEAST_SHARE, whole: LEAST_SHARE, most: LARGEST_SHARE };
+        let share = Shape::Share { least: LEAST_SHARE, whole: LEAST_SHARE };
         let backlash = Candidate::one(ID, Kind::Plant, "share", "1", column).shaped(share);
         backlash.at("delta", way, data.units().length)
     })

@@ -1,6 +1,6 @@
 //! Presliding as a hypothesis: friction bends over a searched distance before it slides.
 
-use super::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
+use super::candidate::{Candidate, LEAST_SHARE, Shape};
 use super::dictionary::Dictionary;
 use super::grid::{Near, Point, Ranges};
 use super::hypothesis::{About, Found, Hypothesis};
@@ -75,6 +75,6 @@ fn bent(data: &Dictionary<'_>, way: f64, shape: f64) -> Candidate {
     // short bend.
     let least = if way > LONG_BENT * data.grid.felt { LEAST_SHARE } else { ALL_BENT };
     let hysteresis = Candidate::one(ID, Kind::Plant, "share", "1", column);
-    let share = Shape::Share { least, whole: ALL_BENT, most: LARGEST_SHARE };
+    let share = Shape::Share { least, whole: ALL_BENT };
     hysteresis.shaped(share).at("way", way, data.units().length)
 }

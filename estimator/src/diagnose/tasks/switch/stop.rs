@@ -95,11 +95,8 @@ impl Told for Pressed {
 fn beside_a_world(known: &Known<'_>, force: Vec<f64>, on: [Vec<f64>; 2]) -> Vec<Candidate> {
     let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     // However stiff other pads are, their compliance is not negative.
-    let shape = Shape::Share {
-        least: -MOST_STIFFER / known.pad.spring.k1.max(f64::MIN_POSITIVE),
-        whole: f64::NEG_INFINITY,
-        most: f64::INFINITY,
-    };
+    let shape =
+        Shape::Share { least: -MOST_STIFFER / known.pad.spring.k1.max(f64::MIN_POSITIVE), whole: f64::NEG_INFINITY };
     let give = plant(pad_compliance::ID, "give", "m/N", force);
     let mut found = vec![give.at_least(SIGNIFICANT * known.give_error_m_n).shaped(shape)];
     let least_m = SIGNIFICANT * known.end_error_m;

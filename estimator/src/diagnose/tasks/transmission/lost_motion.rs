@@ -7,7 +7,7 @@ use crate::diagnose::answer::part::{Found, Told};
 use crate::diagnose::contract::CauseParameter;
 use crate::diagnose::data::limits::SIGNIFICANT;
 use crate::diagnose::data::row_means::spread;
-use crate::diagnose::hypotheses::candidate::{Candidate, LARGEST_SHARE, LEAST_SHARE, Shape};
+use crate::diagnose::hypotheses::candidate::{Candidate, LEAST_SHARE, Shape};
 use crate::diagnose::hypotheses::{backlash, hysteresis, pad_compliance, time_delay};
 use crate::diagnose::recording::time_delay::CLOCKS_DIFFER_S;
 use crate::diagnose::selection::channel::Channel;
@@ -39,7 +39,7 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Way, EstimateError> {
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
-    let share = Shape::Share { least: LEAST_SHARE * lever, whole: f64::NEG_INFINITY, most: LARGEST_SHARE * lever };
+    let share = Shape::Share { least: LEAST_SHARE * lever, whole: f64::NEG_INFINITY };
     // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
     let smallest = (SIGNIFICANT * noise).max(STEPS_OF_SENSOR * seen.step);
