@@ -24,7 +24,7 @@ pub fn correct(document: &Document, jobs: &mut Jobs<Session>, ctx: &egui::Contex
     });
 }
 
-/// Joins entries with those of a sidecar, which need not exist. An error is a sentence.
+/// Joins entries with those of a sidecar, which need not exist; an entry of null takes its key out. An error is a sentence.
 fn put_into(sidecar: &Path, entries: &Suggested) -> Result<(), String> {
     let failed = |error: String| sentence(&format!("the sidecar cannot be changed ({error}): {}", sidecar.display()));
     let mut whole: Suggested = match haptics::text_file::read(sidecar) {
@@ -33,6 +33,7 @@ fn put_into(sidecar: &Path, entries: &Suggested) -> Result<(), String> {
         Err(error) => return Err(failed(error.to_string())),
     };
     put_suggested(entries, &mut whole);
+    whole.retain(|key, value| !value.is_null() || !entries.contains_key(key));
     let text = serde_json::to_string_pretty(&whole).map_err(|e| failed(e.to_string()))?;
     haptics::text_file::write(sidecar, text + "\n").map_err(|e| failed(e.to_string()))
 }
@@ -53,6 +54,10 @@ mod tests {
         let text = std::fs::read_to_string(&sidecar).expect("readable");
         let joined: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         assert_eq!(joined, json!({ "task": "crank", "scale": { "t_s": 0.002 } }));
+        let none = json!({ "task": null }).as_object().cloned().expect("entries");
+        put_into(&sidecar, &none).expect("taken out");
+        let text = std::fs::read_to_string(&sidecar).expect("readable");
+        assert!(!text.contains("task") && text.contains("scale"), "{text}");
         std::fs::write(&sidecar, "{").expect("writable");
         assert!(put_into(&sidecar, &entries).is_err_and(|why| why.contains("cannot be changed")));
         assert_eq!(std::fs::read_to_string(&sidecar).expect("readable"), "{");

@@ -8,8 +8,11 @@ use crate::ui::plots::shift::{Grasp, under};
 use egui::{Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use egui_plot::PlotTransform;
 
+/// Width from which a marked part is no click, points.
+const LEAST_PART: f32 = 3.0;
+
 /// Handles the pointer. Left drag on the curve of another recording shifts it; left drag elsewhere moves the cursor.
-/// The wheel zooms about the pointer, right or middle drag pans, and a double click shows everything.
+/// With Shift, left drag marks a part. The wheel zooms about the pointer, right or middle drag pans, and a double click shows everything.
 pub fn react(
     ui: &mut Ui,
     response: &Response,
@@ -17,11 +20,19 @@ pub fn react(
     cache: &PlotCache,
     input: &RowInput<'_>,
 ) -> RowOutcome {
-    let mut outcome = RowOutcome { area: transform.frame().x_range(), seek: None, view_s: None, grasp: None };
+    let mut outcome = RowOutcome::at(transform.frame().x_range());
     let (first, last) = input.prepared.span();
     let (from, to) = input.view_s;
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
     let time = pointer.map(|at| transform.value_from_position(at).x);
+    if let Some(from_s) = mark_start(ui, response, time) {
+        let x = |t: f64| transform.position_from_point_x(t);
+        let part_s = time.map_or((from_s, from_s), |t| (t.min(from_s).max(first), t.max(from_s).min(last)));
+        let band = Rect::from_x_y_ranges(x(part_s.0)..=x(part_s.1), transform.frame().y_range());
+        ui.painter().rect_filled(band, 0.0, palette(ui).accent.gamma_multiply(0.18));
+        outcome.part_s = Some(part_s).filter(|_| response.drag_stopped() && band.width() > LEAST_PART);
+        return outcome;
+    }
     outcome.grasp = pointer.and_then(|at| grasp(ui, response, transform, cache, input, at));
     if let Some(grasp) = outcome.grasp {
         show_grasp(ui, response, transform, input, grasp);
@@ -47,6 +58,22 @@ pub fn react(
         outcome.view_s = Some((start, start + width));
     }
     outcome
+}
+
+/// Time at which the part begins that is being marked, s; `None` without Shift at the start of the drag.
+fn mark_start(ui: &Ui, response: &Response, time: Option<f64>) -> Option<f64> {
+    let id = response.id.with("part");
+    if response.drag_started_by(PointerButton::Primary) && ui.input(|i| i.modifiers.shift) {
+        if let Some(time) = time {
+            ui.data_mut(|data| data.insert_temp(id, time));
+        }
+    }
+    let start = ui.data(|data| data.get_temp(id))?;
+    if response.dragged() {
+        return Some(start);
+    }
+    ui.data_mut(|data| data.remove::<f64>(id));
+    response.drag_stopped().then_some(start)
 }
 
 /// Interaction of the pointer with the curve of another recording, if any.

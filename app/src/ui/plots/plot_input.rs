@@ -59,10 +59,19 @@ pub struct RowOutcome {
     pub seek: Option<f64>,
     /// New visible time range, s.
     pub view_s: Option<(f64, f64)>,
+    /// Part that was marked, s.
+    pub part_s: Option<(f64, f64)>,
     /// Horizontal extent of the plot area, points.
     pub area: Rangef,
     /// Interaction with the curve of another recording.
     pub grasp: Option<Grasp>,
+}
+
+impl RowOutcome {
+    /// Of a row in which the user did nothing.
+    pub fn at(area: Rangef) -> Self {
+        Self { area, seek: None, view_s: None, part_s: None, grasp: None }
+    }
 }
 
 /// Colour of a curve: its own, or that of the model.

@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 
 static ASKEW: LazyLock<Recording> = LazyLock::new(|| askew().expect("performed"));
 
-fn saved(recording: &Recording, folder: &Path) -> PathBuf {
+pub(super) fn saved(recording: &Recording, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{}.csv", recording.name));
     let recording = Recording { labels: None, ..recording.clone() };
     estimator::log::write_csv(&recording, &path).expect("written");

@@ -10,6 +10,7 @@ mod experiment;
 mod layouts;
 mod legible;
 mod lessons;
+mod marking;
 mod panels;
 mod pictures;
 mod plots;

@@ -49,7 +49,8 @@ mod words {
     pub const TIME: &str = "Time";
     pub const CURVES_OVER_TIME: &str = "Curves over time";
     pub const XY_MORE: &str = "One signal against another";
-    pub const WHEEL_ZOOMS_RIGHT: &str = "wheel zooms · right drag moves · double click shows all";
+    pub const WHEEL_ZOOMS_RIGHT: &str =
+        "wheel zooms · right drag moves · Shift and drag marks a part · double click shows all";
     pub const HIDE_THIS_PLOT: &str = "Hide this plot";
     pub const SHOW_THIS_PLOT: &str = "Show this plot";
 }
@@ -187,7 +188,7 @@ fn header(ui: &mut Ui, document: &Document, plots: &mut PlotChoices, prepared: &
         if plots.view == LogView::Time {
             chips(ui, plots, prepared);
             overlay_menu(ui, document, plots);
-            if ui.available_size_before_wrap().x > 360.0 {
+            if ui.available_size_before_wrap().x > 480.0 {
                 ui.add_space(space::L);
                 ui.label(theme::caption(ui, words::WHEEL_ZOOMS_RIGHT));
             }
@@ -348,6 +349,7 @@ impl LogPanel {
                 let outcome = row(ui, &mut self.cache, plots.of(group), &input);
                 area = outcome.area;
                 (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
+                session.calibration.choice.only_s = outcome.part_s.or(session.calibration.choice.only_s);
                 grasp = grasp.or(outcome.grasp);
             }
             seek = seek.or(shifting(ui, &mut session.document, &mut session.jobs, plots, grasp, area));

@@ -7,6 +7,7 @@ pub mod measured;
 pub mod overlay;
 pub mod parameter_editor;
 pub mod parameters;
+mod part;
 pub mod recording;
 pub mod results;
 pub mod rules;

@@ -4,6 +4,7 @@ use crate::text::format;
 use crate::ui::background::jobs::Jobs;
 use crate::ui::calibrate::fitting;
 use crate::ui::calibrate::manual_states;
+use crate::ui::calibrate::panels::part::{fitted_part, read_part};
 use crate::ui::calibrate::refits::FIT;
 use crate::ui::calibrate::state::Calibration;
 use crate::ui::document::files;
@@ -39,11 +40,6 @@ mod words {
     pub const FOLLOW_SLOW: &str = "Fits of these recordings take too long for that: press Refit";
     pub const FOLLOW_MORE: &str = "Every change is fitted at once; Ctrl+Z takes it back";
     pub const FOLLOW: &str = "Follow every change";
-    pub const FITTED: &str = "Fitted";
-    pub const ALL: &str = "the whole recording";
-    pub const ONLY_SHOWN: &str = "Only what is shown";
-    pub const ONLY_SHOWN_MORE: &str = "Fit the part that the plots show";
-    pub const WHOLE: &str = "Whole recording";
     pub const BY_HAND: &str = "States set by hand";
     pub const FIND_AGAIN: &str = "Find them again";
     pub const FORGET: &str = "Forget";
@@ -197,7 +193,8 @@ fn fit(
     crate::ui::calibrate::panels::task_choice::task_choice(ui, document, calibration, messages);
     method(ui, calibration);
     thresholds(ui, document, calibration);
-    part(ui, document, calibration);
+    fitted_part(ui, document, calibration);
+    read_part(ui, document, calibration, jobs);
     by_hand(ui, document, calibration, jobs);
     let running = jobs.is_running(FIT);
     ui.add_space(space::XS);
@@ -223,32 +220,6 @@ fn fit(
         words::FOLLOW_MORE
     };
     ui.checkbox(&mut calibration.refits.live, words::FOLLOW).on_hover_text(hint);
-}
-
-/// Draws the chooser of the fitted time range.
-fn part(ui: &mut Ui, document: &Document, calibration: &mut Calibration) {
-    let Some(prepared) = document.prepared().filter(|p| !p.clockless()) else { return };
-    let (whole, shown) = (prepared.span(), document.view_s);
-    ui.horizontal_wrapped(|ui| {
-        ui.label(theme::caption(ui, words::FITTED));
-        let words = match calibration.choice.only_s {
-            None => words::ALL.to_owned(),
-            Some((from, to)) => format!("{} to {} s", format::number(from, 2), format::number(to, 2)),
-        };
-        ui.label(egui::RichText::new(words).size(12.0));
-    });
-    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && calibration.choice.only_s != Some(shown);
-    if !zoomed && calibration.choice.only_s.is_none() {
-        return;
-    }
-    ui.horizontal_wrapped(|ui| {
-        if zoomed && ui.link(words::ONLY_SHOWN).on_hover_text(words::ONLY_SHOWN_MORE).clicked() {
-            calibration.choice.only_s = Some(shown);
-        }
-        if calibration.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
-            calibration.choice.only_s = None;
-        }
-    });
 }
 
 /// Draws the manually set states and parameter values, with a button to clear them.
