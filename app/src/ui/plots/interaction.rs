@@ -63,10 +63,11 @@ pub fn react(
 /// Time at which the part begins that is being marked, s; `None` without Shift at the start of the drag.
 fn mark_start(ui: &Ui, response: &Response, time: Option<f64>) -> Option<f64> {
     let id = response.id.with("part");
-    if response.drag_started_by(PointerButton::Primary) && ui.input(|i| i.modifiers.shift) {
-        if let Some(time) = time {
-            ui.data_mut(|data| data.insert_temp(id, time));
-        }
+    if response.drag_started_by(PointerButton::Primary)
+        && ui.input(|i| i.modifiers.shift)
+        && let Some(time) = time
+    {
+        ui.data_mut(|data| data.insert_temp(id, time));
     }
     let start = ui.data(|data| data.get_temp(id))?;
     if response.dragged() {
