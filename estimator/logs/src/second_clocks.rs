@@ -50,13 +50,16 @@ pub fn on_the_logs_clock(
     headers: &[String],
     path: &Path,
 ) -> Result<Vec<String>, LogError> {
-    let Some(time) = plan.time.filter(|_| plan.has_pairs()) else { return Ok(Vec::new()) };
+    let refused = |why: String| LogError::Sidecar { why, path: sidecar::path_for(path) };
+    let Some(time) = plan.time.filter(|_| plan.has_pairs()) else {
+        let why = "\"clocks\" needs the clock of the log; map its column to t_s with \"columns\"";
+        return if plan.clocks.is_empty() { Ok(Vec::new()) } else { Err(refused(why.to_owned())) };
+    };
     // Rows behind the last time belong to longer columns with another clock.
     let main: Vec<f64> = group.columns[time][..filled(&group.columns[time])].to_vec();
     if plan.clocks.is_empty() && main.len() == group.rows() {
         return Ok(Vec::new());
     }
-    let refused = |why: String| LogError::Sidecar { why, path: sidecar::path_for(path) };
     let (mut kept, mut moved) = (vec![true; main.len()], Vec::new());
     for second in &plan.clocks {
         let clock = &group.columns[second.clock];

@@ -138,13 +138,9 @@ impl<'a> Other<'a> {
     fn warnings(&self, from: &Times, to: &[f64], rows: usize) -> Vec<Warning> {
         let name = self.name();
         let about = |kind: &str, text: String| Warning { kind: kind.to_owned(), text, ..Warning::default() };
-        let joined = format!(
-            "`{name}` is joined: {}; {} of {rows} rows lie within its times; {}",
-            from.said,
-            to.len(),
-            resample::describe(&name, &from.time_s, to)
-        );
-        let mut said = vec![about(JOINED, joined)];
+        let joined = format!("`{name}` is joined: {}; {} of {rows} rows lie within its times", from.said, to.len());
+        let put = resample::describe(&name, &from.time_s, to);
+        let mut said = vec![about(JOINED, joined), about("resampled", put)];
         if resample::is_slower(&from.time_s, to) {
             let text = format!(
                 "`{name}` is slower than the log: its values between samples are interpolated, so standard errors come out \

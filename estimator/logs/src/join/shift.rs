@@ -23,10 +23,11 @@ impl Shift {
     fn found(found: ClockOffset, by: &str) -> Self {
         let ClockOffset { offset_s, half_width_s, middle_s, .. } = found;
         let mut said =
-            format!("{} s are added to its times, by {by} (95 % interval)", with_error(offset_s, half_width_s));
+            format!("{} s (95 % interval) are added to its times, by {by}", with_error(offset_s, half_width_s));
         if let Some((skew, error)) = found.skew {
             let more = format!(
-                " at its {middle_s:.1} s, and the log's clock counts {} ppm more than its own (± one standard error)",
+                "; that holds at its {middle_s:.1} s, and the log's clock counts {} ppm more than its own (one standard \
+                 error)",
                 with_error(1e6 * skew, 1e6 * error)
             );
             said.push_str(&more);

@@ -71,7 +71,12 @@ fn a_file_is_joined_by_statement_by_channel_and_by_name() {
     // The channel of both is found. An edge is known to a sample.
     let found = files.load(r#"{"join": [{"file": "force.csv"}]}"#).expect("joined");
     fits(&found, 0.2);
-    assert!(joined(&found)[0].text.contains("`sync`") && joined(&found)[0].text.contains("± 0.006"), "{found:?}");
+    assert!(
+        joined(&found)[0].text.contains("`sync`")
+            && joined(&found)[0].text.contains("± 0.006")
+            && joined(&found)[0].text.contains("95 %"),
+        "{found:?}"
+    );
     let other = |recording: &Recording| recording.channels.iter().filter(|c| c.name == "sync").count();
     assert_eq!((other(&found), other(&stated)), (1, 1));
 }

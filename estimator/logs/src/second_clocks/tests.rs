@@ -82,6 +82,9 @@ fn clocks_that_start_apart_ask_for_an_offset() {
     assert!(error.contains(r#""clocks": {"force_N":{"column":"time_force_s","offset_s":null}}"#), "{error}");
     let shifted = r#""clocks": {"f_N": {"column": "time_force_s", "offset_s": -300}}"#;
     fits(&read(&table, &format!("{{{COLUMNS}, {shifted}}}")).expect("reads"));
+    let clockless = r#"{"columns": {"t_s": null, "f_N": "force_N"}, "clocks": {"f_N": "time_force_s"}}"#;
+    let error = read(&table, clockless).expect_err("no clock");
+    assert!(error.contains("needs the clock of the log"), "{error}");
     let absent = read(&table, &format!(r#"{{{COLUMNS}, "clocks": {{"f_N": "time_load_s"}}}}"#)).expect_err("absent");
     assert!(absent.contains("`time_load_s` is missing"), "{absent}");
 }
