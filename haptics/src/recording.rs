@@ -4,7 +4,9 @@ mod labels;
 mod sidecar;
 
 pub use labels::Labels;
-pub use sidecar::{HandMeta, Meta, Prior, Segment, TimeWindow, VideoMeta};
+pub use sidecar::{
+    HandMeta, JoinedFile, Meta, OwnClock, Prior, Segment, SharedChannel, ShiftedClock, TimeWindow, VideoMeta,
+};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

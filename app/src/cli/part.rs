@@ -1,10 +1,12 @@
 //! Runs and windows of time on the command line.
 
+use crate::report::source::Hashed;
 use clap::Args;
 use estimator::log::Part;
-use haptics::recording::TimeWindow;
+use haptics::recording::{JoinedFile, TimeWindow};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// The part of a log that is used; it takes the place of the sidecar's statements.
 #[derive(Args, Clone, Debug, Default)]
@@ -18,6 +20,12 @@ pub struct PartArgs {
     /// Use the log up to this time
     #[arg(long, visible_alias = "to", value_name = "SECONDS", allow_negative_numbers = true)]
     to_s: Vec<f64>,
+    /// Put the channels of another file of the same run onto the log's clock; several files with several flags
+    #[arg(long, value_name = "FILE")]
+    join: Vec<PathBuf>,
+    /// Add so many seconds to the times of the joined file, one for each `--join`; found from a channel of both when absent
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, requires = "join")]
+    offset_s: Vec<f64>,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -34,7 +42,7 @@ impl PartArgs {
             values.entry(name.clone()).or_default().push(value.as_str().into());
         }
         let select = values.into_iter().map(|(name, values)| (name, Value::Array(values))).collect();
-        Ok(Part { select, windows: self.windows()? })
+        Ok(Part { select, windows: self.windows()?, join: self.joined()? })
     }
 
     fn windows(&self) -> anyhow::Result<Vec<TimeWindow>> {
@@ -55,11 +63,28 @@ impl PartArgs {
         Ok(windows)
     }
 
+    /// Files that are joined; their paths are from the working folder, not from the log's.
+    fn joined(&self) -> anyhow::Result<Vec<JoinedFile>> {
+        let (files, offsets) = (&self.join, &self.offset_s);
+        let is_paired = offsets.is_empty() || offsets.len() == files.len();
+        anyhow::ensure!(is_paired, "several joined files need as many --offset-s as --join, or none");
+        let file = |(k, path): (usize, &PathBuf)| {
+            let file = std::path::absolute(path)?;
+            Ok(JoinedFile { file, offset_s: offsets.get(k).copied(), by: None })
+        };
+        files.iter().enumerate().map(file).collect()
+    }
+
     /// Text of the part, for the key of an answer that is kept; none for all of the log.
     pub fn shown(&self) -> Option<String> {
-        let Self { select, from_s, to_s } = self;
-        let is_all = select.is_empty() && from_s.is_empty() && to_s.is_empty();
-        (!is_all).then(|| format!("{select:?} {from_s:?} {to_s:?}"))
+        let Self { select, from_s, to_s, join, offset_s } = self;
+        let is_whole = select.is_empty() && from_s.is_empty() && to_s.is_empty();
+        let part = (!is_whole).then(|| format!("{select:?} {from_s:?} {to_s:?}"));
+        // The contents of joined files belong to the answer.
+        let digests: Vec<_> = join.iter().map(|file| Hashed::of(file).digest).collect();
+        let joined = (!join.is_empty()).then(|| format!("{digests:?} {offset_s:?}"));
+        let shown: Vec<String> = part.into_iter().chain(joined).collect();
+        (!shown.is_empty()).then(|| shown.join(" "))
     }
 }
 
@@ -70,7 +95,7 @@ mod tests {
     #[test]
     fn windows_are_paired_and_refused_in_words() {
         let windows = |from: &[f64], to: &[f64]| {
-            PartArgs { select: Vec::new(), from_s: from.to_vec(), to_s: to.to_vec() }
+            PartArgs { from_s: from.to_vec(), to_s: to.to_vec(), ..PartArgs::default() }
                 .windows()
                 .map_err(|e| e.to_string())
         };
@@ -80,6 +105,18 @@ mod tests {
         assert_eq!(windows(&[], &[]), Ok(Vec::new()));
         assert!(windows(&[1.0, 5.0], &[2.0]).is_err_and(|e| e.contains("as many")));
         assert!(windows(&[3.0], &[2.0]).is_err_and(|e| e.contains("smaller")));
+    }
+
+    #[test]
+    fn joined_files_have_an_offset_each_or_none() {
+        let part = |offsets: &[f64]| {
+            let join = vec![PathBuf::from("a.csv"), PathBuf::from("b.csv")];
+            PartArgs { join, offset_s: offsets.to_vec(), ..PartArgs::default() }.stated()
+        };
+        let join = part(&[0.5, -1.0]).expect("a part").join;
+        assert!(join[1].offset_s == Some(-1.0) && join[1].file.is_absolute() && join[1].file.ends_with("b.csv"));
+        assert!(part(&[]).expect("a part").join.iter().all(|file| file.offset_s.is_none()));
+        assert!(part(&[0.5]).is_err_and(|e| e.to_string().contains("as many")));
     }
 
     #[test]

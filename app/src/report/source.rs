@@ -45,7 +45,8 @@ impl Source {
 }
 
 impl Hashed {
-    fn of(path: &Path) -> Self {
+    /// Reads the bytes of a file.
+    pub fn of(path: &Path) -> Self {
         Self { path: path.to_path_buf(), digest: digest(path).map_err(|error| error.to_string()) }
     }
 

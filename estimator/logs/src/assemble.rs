@@ -2,9 +2,10 @@
 
 use super::errors::LogError;
 use super::fingerprint::Shared;
+use super::origin::Dated;
 use super::plan::{Plan, Use};
 use super::table::{Group, Table};
-use super::{checks, clock, facts, repairs, runs, sidecar, units};
+use super::{checks, clock, facts, repairs, runs, second_clocks, sidecar, units};
 use foundation::signal::chain::is_chain;
 use foundation::signal::wrench::is_turned_sensor;
 use haptics::recording::{Channel, Meta, Recording, TimeWindow, Warning};
@@ -18,7 +19,7 @@ pub fn recordings(
     path: &Path,
     headers: &[String],
     said: &[Warning],
-) -> Result<Vec<Recording>, LogError> {
+) -> Result<Vec<Dated>, LogError> {
     let apart = runs::apart(std::mem::take(&mut table.groups), plan, headers, path)?;
     let windows = meta.windows();
     let copies = if apart.by_column { table.fingerprints.copies() } else { Vec::new() };
@@ -29,8 +30,10 @@ pub fn recordings(
     let mut span_s: Option<(f64, f64)> = None;
     let mut used: Vec<TimeWindow> = Vec::new();
     for (trial, mut group) in apart.runs {
-        let mut about_time = clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers);
-        let (time_s, said_of_time) = clock::times(&mut group, plan, meta, headers, path)?;
+        let doubts = second_clocks::doubts(&group, plan, headers);
+        let mut about_time = second_clocks::on_the_logs_clock(&mut group, plan, headers, path)?;
+        about_time.extend(clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers));
+        let clock::Times { time_s, said: said_of_time, origin } = clock::times(&mut group, plan, meta, headers, path)?;
         about_time.extend(said_of_time);
         let ends = time_s.as_ref().and_then(|time| Some((*time.first()?, *time.last()?)));
         span_s = ends.map(|(a, b)| span_s.map_or((a, b), |(c, d)| (f64::min(a, c), f64::max(b, d)))).or(span_s);
@@ -48,8 +51,8 @@ pub fn recordings(
             let name = names.iter().fold(String::new(), |all, name| format!("{all}, {name}"));
             let mut made = about.recording(group, (trial, name), time_s)?;
             let clock = about_time.iter().map(|text| note("clock", Some("t_s"), text.clone()));
-            made.warnings.splice(0..0, said.iter().cloned().chain(clock));
-            recordings.push(made);
+            made.warnings.splice(0..0, said.iter().cloned().chain(clock).chain(doubts.clone()));
+            recordings.push(Dated { recording: made, origin });
         }
     }
     if let Some(empty) = windows.iter().find(|window| !used.contains(window)) {

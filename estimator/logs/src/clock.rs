@@ -3,6 +3,7 @@
 use super::csv::calendar;
 use super::errors::LogError;
 use super::mcap::resample;
+use super::origin::Origin;
 use super::plan::{Plan, Use};
 use super::raw::{Cells, is_missing};
 use super::table::Group;
@@ -27,17 +28,23 @@ const COUNTERS: [f64; 3] = [65_536.0, 2_147_483_648.0, 4_294_967_296.0];
 /// A step over the end of a counter is that of its neighbours to this share.
 const LIKE_OTHERS: f64 = 0.5;
 
-/// Times of a group's rows, s, with sentences about them; made from `rate_hz` where there is no column.
-pub fn times(
-    group: &mut Group,
-    plan: &Plan,
-    meta: &Meta,
-    headers: &[String],
-    path: &Path,
-) -> Result<(Option<Vec<f64>>, Vec<String>), LogError> {
+/// Times of a group's rows.
+#[derive(Default)]
+pub struct Times {
+    /// The times, s; none without a clock.
+    pub time_s: Option<Vec<f64>>,
+    /// Sentences about them.
+    pub said: Vec<String>,
+    /// Place of their zero, if the file states it.
+    pub origin: Option<Origin>,
+}
+
+/// Times of a group's rows; made from `rate_hz` where there is no column.
+pub fn times(group: &mut Group, plan: &Plan, meta: &Meta, headers: &[String], path: &Path) -> Result<Times, LogError> {
     let Some(column) = plan.time else {
         let rows = group.rows();
-        return Ok((meta.rate_hz.map(|rate| (0..rows).map(|i| i as f64 / rate).collect()), Vec::new()));
+        let time_s = meta.rate_hz.map(|rate| (0..rows).map(|i| i as f64 / rate).collect());
+        return Ok(Times { time_s, ..Times::default() });
     };
     let mut time = std::mem::take(&mut group.columns[column]);
     let mut said = Vec::new();
@@ -47,6 +54,7 @@ pub fn times(
         _ => (1.0, None),
     };
     said.extend(passed.map(|what| format!("the column `{}` {what}", headers[column])));
+    let origin = origin(&time, plan.uses[column]).or(plan.origin);
     said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
         let (row, line) = group.place(i + 1);
@@ -63,7 +71,26 @@ pub fn times(
             path: path.to_path_buf(),
         });
     }
-    Ok((Some(time), said))
+    Ok(Times { time_s: Some(time), said, origin })
+}
+
+/// Zero of a clock, as its column states it: of numbers, the start of 1970 if they can be seconds since then.
+fn origin(time: &[f64], clock: Use) -> Option<Origin> {
+    let first = *time.first()?;
+    match clock {
+        Use::Stamp { origin_ns, form } => Some(Origin { ns: origin_ns, is_dated: form.is_dated }),
+        Use::Number { factor, .. } => match stamp_unit(first, factor) {
+            Some((_, unit)) => Some(Origin { ns: (first * (unit * 1e9)) as i64, is_dated: true }),
+            None => EPOCHS.contains(&first).then_some(Origin { ns: 0, is_dated: true }),
+        },
+        Use::Ignore => None,
+    }
+}
+
+/// Name and length, s, of the unit of stamps since 1970 that can be no seconds.
+fn stamp_unit(first: f64, factor: f64) -> Option<(&'static str, f64)> {
+    let is_large = first.abs() >= NO_SECONDS && factor == 1.0;
+    STAMP_UNITS.into_iter().find(|(_, unit)| is_large && EPOCHS.contains(&(first * unit)))
 }
 
 /// Spans after which a clock starts again and time goes on, in its own numbers times their factor.
@@ -148,10 +175,7 @@ fn on_the_next_day(time: &mut [f64]) -> Option<String> {
 /// Turns stamps since 1970 that can be no seconds into seconds since the first row.
 fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
     let first = *time.first()?;
-    if first.abs() < NO_SECONDS || factor != 1.0 {
-        return None;
-    }
-    let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| EPOCHS.contains(&(first * unit)))?;
+    let (name, unit) = stamp_unit(first, factor)?;
     for t in time.iter_mut() {
         *t = (*t - first) * unit;
     }

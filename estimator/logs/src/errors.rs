@@ -147,6 +147,14 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// Another file of the same run does not fit.
+    #[error("the file cannot be joined to the log ({why}): {path}", why = plain(why), path = path.display())]
+    Join {
+        /// Fault, and its remedy.
+        why: String,
+        /// The other file.
+        path: PathBuf,
+    },
     /// A recording cannot be kept in this format.
     #[error("the recording cannot be written ({why}): {path}", why = plain(why), path = path.display())]
     NotWritable {

@@ -13,8 +13,10 @@ mod errors;
 mod facts;
 mod fingerprint;
 mod format;
+mod join;
 mod mat;
 mod mcap;
+mod origin;
 mod pages;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -26,6 +28,7 @@ mod repairs;
 mod room;
 mod rows;
 mod runs;
+mod second_clocks;
 mod sidecar;
 mod suggested;
 mod table;
@@ -54,12 +57,15 @@ pub use write::{write, write_csv, write_encoded};
 
 /// Kind of the warning about spikes of one sample, and about values that no hand reaches.
 pub const SPIKES: &str = "outlier";
+/// Kind of the warning that tells of a file that was joined, and of its clock.
+pub const JOINED: &str = "joined";
 /// The kind of the warning that a log has no clock.
 pub const NO_CLOCK: &str = "no-clock";
 /// The kind of the warning that no column has a name of the program.
 pub const NO_KNOWN_COLUMN: &str = "no-known-column";
 
-use haptics::recording::{Meta, Recording, TimeWindow, Warning};
+use haptics::recording::{JoinedFile, Meta, Recording, TimeWindow, Warning};
+use origin::{Dated, Origin};
 use raw::Raw;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -87,7 +93,18 @@ pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Resu
 pub fn load_part(path: &Path, meta: Option<&Path>, part: &Part, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
     let beside = Box::new(sidecar::load(path, meta));
-    read(path, format::of(path)?, size, Facts::Found { beside, named: meta.is_some(), part }, watch)
+    let own = read(path, format::of(path)?, size, Facts::Found { beside, named: meta.is_some(), part }, watch)?;
+    joined(own, path, watch)
+}
+
+/// The recordings of a log, with the files that its sidecar joins.
+fn joined(own: Vec<Dated>, path: &Path, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    let watch = Watch { cancelled: watch.cancelled, ..Watch::none() };
+    join::files(own, path, &|other| {
+        let size = admissible_size(other)?;
+        let (beside, part) = (Box::new(sidecar::load(other, None)), Part::default());
+        read(other, format::of(other)?, size, Facts::Found { beside, named: false, part: &part }, &watch)
+    })
 }
 
 /// Runs and windows of time that are read: a caller's statement, which takes the place of the sidecar's.
@@ -97,6 +114,8 @@ pub struct Part {
     pub select: BTreeMap<String, serde_json::Value>,
     /// Windows of time; none for all of it.
     pub windows: Vec<TimeWindow>,
+    /// Other files of the same run; none for those of the sidecar. Paths from the log's folder, or absolute ones.
+    pub join: Vec<JoinedFile>,
 }
 
 impl Part {
@@ -105,6 +124,9 @@ impl Part {
         if !self.windows.is_empty() {
             (meta.from_s, meta.to_s) = (None, None);
             meta.windows.clone_from(&self.windows);
+        }
+        if !self.join.is_empty() {
+            meta.join.clone_from(&self.join);
         }
     }
 }
@@ -123,7 +145,7 @@ fn load_sized(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<
     if let Some(why) = facts::complaint(meta) {
         return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }
-    read(path, format::of(path)?, size, Facts::Given(meta), watch)
+    joined(read(path, format::of(path)?, size, Facts::Given(meta), watch)?, path, watch)
 }
 
 /// Format of a file, told by its content.
@@ -193,13 +215,7 @@ fn note(kind: &str, text: String) -> Warning {
     Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text, ..Warning::default() }
 }
 
-fn read(
-    path: &Path,
-    format: Format,
-    size: u64,
-    facts: Facts<'_>,
-    watch: &Watch<'_>,
-) -> Result<Vec<Recording>, LogError> {
+fn read(path: &Path, format: Format, size: u64, facts: Facts<'_>, watch: &Watch<'_>) -> Result<Vec<Dated>, LogError> {
     let done = match format {
         Format::Csv => facts.settle(None, path).and_then(|(meta, _)| read_csv(path, &meta, size, watch)),
         Format::Mat => mat::read(path, size, watch).and_then(|(raw, said)| {
@@ -226,7 +242,7 @@ fn read(
     done
 }
 
-fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Dated>, LogError> {
     let dialect = csv::sniff(path)?;
     let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
@@ -235,20 +251,23 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {
         read = csv::read(path, &dialect, &plan, size, watch).or(read);
     }
-    let table = read?;
+    let mut table = read?;
+    second_clocks::take_time(&mut table, &mut plan, meta, &dialect.headers);
     let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
     plan.notes.extend(plan::Plan::doubt_about_dates(table.days));
     assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }
 
 /// From the columns of a container to recordings.
-fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
+fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Dated>, LogError> {
     let headers = raw.headers.clone();
     let resolved = raw.resolved(meta);
     let mut plan = plan::plan(&headers, &raw.units, &resolved, path)?;
+    plan.origin = raw.origin_ns.filter(|_| plan.time == Some(0)).map(|ns| Origin { ns, is_dated: true });
     let days = text_clock::take(&mut raw, &mut plan, &resolved, path)?;
     plan.notes.extend(plan::Plan::doubt_about_dates(days));
-    let table = columnar::table(raw, &plan, path)?;
+    let mut table = columnar::table(raw, &plan, path)?;
+    second_clocks::take_time(&mut table, &mut plan, &resolved, &headers);
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }
 

@@ -75,6 +75,8 @@ pub struct Raw {
     pub columns: Vec<Cells>,
     /// Full names of items of lists by place, and by the name of the item.
     pub renamed: Vec<(String, String)>,
+    /// Nanoseconds since 1970 of the zero of the first column, if the reader made it of dated stamps.
+    pub origin_ns: Option<i64>,
 }
 
 impl Raw {
@@ -106,6 +108,7 @@ fn with_names(meta: &Meta, name: &dyn Fn(&String) -> String) -> Meta {
     for value in meta.columns.values_mut() {
         *value = name(value);
     }
+    meta.clocks = meta.clocks.into_iter().map(|(k, v)| (name(&k), v.renamed(name))).collect();
     meta.select = meta.select.into_iter().map(|(k, v)| (name(&k), v)).collect();
     meta.scale = meta.scale.into_iter().map(|(k, v)| (name(&k), v)).collect();
     meta.sign = meta.sign.into_iter().map(|(k, v)| (name(&k), v)).collect();

@@ -83,7 +83,7 @@ pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
     haptics::text_file::write(path, text + "\n").map_err(|e| failed(e.to_string()))
 }
 
-/// Facts of the sidecar without the old file's columns: a written table is in the program's names and SI units already.
+/// Facts of the sidecar without the old file's columns and the files joined to it: a written table is in the program's names and SI units already.
 pub(super) fn portable_meta(meta: &Meta) -> Meta {
     let mut meta = meta.clone();
     meta.columns.clear();
@@ -92,6 +92,8 @@ pub(super) fn portable_meta(meta: &Meta) -> Meta {
     meta.select.clear();
     (meta.from_s, meta.to_s) = (None, None);
     meta.windows.clear();
+    meta.clocks.clear();
+    meta.join.clear();
     meta
 }
 

@@ -72,6 +72,11 @@ impl Group {
         made
     }
 
+    /// Takes the places of the rows from a group with the same rows.
+    pub fn take_places(&mut self, of: &Self) {
+        self.lines.clone_from(&of.lines);
+    }
+
     /// Says where row `index` of the group stands in the file.
     pub fn note_place(&mut self, index: usize, row: usize, line: u64) {
         if self.lines.is_empty() || self.place(index) != (row, line) {

@@ -59,6 +59,14 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(with = "BTreeMap<String, Option<String>>", extend("x-absent" = "known names are read"), example = json!({ "q_m": "Extension [mm]", "t_s": null }))]
     pub columns: BTreeMap<String, String>,
+    /// Column of the times of a channel that has a clock of its own, such as pairs of time and value side by side.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("x-absent" = "one clock for all"), example = json!({ "f_N": "time_force_s" }))]
+    pub clocks: BTreeMap<String, OwnClock>,
+    /// Other files of the same run, whose channels are put on the log's clock.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-absent" = "one file"), example = json!([{ "file": "force.csv", "offset_s": 0.012 }]))]
+    pub join: Vec<JoinedFile>,
     /// Factor of a column, after the conversion of its unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "f_N": 35.15 }))]
@@ -122,6 +130,79 @@ pub struct TimeWindow {
     /// Last time, s; the end of the recording when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_s: Option<f64>,
+}
+
+/// The clock of a column that does not belong to the clock of the log.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum OwnClock {
+    /// The column that holds its times.
+    Column(String),
+    /// A column of times that start apart from those of the log.
+    Shifted(ShiftedClock),
+}
+
+/// A column of times that start apart from those of the log.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShiftedClock {
+    /// The column that holds the times.
+    pub column: String,
+    /// Seconds that are added to them.
+    pub offset_s: f64,
+}
+
+impl OwnClock {
+    /// The same with another name of its column.
+    #[must_use]
+    pub fn renamed(self, name: &dyn Fn(&String) -> String) -> Self {
+        match self {
+            Self::Column(column) => Self::Column(name(&column)),
+            Self::Shifted(shifted) => Self::Shifted(ShiftedClock { column: name(&shifted.column), ..shifted }),
+        }
+    }
+
+    /// The column, and the seconds that are added to its times.
+    pub fn parts(&self) -> (&str, f64) {
+        match self {
+            Self::Column(column) => (column, 0.0),
+            Self::Shifted(shifted) => (&shifted.column, shifted.offset_s),
+        }
+    }
+}
+
+/// Another file of the same run.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JoinedFile {
+    /// The file, from the log's folder; it may have a sidecar of its own.
+    pub file: std::path::PathBuf,
+    /// Seconds that are added to the file's times; estimated when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset_s: Option<f64>,
+    /// Channel of both files that shows the offset, or two names: the log's and the file's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<SharedChannel>,
+}
+
+/// A channel that two files share.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum SharedChannel {
+    /// Its name in both.
+    Same(String),
+    /// Its name in the log, and in the other file.
+    Pair([String; 2]),
+}
+
+impl SharedChannel {
+    /// Its name in the log, and in the other file.
+    pub fn names(&self) -> (&str, &str) {
+        match self {
+            Self::Same(name) => (name, name),
+            Self::Pair([own, other]) => (own, other),
+        }
+    }
 }
 
 /// A video of the hand.

@@ -3,9 +3,10 @@
 //! An unreadable file, or one on which the program fails, has a line with a sentence; the others continue. Existing
 //! lines in a file are kept as long as the log, its sidecar and the options are unchanged.
 
-use crate::report::source::Source;
+use crate::report::source::{Hashed, Source};
 use anyhow::Context;
 use estimator::diagnose::Diagnosis;
+use haptics::recording::JoinedFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -78,9 +79,18 @@ impl Key {
             file: log.display().to_string(),
             sha256: digits(&source.log.digest),
             sidecar_sha256: source.sidecar.as_ref().and_then(|sidecar| digits(&sidecar.digest)),
-            asked: asked.to_owned(),
+            asked: asked.to_owned() + &joined(log, source.stated.as_deref()),
         }
     }
+}
+
+/// The files that a sidecar joins to its log, by their SHA-256; empty without any.
+fn joined(log: &Path, sidecar: Option<&str>) -> String {
+    let meta = sidecar.and_then(|text| estimator::log::parse_sidecar(text, log).ok()).unwrap_or_default();
+    let folder = log.parent().unwrap_or(Path::new(""));
+    let digest = |file: &JoinedFile| Hashed::of(&folder.join(&file.file)).digest;
+    let shown: Vec<String> = meta.join.iter().map(|file| format!(" --join {:?}", digest(file))).collect();
+    shown.concat()
 }
 
 /// Existing lines of a file; those truncated by a kill count as missing.

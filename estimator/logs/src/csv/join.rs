@@ -180,15 +180,19 @@ impl<'a> Join<'a> {
     fn settle_blanks(&mut self) -> Result<(), LogError> {
         let is_needed = |c: &usize| matches!(self.plan.uses[*c], Use::Number { required: true, .. });
         let (needed, others): (Vec<usize>, Vec<usize>) = self.table.gappy_columns.iter().partition(|c| is_needed(c));
+        let is_time = |column: usize| Some(column) == self.plan.time && !self.plan.has_pairs();
         let mut worst: Option<(usize, u64, usize)> = None;
         for &column in &needed {
             let blanks = |group: &Group| group.columns[column].iter().filter(|v| is_missing(**v)).count();
             let is_sparse = |group: &Group| {
                 let (all, blanks) = (group.columns[column].len(), blanks(group));
-                blanks == 0 || all - blanks >= LEAST_VALUES && 3 * blanks >= all
+                // Pairs of time and value side by side have lengths of their own.
+                let trails = || group.columns[column].iter().rev().take(blanks).all(|v| is_missing(*v));
+                let is_shorter = self.plan.has_pairs() && all - blanks >= LEAST_VALUES && trails();
+                blanks == 0 || is_shorter || all - blanks >= LEAST_VALUES && 3 * blanks >= all
             };
             let groups = self.table.groups.iter().map(|(_, group)| group);
-            for group in groups.filter(|group| Some(column) == self.plan.time || !is_sparse(group)) {
+            for group in groups.filter(|group| is_time(column) || !is_sparse(group)) {
                 let first = group.columns[column].iter().position(|v| is_missing(*v));
                 let place = first.map(|first| group.place(first));
                 let earlier = place.filter(|(row, _)| worst.is_none_or(|(other, ..)| *row < other));

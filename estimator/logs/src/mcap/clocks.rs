@@ -12,6 +12,8 @@ use std::path::Path;
 
 /// An extra topic may shorten the recording by this share; one that shortens it more is left out.
 const MAX_CUT: f64 = 0.05;
+/// Start of 1990 in nanoseconds since 1970: nobody measured with these formats before.
+const FIRST_DATE_NS: i64 = 631_152_000_000_000_000;
 
 /// Makes one table of all topics.
 pub fn one_table(sources: Vec<Source>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) -> Result<Raw, LogError> {
@@ -40,6 +42,7 @@ fn single(mut part: Part, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) ->
             (Ok(()), _) => {
                 let stamps = part.stamps(clock);
                 let base = stamps.first().copied().unwrap_or(0);
+                raw.origin_ns = dated(base);
                 raw.headers.push("t_s".to_owned());
                 raw.aliases.push(String::new());
                 raw.columns.push(Cells::Numbers(seconds(&stamps, base)));
@@ -92,7 +95,13 @@ fn several(parts: Vec<Part>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path)
     }
     let master = master(&timed, meta);
     let (first, last) = common_range(&mut timed, master, notes, &refused)?;
-    merge(timed, master, (first, last), clock, notes, &refused)
+    let raw = merge(timed, master, (first, last), clock, notes, &refused)?;
+    Ok(Raw { origin_ns: dated(base).filter(|_| clock != Clock::Field), ..raw })
+}
+
+/// The zero of stamps, ns since 1970, if they can be such: those of a clock that starts with a device are small.
+fn dated(base_ns: i64) -> Option<i64> {
+    (base_ns > FIRST_DATE_NS).then_some(base_ns)
 }
 
 /// A time that the sidecar picks from one topic says nothing about the others.

@@ -26,6 +26,11 @@ fn goes_down(from: &[f64], to: &[f64]) -> bool {
     period(to) > FASTER * period(from)
 }
 
+/// True if there are clearly fewer samples than the times that they are put on.
+pub fn is_slower(from: &[f64], to: &[f64]) -> bool {
+    goes_down(to, from)
+}
+
 /// Description of the resampling, for people.
 pub fn describe(name: &str, from: &[f64], to: &[f64]) -> String {
     let (old, new) = (1.0 / period(from), 1.0 / period(to));
@@ -57,6 +62,16 @@ pub fn gaps(name: &str, from: &[f64], to: &[f64]) -> Option<String> {
     ))
 }
 
+/// For each time of `to`, within the span of `from`: true if it lies in no gap of `from`. Both increase.
+pub fn covered(from: &[f64], to: &[f64]) -> Vec<bool> {
+    let limit = GAP_PERIODS * period(from);
+    let is_covered = |&t: &f64| {
+        let i = before(from, t);
+        from[i] == t || from.get(i + 1).is_none_or(|next| next - from[i] <= limit)
+    };
+    to.iter().map(is_covered).collect()
+}
+
 /// Puts a channel with samples at `from` onto the times `to`, which lie within `from`.
 ///
 /// Numbers: low-passed forward and backward if they are faster than the clock, then [`cubic`]. Text: the last one
@@ -74,11 +89,22 @@ pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
             Cells::Text(held)
         }
         Cells::Numbers(values) if goes_down(from, to) && values.iter().all(|v| v.is_finite()) => {
-            let smooth = filter::low_pass(values, 1.0 / period(from), CUTOFF_SHARE / period(to));
+            let smooth = low_passed(from, values, CUTOFF_SHARE / period(to));
             Cells::Numbers(to.iter().map(|&t| value_at(from, &smooth, t)).collect())
         }
         Cells::Numbers(values) => Cells::Numbers(to.iter().map(|&t| value_at(from, values, t)).collect()),
     }
+}
+
+/// Values without the frequencies above `cutoff_hz`, between gaps: a filter that runs across one rings at its ends.
+fn low_passed(time: &[f64], values: &[f64], cutoff_hz: f64) -> Vec<f64> {
+    let usual = period(time);
+    let mut smooth = Vec::with_capacity(values.len());
+    for part in time.chunk_by(|a, b| b - a <= GAP_PERIODS * usual) {
+        let first = smooth.len();
+        smooth.extend(filter::low_pass(&values[first..first + part.len()], 1.0 / usual, cutoff_hz));
+    }
+    smooth
 }
 
 /// Value at `t`, or missing beside a missing sample.

@@ -2,14 +2,17 @@
 
 mod clock_column;
 mod own_names;
+mod second_clocks;
 mod selection;
 
 pub use selection::{Wanted, counts_runs};
 
 pub use clock_column::is_clock;
+pub use second_clocks::{SecondClock, TIMES, words};
 
 use super::csv::calendar::Form;
 use super::errors::LogError;
+use super::origin::Origin;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
 use haptics::recording::Meta;
@@ -73,6 +76,12 @@ pub struct Plan {
     pub targets: Vec<Target>,
     /// The time column.
     pub time: Option<usize>,
+    /// Clocks of some columns only.
+    pub clocks: Vec<SecondClock>,
+    /// Columns that read as clocks and that nobody calls one, with their seconds over numbers.
+    pub suspects: Vec<(usize, f64)>,
+    /// Zero of a time column that the format's reader made.
+    pub origin: Option<Origin>,
     /// The trial column.
     pub trial: Option<usize>,
     /// True when the trial column was told by its name, which may mean something else.
@@ -89,6 +98,13 @@ pub struct Plan {
     pub trial_keys: Vec<usize>,
     /// Sentences for the reader.
     pub notes: Vec<String>,
+}
+
+impl Plan {
+    /// True if the table has a clock of some columns only, or a column that reads as one.
+    pub fn has_pairs(&self) -> bool {
+        !self.clocks.is_empty() || !self.suspects.is_empty()
+    }
 }
 
 struct Planner<'a> {
@@ -120,6 +136,8 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
         }
     }
     planner.guess_time();
+    planner.take_clocks()?;
+    planner.suspect_clocks();
     planner.guess_runs();
     planner.take_select()?;
     planner.note_unused_keys();
