@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use tests::touchstone;
+use tests::{shared_data, touchstone};
 
 const MASS_KG: f64 = 1.5;
 /// Reading of the second logger's clock at the start of the first one's, s, and its seconds a second.
@@ -149,4 +149,31 @@ fn two_clocks_of_one_table_are_suggested_and_settled() {
     std::fs::write(run.path("pairs.meta.json"), alone.to_string()).expect("written");
     let fit = run.json(&["fit", "pairs.csv"]);
     assert!(off(&fit) > 0.05, "{:?} kg", mass(&fit));
+}
+
+/// Mass by hand: an ordinary regression of the whole stroke, with the force later by what the authors state.
+const RACK_KG: [f64; 2] = [24.7, 25.9];
+
+#[test]
+fn a_rack_weighs_the_same_from_two_files() {
+    let Some(speed) = shared_data("rack_pinion/velocity_1500Hz.csv") else { return };
+    let force = speed.with_file_name("force_2kHz.csv");
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = [
+        (&speed, "speed", r#"{"task": "mechanism", "columns": {"dq_m_s": "velocity_m_s"}}"#),
+        (&force, "force", r#"{"columns": {"f_N": "force_N"}}"#),
+    ];
+    for (source, name, sidecar) in files {
+        std::fs::copy(source, folder.path().join(format!("{name}.csv"))).expect("copied");
+        std::fs::write(folder.path().join(format!("{name}.meta.json")), sidecar).expect("written");
+    }
+    let fit = |more: &[&str]| {
+        let arguments = [&["fit", "speed.csv", "--join", "force.csv", "--json"], more].concat();
+        Command::new(touchstone()).args(arguments).current_dir(folder.path()).output().expect("it runs")
+    };
+    let refused = fit(&[]);
+    assert!(!refused.status.success() && String::from_utf8_lossy(&refused.stderr).contains("\"offset_s\": 0"));
+    let fitted: Value = serde_json::from_slice(&fit(&["--offset-s", "0.004"]).stdout).expect("JSON");
+    let mass = mass(&fitted).expect("a mass");
+    assert!((RACK_KG[0]..RACK_KG[1]).contains(&mass), "{mass} kg");
 }

@@ -109,6 +109,8 @@ pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let is_units = first >= 2 && holds_units(&records[first - 1].cells) && may_be_names(first - 2);
     let header = if is_units { first - 2 } else { first - 1 };
     let width = body.width;
+    // Names in the first line belong to the row below them, whatever its fault is.
+    let (header, first) = if may_be_names(header) { (header, first) } else { (0, 1) };
     may_be_names(header).then(|| Layout { header, units: is_units.then(|| first - 1), first, width, body })
 }
 
