@@ -347,10 +347,9 @@ impl LogPanel {
                     height: each * place.share() + if last { axis_height() } else { 0.0 },
                 };
                 let outcome = row(ui, &mut self.cache, plots.of(group), &input);
-                area = outcome.area;
                 (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
                 session.calibration.choice.only_s = outcome.part_s.or(session.calibration.choice.only_s);
-                grasp = grasp.or(outcome.grasp);
+                (area, grasp) = (outcome.area, grasp.or(outcome.grasp));
             }
             seek = seek.or(shifting(ui, &mut session.document, &mut session.jobs, plots, grasp, area));
             if let Some(view) = view_s {
