@@ -246,6 +246,7 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     let dialect = csv::sniff(path)?;
     let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
+    plan.give_clocks(&dialect.clocks);
     let mut read = csv::read(path, &dialect, &plan, size, watch);
     // A day above 12 anywhere in the file settles the order of day and month.
     if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {

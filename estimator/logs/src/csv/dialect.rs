@@ -29,6 +29,8 @@ pub struct Dialect {
     pub(super) body: Body,
     /// The file as UTF-8 with one delimiter, if it is not written so itself.
     pub(super) text: Option<Vec<u8>>,
+    /// Columns with a clock of their own, and the columns of those clocks.
+    pub clocks: Vec<(usize, usize)>,
     /// Sentences for the reader.
     pub notes: Vec<String>,
 }

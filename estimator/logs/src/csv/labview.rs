@@ -3,7 +3,9 @@
 //! National Instruments, *Specification for the LabVIEW Measurement File*: a head for the file, one for each segment, and
 //! rows. Both heads end with `***End_of_Header***`.
 
+use super::calendar;
 use crate::errors::LogError;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -14,8 +16,16 @@ pub fn is_measurement(start: &[u8]) -> bool {
     start.trim_ascii_start().starts_with(b"LabVIEW Measurement")
 }
 
-/// The first segment as a table with tabs.
-pub fn table(text: &[u8], path: &Path) -> Result<Vec<u8>, LogError> {
+/// A measurement as a table with tabs, a header, and a row of units.
+#[derive(Debug)]
+pub struct Measurement {
+    pub text: Vec<u8>,
+    /// Channels with a clock of their own: column of the channel, and of its clock.
+    pub clocks: Vec<(usize, usize)>,
+}
+
+/// The first segment as a table.
+pub fn table(text: &[u8], path: &Path) -> Result<Measurement, LogError> {
     let text = String::from_utf8_lossy(text);
     let refuse =
         |why: &str| LogError::NotATable { why: format!("a LabVIEW measurement {why}"), path: path.to_path_buf() };
@@ -26,29 +36,25 @@ pub fn table(text: &[u8], path: &Path) -> Result<Vec<u8>, LogError> {
     let segment = facts(&mut lines, &[delimiter]);
     let header = lines.find(|line| !line.trim().is_empty()).ok_or_else(|| refuse("without a table"))?;
     let names: Vec<&str> = header.split(delimiter).map(str::trim).collect();
-    let comment = names.iter().position(|name| *name == "Comment").unwrap_or(names.len());
-    let is_clock = |name: &str| name == "X_Value";
-    // Every channel may have a clock of its own: all begin and go on alike, so the first one stands for all.
-    let first_clock = names.iter().position(|name| is_clock(name));
-    let kept: Vec<usize> = (0..comment).filter(|&k| !is_clock(names[k]) || Some(k) == first_clock).collect();
     let has_clock = fact("X_Columns") != "No";
-    let decimal = fact("Decimal_Separator");
-    let number = |text: &str| text.replace(if decimal == "," { ',' } else { '.' }, ".").parse::<f64>().ok();
-    let of_first = |name: &str| segment.get(name)?.iter().find_map(|cell| number(cell));
+    let decimal = if fact("Decimal_Separator") == "," { "," } else { "." };
+    let of_first =
+        |name: &str| segment.get(name)?.iter().find_map(|cell| cell.replace(decimal, ".").parse::<f64>().ok());
     let (start, step) = (of_first("X0").unwrap_or(0.0), of_first("Delta_X"));
     if !has_clock && step.is_none() {
         return Err(refuse("has no clock: Delta_X is missing in its head"));
     }
-    let units = segment.get("Y_Unit_Label").cloned().unwrap_or_default();
-    let out = Out { names: &names, kept: &kept, units, is_clock: &|k| is_clock(names[k]) };
-    let mut made = out.head();
-    for (row, line) in lines.take_while(|line| !line.trim().is_empty() && !line.contains(END)).enumerate() {
-        let cells: Vec<&str> = line.split(delimiter).map(str::trim).collect();
-        let time = if has_clock { None } else { step.map(|step| start + step * row as f64) };
-        made += &out
-            .row(&cells, time.map(|t| format!("{t}").replace('.', if decimal == "," { "," } else { "." })).as_deref());
+    let rows = lines.take_while(|line| !line.trim().is_empty() && !line.contains(END));
+    let mut rows: Vec<Vec<Cow<'_, str>>> =
+        rows.map(|line| line.split(delimiter).map(|cell| Cow::Borrowed(cell.trim())).collect()).collect();
+    let columns = Columns::of(&names, &segment, &rows);
+    for (row, cells) in rows.iter_mut().enumerate() {
+        if let (false, true, Some(step), Some(time)) = (has_clock, is_clock(names[0]), step, cells.first_mut()) {
+            *time = format!("{}", start + step * row as f64).replace('.', decimal).into();
+        }
+        columns.shift(cells, decimal);
     }
-    Ok(made.into_bytes())
+    Ok(columns.written(&names, &segment, &rows))
 }
 
 /// The entries of a head up to its end: name and cells.
@@ -56,45 +62,88 @@ fn facts<'a>(lines: &mut impl Iterator<Item = &'a str>, delimiters: &[char]) -> 
     let head = lines.take_while(|line| !line.starts_with(END));
     head.filter_map(|line| {
         let (name, rest) = line.split_once(delimiters)?;
-        let cells = rest.split('\t').map(|cell| cell.trim().to_owned());
+        let cells = rest.split(delimiters).map(|cell| cell.trim().to_owned());
         Some((name.trim().to_owned(), cells.collect()))
     })
     .collect()
 }
 
-/// The table to be written.
-struct Out<'a> {
-    names: &'a [&'a str],
-    kept: &'a [usize],
-    units: Vec<String>,
-    is_clock: &'a dyn Fn(usize) -> bool,
+/// Columns of the table. The file's head has a cell for every channel, above the channel, and empty ones above clocks.
+struct Columns {
+    /// Columns of the file that are written.
+    kept: Vec<usize>,
+    /// Clocks that differ from the first one: their column, its channel, and the seconds by which they start later.
+    own: Vec<(usize, usize, f64)>,
 }
 
-impl Out<'_> {
-    /// Names, and units below them.
-    fn head(&self) -> String {
-        let names: Vec<&str> = self.kept.iter().map(|&k| self.names[k]).collect();
-        // The cells of the head stand above the channels, with empty ones above further clocks.
-        let mut stated = self.units.iter().filter(|unit| !unit.is_empty());
-        let units: Vec<String> = self
-            .kept
-            .iter()
-            .map(|&k| {
-                if (self.is_clock)(k) {
-                    "(s)".to_owned()
-                } else {
-                    format!("({})", stated.next().map_or("", String::as_str))
-                }
-            })
-            .collect();
-        format!("{}\n{}\n", names.join("\t"), units.join("\t"))
+fn is_clock(name: &str) -> bool {
+    name == "X_Value"
+}
+
+impl Columns {
+    /// A further clock that holds the same times as the first one is left out.
+    fn of(names: &[&str], segment: &HashMap<String, Vec<String>>, rows: &[Vec<Cow<'_, str>>]) -> Self {
+        let end = names.iter().position(|name| *name == "Comment").unwrap_or(names.len());
+        let clocks: Vec<usize> = (0..end).filter(|&k| is_clock(names[k])).collect();
+        let first = clocks.first().copied().unwrap_or(0);
+        let began = |channel: usize| {
+            // The cells above the clocks are empty, and so is that of the fact's name.
+            let cell = |name: &str| segment.get(name)?.get(channel - 1).filter(|cell| !cell.is_empty());
+            calendar::parse(&format!("{} {}", cell("Date")?, cell("Time")?))
+        };
+        let later_s = |channel: usize| match (began(first + 1), began(channel)) {
+            (Some(first), Some(own)) => 1e-9 * (own - first) as f64,
+            _ => 0.0,
+        };
+        let cell = |row: &[Cow<'_, str>], k: usize| row.get(k).cloned().unwrap_or_default();
+        let differs = |k: usize| rows.iter().any(|row| cell(row, k) != cell(row, first));
+        let of_clock = |&k: &usize| {
+            let later_s = later_s(k + 1);
+            (k + 1 < end && (later_s != 0.0 || differs(k))).then_some((k, k + 1, later_s))
+        };
+        let own: Vec<(usize, usize, f64)> = clocks.iter().skip(1).filter_map(of_clock).collect();
+        let is_kept = |k: &usize| !is_clock(names[*k]) || *k == first || own.iter().any(|(clock, ..)| clock == k);
+        Self { kept: (0..end).filter(is_kept).collect(), own }
     }
 
-    fn row(&self, cells: &[&str], time: Option<&str>) -> String {
-        let cell = |&k: &usize| match &time {
-            Some(time) if (self.is_clock)(k) => (*time).to_owned(),
-            _ => cells.get(k).copied().unwrap_or_default().to_owned(),
+    /// Puts the times of clocks that start later on those of the first one.
+    fn shift(&self, cells: &mut [Cow<'_, str>], decimal: &str) {
+        for &(clock, _, later_s) in self.own.iter().filter(|(.., later_s)| *later_s != 0.0) {
+            let Some(cell) = cells.get_mut(clock) else { continue };
+            if let Ok(time) = cell.replace(decimal, ".").parse::<f64>() {
+                *cell = format!("{}", time + later_s).replace('.', decimal).into();
+            }
+        }
+    }
+
+    fn written(
+        &self,
+        names: &[&str],
+        segment: &HashMap<String, Vec<String>>,
+        rows: &[Vec<Cow<'_, str>>],
+    ) -> Measurement {
+        let channel = |k: usize| self.own.iter().find(|(clock, ..)| *clock == k).map(|(_, channel, _)| names[*channel]);
+        let name = |&k: &usize| channel(k).map_or_else(|| names[k].to_owned(), |channel| format!("time_{channel}"));
+        let mut stated = segment.get("Y_Unit_Label").into_iter().flatten().filter(|unit| !unit.is_empty());
+        let unit = |&k: &usize| {
+            if is_clock(names[k]) {
+                "(s)".to_owned()
+            } else {
+                format!("({})", stated.next().map_or("", String::as_str))
+            }
         };
-        self.kept.iter().map(cell).collect::<Vec<_>>().join("\t") + "\n"
+        let mut lines = vec![self.kept.iter().map(name).collect::<Vec<_>>(), self.kept.iter().map(unit).collect()];
+        let cells = |row: &Vec<Cow<'_, str>>| {
+            self.kept.iter().map(|&k| row.get(k).cloned().unwrap_or_default().into_owned()).collect()
+        };
+        lines.extend(rows.iter().map(cells));
+        let text = lines.iter().map(|line| line.join("\t") + "\n").collect::<String>().into_bytes();
+        let place = |column: usize| self.kept.iter().position(|k| *k == column);
+        // A clock belongs to all channels up to the next one.
+        let clocks = self.own.iter().flat_map(|&(clock, first, _)| {
+            let channels = (first..names.len()).take_while(|&k| !is_clock(names[k]));
+            channels.filter_map(move |channel| Some((place(channel)?, place(clock)?)))
+        });
+        Measurement { text, clocks: clocks.collect() }
     }
 }

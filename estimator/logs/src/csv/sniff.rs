@@ -23,7 +23,7 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     let (encoding, is_short) = (encoding::of(&start), start.len() < SNIFF_BYTES);
     let whole = |start: &[u8]| if is_short { Ok(start.to_vec()) } else { std::fs::read(path).map_err(io) };
     let mut notes = Vec::new();
-    let mut text = None;
+    let (mut text, mut clocks) = (None, Vec::new());
     if encoding != Encoding::Utf8 && !is_binary(&start, encoding) {
         text = Some(encoding::decoded(whole(&start)?, encoding));
         notes.extend((encoding == Encoding::Latin1).then(|| "the text is not UTF-8: it is read as Latin-1".to_owned()));
@@ -32,7 +32,8 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     start = text.as_deref().map_or(start, beginning);
     if labview::is_measurement(&start) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
-        text = Some(labview::table(&all, path)?);
+        let made = labview::table(&all, path)?;
+        (text, clocks) = (Some(made.text), made.clocks);
     } else if is_blank_separated(&start) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         text = Some(encoding::tabbed(&all));
@@ -41,7 +42,7 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     let mut found = dialect(&start, path)?;
     found.notes.splice(0..0, notes);
     found.leave_summary_out(path, text.as_deref()).map_err(io)?;
-    found.text = text;
+    (found.text, found.clocks) = (text, clocks);
     Ok(found)
 }
 

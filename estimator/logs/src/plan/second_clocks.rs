@@ -1,6 +1,6 @@
 //! Columns with a clock of their own: those that the sidecar names, and columns that read as further clocks.
 
-use super::{Planner, Target, Use};
+use super::{Plan, Planner, Target, Use};
 use crate::errors::LogError;
 use crate::units::{self, Dimension};
 use crate::written_units::{self, Written};
@@ -30,6 +30,32 @@ fn is_like_a_clock(name: &str) -> bool {
     let words = words(name);
     let is_time = |word: Option<&String>| word.is_some_and(|word| TIMES.contains(&word.as_str()));
     is_time(words.first()) || is_time(words.last())
+}
+
+impl Plan {
+    /// Gives columns the clocks that the file's format states for them, unless the sidecar states others. `pairs`: columns
+    /// of channels and of their clocks, in s.
+    pub fn give_clocks(&mut self, pairs: &[(usize, usize)]) {
+        for &(column, clock) in pairs {
+            let is_used = self.targets.iter().any(|target| target.column == column);
+            let is_stated = self.clocks.iter().any(|known| known.columns.contains(&column));
+            let (Use::Number { factor, .. }, true) = (self.uses[column], is_used && !is_stated) else { continue };
+            self.uses[column] = Use::Number { required: true, factor };
+            self.give(clock, 1.0, 0.0, column);
+        }
+    }
+
+    /// Makes a column the clock of another one, with the seconds that are added to its times.
+    fn give(&mut self, clock: usize, factor: f64, offset_s: f64, column: usize) {
+        self.uses[clock] = Use::Number { required: true, factor };
+        self.targets.retain(|target| target.column != clock);
+        self.suspects.retain(|(other, _)| *other != clock);
+        let known = self.clocks.iter_mut().find(|known| known.clock == clock && known.offset_s == offset_s);
+        match known {
+            Some(known) => known.columns.push(column),
+            None => self.clocks.push(SecondClock { clock, offset_s, columns: vec![column] }),
+        }
+    }
 }
 
 impl Planner<'_> {
@@ -62,17 +88,11 @@ impl Planner<'_> {
                 path: self.path.to_path_buf(),
             })?;
             let factor = factor * self.meta.scale.get(clock_name).copied().unwrap_or(1.0);
-            self.plan.targets.retain(|target| target.column != clock);
-            self.plan.uses[clock] = Use::Number { required: true, factor };
             self.plan.uses[column] = match self.plan.uses[column] {
                 Use::Number { factor, .. } => Use::Number { required: true, factor },
                 other => other,
             };
-            let known = self.plan.clocks.iter_mut().find(|known| known.clock == clock && known.offset_s == offset_s);
-            match known {
-                Some(known) => known.columns.push(column),
-                None => self.plan.clocks.push(SecondClock { clock, offset_s, columns: vec![column] }),
-            }
+            self.plan.give(clock, factor, offset_s, column);
         }
         Ok(())
     }
