@@ -62,7 +62,9 @@ fn facts<'a>(lines: &mut impl Iterator<Item = &'a str>, delimiters: &[char]) -> 
     let head = lines.take_while(|line| !line.starts_with(END));
     head.filter_map(|line| {
         let (name, rest) = line.split_once(delimiters)?;
-        let cells = rest.split(delimiters).map(|cell| cell.trim().to_owned());
+        // A comma behind a tab is the decimal mark that the head states.
+        let delimiter = line[name.len()..].chars().next()?;
+        let cells = rest.split(delimiter).map(|cell| cell.trim().to_owned());
         Some((name.trim().to_owned(), cells.collect()))
     })
     .collect()
@@ -95,8 +97,7 @@ impl Columns {
             (Some(first), Some(own)) => 1e-9 * (own - first) as f64,
             _ => 0.0,
         };
-        let cell = |row: &[Cow<'_, str>], k: usize| row.get(k).cloned().unwrap_or_default();
-        let differs = |k: usize| rows.iter().any(|row| cell(row, k) != cell(row, first));
+        let differs = |k: usize| rows.iter().any(|row| row.get(k) != row.get(first));
         let of_clock = |&k: &usize| {
             let later_s = later_s(k + 1);
             (k + 1 < end && (later_s != 0.0 || differs(k))).then_some((k, k + 1, later_s))
