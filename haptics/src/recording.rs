@@ -178,6 +178,24 @@ impl Recording {
         Some(time.last()? - time.first()?)
     }
 
+    /// Keeps these rows, in their order, and the spans of its warnings with them.
+    pub fn keep(&mut self, rows: &[usize]) {
+        if rows.len() == self.len() {
+            return;
+        }
+        let gathered = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+        self.time_s = self.time_s.as_deref().map(gathered);
+        for channel in &mut self.channels {
+            channel.values = gathered(&channel.values);
+        }
+        self.labels = self.labels.as_ref().map(|labels| labels.gathered(rows.iter().copied()));
+        for warning in &mut self.warnings {
+            let place = |row: usize| rows.partition_point(|&kept| kept < row);
+            let spans = warning.spans.iter().map(|span| Span { first: place(span.first), end: place(span.end) });
+            warning.spans = spans.filter(|span| span.first < span.end).collect();
+        }
+    }
+
     /// The samples `span` as a recording of their own (labels and time too; warnings stay behind).
     pub fn slice(&self, span: Span) -> Self {
         let range = span.first..span.end;

@@ -210,13 +210,19 @@ fn text_of_labview_is_a_table() {
     // Each channel has a clock; the second one is twice as fast and starts 0.2 s later.
     let fast = drawer(1400, 200.0);
     let head = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tMulti\n***End_of_Header***\t\n\t\nChannels\t2\t\t\t\nSamples\t700\t\t1360\t\nDate\t2026/11/01\t\t2026/11/01\t\nTime\t10:00:00.0\t\t10:00:00.2\t\nY_Unit_Label\tmm\t\tN\t\n***End_of_Header***\t\t\t\t\nX_Value\tPosition\tX_Value\tForce\tComment\n";
-    let rows = fast[40..].iter().enumerate().map(|(k, [t, _, force])| {
-        let first = samples.get(k).map_or("\t".to_owned(), |[t, q, _]| format!("{t:.3}\t{:.4}", 1e3 * q));
-        format!("{first}\t{:.3}\t{force:.6}\t\n", t - 0.2)
-    });
-    let text = head.to_owned() + &rows.collect::<String>();
-    let read = is_the_drawer("two clocks", text, r#"{"columns": {"q_m": "Position", "f_N": "Force"}}"#);
-    assert!(read.warnings.iter().any(|w| w.kind == "clock" && w.text.contains("Force")), "{:?}", read.warnings);
+    let rows = |[first_s, second_s]: [f64; 2]| {
+        let row = |(k, [t, _, force]): (usize, &Sample)| {
+            let first =
+                samples.get(k).map_or("\t".to_owned(), |[t, q, _]| format!("{:.3}\t{:.4}", first_s + t, 1e3 * q));
+            format!("{first}\t{:.3}\t{force:.6}\t\n", second_s + t)
+        };
+        fast[40..].iter().enumerate().map(row).collect::<String>()
+    };
+    let absolute = head.replace("X_Columns", "Time_Pref\tAbsolute\nX_Columns");
+    for text in [head.to_owned() + &rows([0.0, -0.2]), absolute + &rows([3.845e9, 3.845e9])] {
+        let read = is_the_drawer("two clocks", text, r#"{"columns": {"q_m": "Position", "f_N": "Force"}}"#);
+        assert!(read.warnings.iter().any(|w| w.kind == "clock" && w.text.contains("Force")), "{:?}", read.warnings);
+    }
 }
 
 #[test]

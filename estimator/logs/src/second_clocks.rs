@@ -68,12 +68,11 @@ pub fn on_the_logs_clock(
             return Err(refused(format!("the clock `{name}` that \"clocks\" needs does not increase in every row")));
         }
         let times: Vec<f64> = clock[..filled(clock)].iter().map(|t| t + second.offset_s).collect();
-        let (first, last) = (times[0], times[times.len() - 1]);
         let covered = resample::covered(&times, &main);
-        let rows = kept.iter_mut().zip(main.iter().zip(covered));
-        rows.for_each(|(kept, (t, covered))| *kept &= covered && (first..=last).contains(t));
+        kept.iter_mut().zip(covered).for_each(|(kept, covered)| *kept &= covered);
         if !kept.contains(&true) {
-            return Err(refused(apart(second, (first, last), &main, headers, time)));
+            let ends = (times[0], times[times.len() - 1]);
+            return Err(refused(apart(second, ends, &main, headers, time)));
         }
         moved.push(times);
     }

@@ -47,7 +47,9 @@ pub fn table(text: &[u8], path: &Path) -> Result<Measurement, LogError> {
     let rows = lines.take_while(|line| !line.trim().is_empty() && !line.contains(END));
     let mut rows: Vec<Vec<Cow<'_, str>>> =
         rows.map(|line| line.split(delimiter).map(|cell| Cow::Borrowed(cell.trim())).collect()).collect();
-    let columns = Columns::of(&names, &segment, &rows);
+    // Absolute times count from 1904 in every channel, relative ones from the channel's own start.
+    let began = (fact("Time_Pref") != "Absolute").then_some(&segment);
+    let columns = Columns::of(&names, began, &rows);
     for (row, cells) in rows.iter_mut().enumerate() {
         if let (false, true, Some(step), Some(time)) = (has_clock, is_clock(names[0]), step, cells.first_mut()) {
             *time = format!("{}", start + step * row as f64).replace('.', decimal).into();
@@ -83,17 +85,18 @@ fn is_clock(name: &str) -> bool {
 }
 
 impl Columns {
-    /// A further clock that holds the same times as the first one is left out.
-    fn of(names: &[&str], segment: &HashMap<String, Vec<String>>, rows: &[Vec<Cow<'_, str>>]) -> Self {
+    /// A further clock that holds the same times as the first one is left out. `began`: the head with the starts of the
+    /// channels, if their times count from there.
+    fn of(names: &[&str], began: Option<&HashMap<String, Vec<String>>>, rows: &[Vec<Cow<'_, str>>]) -> Self {
         let end = names.iter().position(|name| *name == "Comment").unwrap_or(names.len());
         let clocks: Vec<usize> = (0..end).filter(|&k| is_clock(names[k])).collect();
         let first = clocks.first().copied().unwrap_or(0);
-        let began = |channel: usize| {
+        let start_ns = |channel: usize| {
             // The cells above the clocks are empty, and so is that of the fact's name.
-            let cell = |name: &str| segment.get(name)?.get(channel - 1).filter(|cell| !cell.is_empty());
+            let cell = |name: &str| began?.get(name)?.get(channel - 1).filter(|cell| !cell.is_empty());
             calendar::parse(&format!("{} {}", cell("Date")?, cell("Time")?))
         };
-        let later_s = |channel: usize| match (began(first + 1), began(channel)) {
+        let later_s = |channel: usize| match (start_ns(first + 1), start_ns(channel)) {
             (Some(first), Some(own)) => 1e-9 * (own - first) as f64,
             _ => 0.0,
         };

@@ -24,8 +24,8 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Share of the variance that the shift leaves, 0 … 1.
-    pub fn left(&self) -> f64 {
+    /// Residual variance of the regression of one signal on the other, as a share of the variance, 0 … 1.
+    pub fn residual_share(&self) -> f64 {
         (1.0 - self.r * self.r).max(f64::EPSILON)
     }
 }

@@ -5,7 +5,6 @@ mod edges;
 mod grid;
 mod offset;
 mod refine;
-mod rows;
 mod shift;
 
 use crate::JOINED;
@@ -111,7 +110,8 @@ impl<'a> Other<'a> {
             return Err(self.refused(why.to_owned()));
         }
         let time = recording.time_s.clone().unwrap_or_default();
-        let kept = rows::shared(&time, &from.time_s);
+        let covered = resample::covered(&from.time_s, &time);
+        let kept: Vec<usize> = (0..time.len()).filter(|&row| covered[row]).collect();
         if kept.len() < 2 {
             let ends = |time: &[f64]| (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(0.0));
             let ((a, b), (c, d)) = (ends(&from.time_s), ends(&time));
@@ -121,7 +121,7 @@ impl<'a> Other<'a> {
             );
             return Err(self.refused(why));
         }
-        rows::keep(recording, &kept);
+        recording.keep(&kept);
         let to: Vec<f64> = kept.iter().map(|&row| time[row]).collect();
         for channel in new {
             if let Cells::Numbers(values) = resample::onto(&to, &from.time_s, &Cells::Numbers(channel.values.clone())) {

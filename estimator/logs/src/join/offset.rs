@@ -8,10 +8,10 @@ use crate::mcap::resample;
 
 /// Fewest samples of the slower signal in an overlap: a correlation of 0.28 (two standard errors) is chance with so many.
 const LEAST_SAMPLES: f64 = 50.0;
-/// Variance that another offset must leave, over that of the best one: the best one explains half of it. Twice as much refuses
-/// signals that share three quarters of their variance.
-const RIVAL_LEAVES: f64 = 2.0;
-/// Share of the variance below which nothing is told by what is left: filters, quanta, and rates of two devices differ so much.
+/// Least residual variance at another offset, over that at the best one: the best one explains half of it. Twice as much
+/// refuses signals that share three quarters of their variance.
+const RIVAL_RESIDUAL: f64 = 2.0;
+/// Residual share below which two offsets are not compared: filters, quanta, and rates of two devices differ so much.
 const MODEL_ERROR: f64 = 0.01;
 /// Probability up to which unrelated signals may agree as well at one of the offsets that were compared.
 const BY_CHANCE: f64 = 0.05;
@@ -65,11 +65,11 @@ pub fn estimate(own: Signal<'_>, other: Signal<'_>) -> Result<ClockOffset, Refus
     let seconds = |shift: f64| own_grid.start_s - other_grid.start_s + shift * step;
     let best = peaks.best;
     let unlike = Refusal::Unlike { offset_s: seconds(best.shift), correlation: best.r };
-    // A rival that leaves little more, or all that is left at any offset.
-    if best.left() * RIVAL_LEAVES > 1.0 {
+    // No offset explains enough for a comparison.
+    if best.residual_share() * RIVAL_RESIDUAL > 1.0 {
         return Err(unlike);
     }
-    let is_rival = |rival: &Peak| rival.left() < RIVAL_LEAVES * best.left().max(MODEL_ERROR);
+    let is_rival = |rival: &Peak| rival.residual_share() < RIVAL_RESIDUAL * best.residual_share().max(MODEL_ERROR);
     if let Some(rival) = peaks.rival.filter(is_rival) {
         return Err(Refusal::Ambiguous { offset_s: seconds(best.shift), rival_s: seconds(rival.shift) });
     }
@@ -84,7 +84,7 @@ pub fn estimate(own: Signal<'_>, other: Signal<'_>) -> Result<ClockOffset, Refus
     let [a, b] = overlap.series([best.shift, 0.0]);
     let independent = correlation::independent_samples(&a, &b);
     // Unrelated normal series agree so well with this probability (Fisher 1915), at one of the independent shifts.
-    let chance = best.left().powf(0.5 * (independent - 2.0).max(0.0));
+    let chance = best.residual_share().powf(0.5 * (independent - 2.0).max(0.0));
     let tries = (peaks.shifts as f64 * independent / a.len() as f64).max(1.0);
     if tries * chance > BY_CHANCE {
         return Err(unlike);
@@ -105,7 +105,7 @@ pub fn estimate(own: Signal<'_>, other: Signal<'_>) -> Result<ClockOffset, Refus
     })
 }
 
-/// The minimum with the ratio of the clocks, if that is significant and leaves less.
+/// The minimum with the ratio of the clocks, if the ratio is significant and lowers the residual.
 fn with_ratio(overlap: &Overlap<'_>, alone: Minimum) -> Option<Minimum> {
     let both = overlap.minimum(alone.shift, 2)?;
     let is_significant = both.shift[1].abs() > SIGNIFICANT * both.errors[1];
@@ -121,8 +121,8 @@ fn from_edges(pairs: &[(f64, f64)], half_sample_s: f64, correlation: f64) -> Opt
     let long = pairs.iter().map(|p| (p.1 - middle_s).powi(2)).sum::<f64>();
     let slope = pairs.iter().map(|p| (p.1 - middle_s) * (p.0 - p.1 - offset_s)).sum::<f64>() / long;
     let spread = |slope: f64, free: f64| {
-        let left = pairs.iter().map(|p| (p.0 - p.1 - offset_s - slope * (p.1 - middle_s)).powi(2)).sum::<f64>();
-        (left / (count - free).max(1.0)).sqrt()
+        let squares = pairs.iter().map(|p| (p.0 - p.1 - offset_s - slope * (p.1 - middle_s)).powi(2)).sum::<f64>();
+        (squares / (count - free).max(1.0)).sqrt()
     };
     let slope_error = spread(slope, 2.0) / long.sqrt();
     let is_tilted = pairs.len() >= LEAST_EDGES && slope.abs() > SIGNIFICANT * slope_error;

@@ -69,7 +69,7 @@ impl<'a> Overlap<'a> {
         })
     }
 
-    /// The log's signal less the other's, with the gain and bias that leave least.
+    /// Residuals of the log's signal against the other's, with gain and bias by least squares.
     fn residuals(&self, shift: Shift) -> Vec<f64> {
         let [own, other] = self.series(shift);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -62,10 +62,14 @@ pub fn gaps(name: &str, from: &[f64], to: &[f64]) -> Option<String> {
     ))
 }
 
-/// For each time of `to`, within the span of `from`: true if it lies in no gap of `from`. Both increase.
+/// For each time of `to`: true if it lies within the span of `from`, and in no gap of it. Both increase.
 pub fn covered(from: &[f64], to: &[f64]) -> Vec<bool> {
     let limit = GAP_PERIODS * period(from);
+    let (first, last) = (from.first().copied().unwrap_or(f64::NAN), from.last().copied().unwrap_or(f64::NAN));
     let is_covered = |&t: &f64| {
+        if !(first..=last).contains(&t) {
+            return false;
+        }
         let i = before(from, t);
         from[i] == t || from.get(i + 1).is_none_or(|next| next - from[i] <= limit)
     };

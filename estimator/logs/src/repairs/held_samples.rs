@@ -24,7 +24,7 @@ pub fn take_out(recording: &mut Recording) -> Option<Warning> {
         "{name} has a new value in every {every}th row only{rate} and repeats it in between: the {} rows of {count} without a new one are left out",
         count - kept.len()
     );
-    super::keep(recording, &kept);
+    recording.keep(&kept);
     let spans = vec![Span { first: 0, end: kept.len() }];
     Some(Warning { kind: "held-samples".to_owned(), column: Some(name), spans, text, ..Warning::default() })
 }

@@ -45,13 +45,5 @@ pub fn is_wanted(recording: &Recording, kind: &str) -> bool {
     !recording.meta.as_recorded.iter().any(|listed| listed == kind)
 }
 
-/// Leaves all rows but these out.
-fn keep(recording: &mut Recording, kept: &[usize]) {
-    let gathered = |values: &[f64]| kept.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    recording.time_s = recording.time_s.as_deref().map(gathered);
-    recording.channels.iter_mut().for_each(|channel| channel.values = gathered(&channel.values));
-    recording.labels = recording.labels.as_ref().map(|labels| labels.gathered(kept.iter().copied()));
-}
-
 #[cfg(test)]
 mod tests;

@@ -17,11 +17,11 @@ const CODES: [f64; 10] = [
     2_147_483_647.0,
     4_294_967_295.0,
 ];
-/// A number that stands for no value is entered and left by a leap of so many usual steps. Half as many also hold for
+/// Least step to and from a number that stands for no value, in multiples of the step quantile. Half of it also occurs in
 /// fast motion.
 const LEAP: f64 = 10.0;
-/// Steps up to this quantile are usual.
-const USUAL: f64 = 0.99;
+/// Level of the step quantile: one step in a hundred may be a spike or a gap.
+const STEP_LEVEL: f64 = 0.99;
 /// Largest share of rows that a number may replace. Beyond it, the number is the signal.
 const MOST: f64 = 0.5;
 
@@ -45,7 +45,7 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
     }
     if !found.is_empty() {
         let kept: Vec<usize> = (0..is_out.len()).filter(|&row| !is_out[row]).collect();
-        super::keep(recording, &kept);
+        recording.keep(&kept);
         // Another number may stand for no value beside the first.
         found.extend(take_out(recording));
     }
@@ -64,7 +64,7 @@ fn sentinel(channel: &Channel) -> Option<(f64, Vec<Span>)> {
         if count as f64 > MOST * values.len() as f64 {
             return None;
         }
-        let leap = LEAP * largest_usual_step(values, value);
+        let leap = LEAP * step_quantile(values, value);
         let is_far = |row: Option<usize>| row.and_then(|row| values.get(row)).map(|v| (v - value).abs() > leap);
         let fits = |span: &Span| {
             let (before, after) = (is_far(span.first.checked_sub(1)), is_far(Some(span.end)));
@@ -100,10 +100,11 @@ fn runs(values: &[f64], value: f64) -> Vec<Span> {
     spans
 }
 
-/// The largest usual step from row to row, without steps to and from a number; infinite if there is no other.
-fn largest_usual_step(values: &[f64], without: f64) -> f64 {
+/// 99 % quantile of the absolute differences of successive values that differ, except those next to the value `without`.
+/// Infinite if no other differ.
+fn step_quantile(values: &[f64], without: f64) -> f64 {
     let pairs = values.windows(2).filter(|w| w[0] != without && w[1] != without && w[0] != w[1]);
     let mut steps: Vec<f64> = pairs.map(|w| (w[1] - w[0]).abs()).collect();
-    let at = (USUAL * steps.len() as f64) as usize;
+    let at = (STEP_LEVEL * steps.len() as f64) as usize;
     if at >= steps.len() { f64::INFINITY } else { *steps.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
