@@ -5,7 +5,8 @@ mod sidecar;
 
 pub use labels::Labels;
 pub use sidecar::{
-    HandMeta, JoinedFile, Meta, OwnClock, Prior, Segment, SharedChannel, ShiftedClock, TimeWindow, VideoMeta,
+    HandMeta, JoinedFile, Meta, OwnClock, Prior, REPAIRS, Segment, SharedChannel, ShiftedClock, TARE_STEP, TimeWindow,
+    VideoMeta,
 };
 
 use schemars::JsonSchema;

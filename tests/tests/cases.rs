@@ -222,6 +222,7 @@ fn tare_jump() {
     let values: Vec<f64> = found.causes[0].parameters.iter().map(|p| p.value).collect();
     let has = |right: f64, off: f64| values.iter().any(|v| (v - right).abs() < off);
     assert!(has(-3.1, 0.1) && has(21.37, 0.05), "{values:?}");
+    is("tare-jump/one_step.csv", [1.2, 5.0, 1.5]);
 }
 
 #[test]

@@ -14,3 +14,4 @@ mod plausible;
 pub mod regression;
 pub mod segment;
 pub mod simulate;
+mod zero_jumps;

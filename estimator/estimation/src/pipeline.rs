@@ -5,6 +5,7 @@ use crate::identify::{barrel, block, crank, mechanism, needle, payload, priors, 
 use crate::plausible;
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, segment_by, task_of};
+use crate::zero_jumps;
 use foundation::cancellation;
 use foundation::estimate::{EstimateError, Fit, Parameter};
 use foundation::tasks::Thresholds;
@@ -48,8 +49,27 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
     analyse_prepared(recordings, &Prepared::default(), options)
 }
 
-/// [`analyse`] for the second time and on: `prepared` keeps the first one's results for the same recordings.
+/// [`analyse`] for the second time and on: `prepared` keeps the first one's results for the same recordings. Jumps of a force
+/// sensor's zero are taken out, with a warning.
 pub fn analyse_prepared(
+    recordings: &[Recording],
+    prepared: &Prepared,
+    options: &Options,
+) -> Result<Analysis, EstimateError> {
+    let mut found = analyse_as_recorded(recordings, prepared, options)?;
+    if matches!(found.task, Task::Mechanism | Task::Payload) {
+        // A mechanism need not be let go: its fit looks for the step itself. A payload is never without its load.
+        return Ok(found);
+    }
+    let jumps = zero_jumps::find(recordings, &found.segmentations);
+    if let Some(others) = zero_jumps::taken_out(recordings, &jumps) {
+        found = analyse_as_recorded(&others, &Prepared::default(), options)?;
+    }
+    found.fit.warnings.extend(jumps.iter().map(|jump| zero_jumps::said(jump, recordings)));
+    Ok(found)
+}
+
+fn analyse_as_recorded(
     recordings: &[Recording],
     prepared: &Prepared,
     options: &Options,

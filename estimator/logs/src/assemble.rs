@@ -1,9 +1,10 @@
 //! From the table to recordings: time, channels, notes.
 
 use super::errors::LogError;
-use super::fingerprint::Shared;
+use super::fingerprint::{Fingerprints, Shared};
 use super::origin::Dated;
 use super::plan::{Plan, Use};
+use super::runs::Apart;
 use super::table::{Group, Table};
 use super::{checks, clock, facts, repairs, runs, second_clocks, sidecar, units};
 use foundation::signal::chain::is_chain;
@@ -22,7 +23,7 @@ pub fn recordings(
 ) -> Result<Vec<Dated>, LogError> {
     let apart = runs::apart(std::mem::take(&mut table.groups), plan, headers, path)?;
     let windows = meta.windows();
-    let copies = if apart.by_column { table.fingerprints.copies() } else { Vec::new() };
+    let copies = copies(&table, plan, &apart);
     let mut said = said.to_vec();
     said.extend(apart.said.map(|text| note("runs", None, text)));
     let several = apart.runs.len() > 1;
@@ -62,6 +63,19 @@ pub fn recordings(
         return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }
     Ok(recordings)
+}
+
+/// Channels that two runs share. Runs by a column were compared while the file was read, those that are not selected included.
+fn copies(table: &Table, plan: &Plan, apart: &Apart) -> Vec<Shared> {
+    if apart.by_column && !plan.watched.is_empty() {
+        return table.fingerprints.copies(&plan.watched);
+    }
+    let known = plan.targets.iter().filter(|target| units::is_program_name(&target.name)).map(|target| target.column);
+    let known: Vec<usize> = known.filter(|column| !table.gappy_columns.contains(column)).collect();
+    let named = apart.runs.iter().filter_map(|(name, group)| {
+        Some((name.as_deref()?, known.iter().map(|&column| group.columns[column].as_slice()).collect()))
+    });
+    Fingerprints::of_runs(named).copies(&known)
 }
 
 /// Facts that hold for every recording of a file.
@@ -105,7 +119,7 @@ impl About<'_> {
         recording.warnings.extend(recording.time_s.as_deref().and_then(clock::unit_doubt));
         let repairs = repairs::repair(&mut recording);
         recording.warnings.extend(repairs);
-        let is_repaired = repairs::is_wanted(&recording, "spikes");
+        let is_repaired = recording.meta.repairs("spikes");
         recording.warnings.extend(checks::warnings_of(&recording, !is_repaired));
         recording.warnings.extend(checks::copied(&recording, self.plan, self.copies));
         Ok(recording)

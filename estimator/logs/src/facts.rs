@@ -1,8 +1,8 @@
 //! Facts that a sidecar may state: refusals in plain words, and doubts that become warnings.
 
-use super::repairs::KINDS;
 use super::units;
 use foundation::signal::wrench::doubtful_orientation;
+use haptics::recording::REPAIRS;
 use haptics::recording::{JoinedFile, Meta, OwnClock, Recording, Task, TimeWindow, Warning};
 use serde_json::Value;
 
@@ -94,8 +94,8 @@ fn entry(key: &str, value: &Value) -> Option<String> {
             must(k, v, pair, "two numbers in brackets, or null for a side that is open")
         }),
         "as_recorded" => {
-            let known = |list: &Vec<Value>| list.iter().all(|v| KINDS.iter().any(|kind| v == kind));
-            let wanted = format!("a list of some of {}", KINDS.join(", "));
+            let known = |list: &Vec<Value>| list.iter().all(|v| REPAIRS.iter().any(|kind| v == kind));
+            let wanted = format!("a list of some of {}", REPAIRS.join(", "));
             must(key, value, value.as_array().is_some_and(known), &wanted)
         }
         "select" => {

@@ -59,8 +59,8 @@ pub struct Fingerprints {
 /// A channel that two trials share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shared {
-    /// Index among the watched columns.
-    pub watched: usize,
+    /// Column of the table.
+    pub column: usize,
     /// The two trials, with the rows of each that the other has.
     pub trials: [(String, Vec<Span>); 2],
 }
@@ -115,13 +115,25 @@ impl Fingerprints {
         }
     }
 
-    /// Channels that repeat at least half of what moves in another trial's, or in their own.
-    pub fn copies(&self) -> Vec<Shared> {
+    /// Fingerprints of runs that were told apart after the file was read: their names, and the values of each column.
+    pub fn of_runs<'a>(runs: impl Iterator<Item = (&'a str, Vec<&'a [f64]>)>) -> Self {
+        let track = |values: &[f64]| {
+            let mut track = Track::new();
+            for value in values {
+                track.add(cell_hash(&value.to_bits().to_le_bytes()));
+            }
+            track
+        };
+        let tracks = |columns: Vec<&[f64]>| columns.into_iter().map(track).collect();
+        Self { trials: runs.map(|(name, columns)| (name.as_bytes().to_vec(), tracks(columns))).collect() }
+    }
+
+    /// Channels that repeat at least half of what moves in another trial's, or in their own. `watched`: their columns.
+    pub fn copies(&self, watched: &[usize]) -> Vec<Shared> {
         let trials: Vec<(&Vec<u8>, &Vec<Track>)> = self.trials.iter().collect();
-        let columns = trials.first().map_or(0, |(_, tracks)| tracks.len());
         let mut found = Vec::new();
-        for watched in 0..columns {
-            let kept = |trial: usize| &trials[trial].1[watched].kept;
+        for (index, &column) in watched.iter().enumerate() {
+            let kept = |trial: usize| trials[trial].1.get(index).map_or(&[][..], |track| track.kept.as_slice());
             // The first trial that has a hash stands for all.
             let mut first: HashMap<u64, (usize, u32)> = HashMap::new();
             let mut pairs: BTreeMap<(usize, usize), [Vec<u32>; 2]> = BTreeMap::new();
@@ -138,7 +150,7 @@ impl Fingerprints {
             for ((a, b), [one, two]) in pairs {
                 if two.len() >= LEAST && 2 * two.len() >= kept(a).len().min(kept(b).len()) {
                     let text = |trial: usize| String::from_utf8_lossy(trials[trial].0).into_owned();
-                    found.push(Shared { watched, trials: [(text(a), spans(one)), (text(b), spans(two))] });
+                    found.push(Shared { column, trials: [(text(a), spans(one)), (text(b), spans(two))] });
                 }
             }
         }
@@ -171,7 +183,7 @@ mod tests {
             let keys = vec![(trial.to_string().into_bytes(), cells.len())];
             all.extend(1, &Marks { keys, hashes: cells.iter().map(|cell| cell_hash(&cell.to_le_bytes())).collect() });
         }
-        all.copies()
+        all.copies(&[0])
     }
 
     fn noise(rows: u64, seed: u64) -> Vec<u64> {

@@ -177,6 +177,11 @@ fn a_channel_copied_from_another_trial_is_found_also_when_only_one_is_selected()
     assert!(copied[0].column.as_deref() == Some("tau_Nm") && copied[0].text.contains("trial 0"));
     let all = folder.load_meta(&table, r#"{"columns":{"trial":"run"}}"#).expect("loads");
     assert!(all[1].warnings.is_empty() && all[0].warnings.len() == 1);
+    // The same runs, told by their clock.
+    let lines = table.lines().map(|line| line.split_once(',').map_or("", |(_, rest)| rest));
+    let apart = Folder::new().load(lines.collect::<Vec<_>>().join("\n")).expect("loads");
+    let said = |log: &Recording| log.warnings.iter().filter(|w| w.kind == "copied-channel").count();
+    assert_eq!(apart.iter().map(said).collect::<Vec<_>>(), [1, 0, 1]);
 }
 
 #[test]

@@ -91,7 +91,7 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
-    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`.
+    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`, `tare-step`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
     pub as_recorded: Vec<String>,
@@ -238,7 +238,17 @@ pub struct Prior {
     pub std: f64,
 }
 
+/// Kinds of repairs, by their names in `as_recorded`: those on loading, and that of a fit.
+pub const REPAIRS: [&str; 6] = ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes", TARE_STEP];
+/// The repair of a step in the zero of a force sensor.
+pub const TARE_STEP: &str = "tare-step";
+
 impl Meta {
+    /// True unless the repairs of this kind are switched off.
+    pub fn repairs(&self, kind: &str) -> bool {
+        !self.as_recorded.iter().any(|listed| listed == kind)
+    }
+
     /// The windows of time that are used; none when all of the recording is.
     pub fn windows(&self) -> Vec<TimeWindow> {
         if self.from_s.is_none() && self.to_s.is_none() {

@@ -305,9 +305,9 @@ pub fn copied(recording: &Recording, plan: &Plan, copies: &[Shared]) -> Vec<Warn
             && plan.select.iter().all(|w| w.texts.iter().any(|s| parts.contains(&s.as_str())))
     };
     let mut found = Vec::new();
-    for Shared { watched, trials: [a, b] } in copies {
+    for Shared { column, trials: [a, b] } in copies {
         let mine = [(a, b), (b, a)].into_iter().find(|(own, _)| is_mine(&own.0));
-        let target = plan.targets.iter().find(|t| t.column == plan.watched[*watched]);
+        let target = plan.targets.iter().find(|t| t.column == *column);
         let (Some(((_, spans), (other, _))), Some(target)) = (mine, target) else { continue };
         let rows: usize = spans.iter().map(|span| span.end - span.first).sum();
         found.push(Warning {

@@ -8,10 +8,7 @@ mod sentinels;
 mod wrapped_angles;
 
 use super::checks;
-use haptics::recording::{Recording, Warning};
-
-/// Kinds of the repairs.
-pub const KINDS: [&str; 5] = ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes"];
+use haptics::recording::{REPAIRS, Recording, Warning};
 
 /// A repair, with the warnings about it.
 type Step = fn(&mut Recording) -> Vec<Warning>;
@@ -20,17 +17,17 @@ type Step = fn(&mut Recording) -> Vec<Warning>;
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
     let steps: [(&str, Step); 4] = [
-        (KINDS[0], sentinels::take_out),
-        (KINDS[1], |recording| bursts::spread(recording).into_iter().collect()),
-        (KINDS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
-        (KINDS[3], wrapped_angles::unwrap),
+        (REPAIRS[0], sentinels::take_out),
+        (REPAIRS[1], |recording| bursts::spread(recording).into_iter().collect()),
+        (REPAIRS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
+        (REPAIRS[3], wrapped_angles::unwrap),
     ];
     for (kind, step) in steps {
-        if is_wanted(recording, kind) {
+        if recording.meta.repairs(kind) {
             found.extend(step(recording));
         }
     }
-    if is_wanted(recording, KINDS[4])
+    if recording.meta.repairs(REPAIRS[4])
         && let Some((other, said)) = checks::repaired(recording)
     {
         recording.channels = other.channels;
@@ -38,11 +35,6 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     }
     found.extend(integrated::complete(recording));
     found
-}
-
-/// True unless the sidecar switches the repairs of a kind off.
-pub fn is_wanted(recording: &Recording, kind: &str) -> bool {
-    !recording.meta.as_recorded.iter().any(|listed| listed == kind)
 }
 
 #[cfg(test)]

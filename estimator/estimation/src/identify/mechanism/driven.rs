@@ -79,6 +79,9 @@ impl<'a> Solved<'a> {
         (mut seen, can_hang): (Shown, bool),
     ) -> Result<Self, EstimateError> {
         let swing = if can_hang && seen.fitted == BASE { Swing::of(raws, pieces, known)? } else { None };
+        if swing.is_none() && pieces.iter().any(|piece| piece.zero_step.is_some()) {
+            seen.fitted.push(Term::ZeroStep);
+        }
         let gravity = match &swing {
             Some(_) => Some(Gravity::Present(vec![Term::GravitySine, Term::GravityCosine])),
             None if can_hang => Some(gravity::decide(pieces, &seen.fitted, known)?),
@@ -151,7 +154,7 @@ impl<'a> Solved<'a> {
             leave_out_what_is_unsure(&mut result);
         }
         result.correlated = vec![material.correlated()];
-        result.quality = quality(&self.pieces, system, solution.rms, coordinate, known);
+        result.quality = quality(&self.pieces, system, solution, coordinate, known);
         result.warnings = self.warnings();
         result
     }
@@ -204,8 +207,16 @@ fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
     terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
 }
 
-/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %.
-fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
+/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %. A step of the zero is taken from the whole fit, because
+/// one part may be without it.
+fn quality(
+    pieces: &[Piece],
+    system: &System,
+    fit: &LinearFit,
+    coordinate: Coordinate,
+    known: &Known,
+) -> Option<Quality> {
+    let system = system.without(Term::ZeroStep, fit);
     let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
     let late = system.part(|place| place >= 1.0 - HELD_OUT);
     let n = late.target.len();
@@ -222,7 +233,7 @@ fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, 
     debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
     let force = root(nothing_known.target.iter().map(|f| f * f).sum());
     Some(Quality {
-        rms,
+        rms: fit.rms,
         heldout_rms,
         heldout_relative: if force > 0.0 { heldout_rms / force } else { f64::NAN },
         heldout_share: HELD_OUT,

@@ -27,12 +27,13 @@ mod zero_step;
 pub use driven::contradicts_its_clock;
 
 use crate::constraint;
+use crate::zero_jumps;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};
 use foundation::signal::chain::is_chain;
 use foundation::words::amount;
 pub use free::{Stated, stated};
 use haptics::law::Coordinate;
-use haptics::recording::Recording;
+use haptics::recording::{Recording, TARE_STEP};
 use haptics::world::MechanismPath;
 use parameters::{Known, Term};
 pub use report::{OBJECT, PHASE};
@@ -87,11 +88,12 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         let text = "some recordings move along a line and others about an axis; fit each mechanism by itself";
         return Err(EstimateError::Other(text.to_owned()));
     }
-    let each = pieces_of_each(&raws, &usable)?;
+    let mut each = pieces_of_each(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
-    let steps =
-        each.iter().zip(&usable).filter_map(|(own, (r, _))| stepped(own, &r.name, (raws[0].coordinate, &known)));
-    let steps: Vec<String> = steps.collect();
+    let mut steps = Vec::new();
+    for (own, (recording, _)) in each.iter_mut().zip(&usable) {
+        steps.extend(take_step_out(own, recording, (raws[0].coordinate, &known)));
+    }
     let pieces = each.concat();
     let mut result = if raws.iter().all(|r| r.force.is_some()) {
         driven::fit(&raws, &pieces, &known, recordings)?
@@ -111,19 +113,25 @@ fn pieces_of_each(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> 
     raws.iter().zip(of).map(|(raw, (recording, _))| signals::pieces(raw, &recording.name)).collect()
 }
 
-/// A sentence if the force of a recording is as after a change of the sensor's zero in its middle.
-fn stepped(pieces: &[Piece], name: &str, (coordinate, known): (Coordinate, &Known)) -> Option<String> {
+/// Notes the step of the zero of a recording's force in its segments, unless the sidecar forbids it; a sentence about it.
+fn take_step_out(pieces: &mut [Piece], of: &Recording, (coordinate, known): (Coordinate, &Known)) -> Option<String> {
     let is_linear = coordinate == Coordinate::Linear;
     let gravity: &[Term] = if is_linear { &[] } else { &[Term::GravitySine, Term::GravityCosine] };
     let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].into_iter().chain(gravity.iter().copied());
     let terms: Vec<Term> = all.filter(|term| known.value(*term).is_none()).collect();
-    let step =
-        pieces.iter().all(|p| p.force.is_some()).then(|| zero_step::zero_step(pieces, &terms, known)).flatten()?;
+    let is_driven = pieces.iter().all(|p| p.force.is_some());
+    let step = is_driven.then(|| zero_step::zero_step(pieces, &terms, known)).flatten()?;
+    if of.meta.repairs(TARE_STEP) {
+        for piece in pieces {
+            piece.zero_step = Some(step);
+        }
+    }
     Some(format!(
-        "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor: see what `diagnose` says, or fit the parts before and after apart",
-        name,
+        "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor; {}",
+        of.name,
         amount(step.size, if is_linear { "N" } else { "N m" }),
-        step.time_s
+        step.time_s,
+        zero_jumps::fate(of)
     ))
 }
 

@@ -2,8 +2,8 @@
 
 use super::signals::Piece;
 use haptics::law::{
-    Coordinate, CoulombFriction, EccentricMass, ForceBias, Inertia, Law, MAX_PARAMETERS, Motion, ReturnSpring,
-    ViscousFriction,
+    Coordinate, CoulombFriction, EccentricMass, ForceBias, ForceStep, Inertia, Law, MAX_PARAMETERS, Motion,
+    ReturnSpring, ViscousFriction,
 };
 use haptics::recording::Meta;
 
@@ -28,6 +28,8 @@ pub enum Term {
     GravityCosine,
     /// A spring: only ever a rival of the gravity moment.
     Spring,
+    /// The step of a segment's force channel, in shares of [`Piece::zero_step`]: 1 if its size is right.
+    ZeroStep,
 }
 
 impl Term {
@@ -41,6 +43,7 @@ impl Term {
             Self::GravitySine => (&EccentricMass, 0),
             Self::GravityCosine => (&EccentricMass, 1),
             Self::Spring => (&ReturnSpring, 0),
+            Self::ZeroStep => (&ForceStep, 0),
         }
     }
 
@@ -58,6 +61,7 @@ impl Term {
             Self::Offset => "offset_Nm",
             Self::GravitySine | Self::GravityCosine => "gravity_moment_Nm",
             Self::Spring => "stiffness",
+            Self::ZeroStep => "zero_step",
         }
     }
 
@@ -84,7 +88,7 @@ impl Term {
         match self {
             Self::Inertia => [0.0, 0.0, 1.0],
             Self::Viscous => [0.0, 1.0, 0.0],
-            Self::Coulomb | Self::Offset => [0.0; 3],
+            Self::Coulomb | Self::Offset | Self::ZeroStep => [0.0; 3],
             Self::GravitySine => [position.cos(), 0.0, 0.0],
             Self::GravityCosine => [-position.sin(), 0.0, 0.0],
             Self::Spring => [1.0, 0.0, 0.0],
@@ -94,6 +98,11 @@ impl Term {
     /// The regressor along a segment, filtered like the force: functions of filtered motion are filtered already, the
     /// sign of the motion is not.
     pub fn column(self, piece: &Piece) -> Vec<f64> {
+        if self == Self::ZeroStep {
+            let after =
+                |time_s| piece.zero_step.map_or(0.0, |step| if time_s >= step.time_s { step.size } else { 0.0 });
+            return piece.filter(&piece.times_s().map(after).collect::<Vec<f64>>());
+        }
         let at = |(motion, &direction): (&Motion, &f64)| self.regressor(&Motion { direction, ..*motion });
         let column: Vec<f64> = piece.motion.iter().zip(&piece.direction).map(at).collect();
         if self == Self::Coulomb { piece.filter(&column) } else { column }

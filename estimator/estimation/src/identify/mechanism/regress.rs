@@ -141,6 +141,17 @@ impl System {
         self.filtered(&kept)
     }
 
+    /// The system with the effect of a term, as fitted, taken from the target.
+    pub fn without(&self, term: Term, fit: &LinearFit) -> Self {
+        let mut rest = self.clone();
+        if let Some(j) = rest.terms.iter().position(|t| *t == term) {
+            rest.terms.remove(j);
+            let column = rest.columns.remove(j);
+            rest.target.iter_mut().zip(column).for_each(|(target, c)| *target -= fit.values[j] * c);
+        }
+        rest
+    }
+
     /// Away from reversals, where the filter has not mixed the two directions; everything, when little is left.
     fn steady(&self) -> Self {
         let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return self.clone() };

@@ -1,6 +1,7 @@
 //! From a recording to the coordinate of a mechanism, its derivatives and the force along it: one zero-phase filter for all.
 
 use super::resampling::Resampled;
+use super::zero_step::ZeroStep;
 use crate::identify::limits::LEAST_SEGMENT_ROWS;
 use crate::regression::linear::COLUMN_NOISE_UNCERTAINTY;
 use foundation::estimate::EstimateError;
@@ -79,6 +80,8 @@ pub struct Piece {
     pub direction: Vec<f64>,
     /// Filtered force, N or N m.
     pub force: Option<Vec<f64>>,
+    /// Step of the force channel's zero somewhere in the recording.
+    pub zero_step: Option<ZeroStep>,
     /// Standard deviation of the noise left on the filtered force, N or N m, as expected of fast noise.
     pub force_noise: f64,
     /// Samples that are neither at an end nor saturated.
@@ -106,6 +109,11 @@ impl Piece {
     /// rate at which the steps pass: between nothing and as much as white noise of that size.
     pub fn noise_known_to(&self) -> f64 {
         COLUMN_NOISE_UNCERTAINTY + 0.5 * self.from_resolution
+    }
+
+    /// Times of the samples, s.
+    pub fn times_s(&self) -> impl Iterator<Item = f64> {
+        (0..self.motion.len()).map(|k| self.start_s + k as f64 * self.period_s)
     }
 
     /// Filtered force, N or N m; zero for a free motion.
@@ -264,6 +272,7 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64, share: f64) -> Piece 
             .as_ref()
             .map_or(0.0, |force| derived_noise(even.noise(&force[first..end]), rate_hz, choice.cutoff_hz, 0)),
         force: raw_force.as_ref().map(|f| low_pass(f, rate_hz, choice.cutoff_hz)),
+        zero_step: None,
         usable: (0..n).map(|i| i >= edge && i + edge < n && !saturated[i]).collect(),
         period_s: even.period_s,
         cutoff_hz: choice.cutoff_hz,

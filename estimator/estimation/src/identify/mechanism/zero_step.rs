@@ -2,7 +2,7 @@
 //! recording.
 
 use super::parameters::{Known, Term};
-use super::regress::System;
+use super::regress::{System, WEIGHTING_ROUNDS};
 use super::signals::Piece;
 use crate::identify::limits::LEAST_SEGMENT_ROWS;
 use nalgebra::{DMatrix, DVector};
@@ -13,7 +13,6 @@ const OF_POWER: f64 = 0.5;
 /// Least share of a step that the model's own terms do not describe.
 /// Choice: not varied. A step at an end, and one that goes with the place, have less.
 const STEP_ALONE: f64 = 0.3;
-
 /// The step: when, from the clock of the recording, and how large, N or N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ZeroStep {
@@ -28,13 +27,25 @@ pub struct ZeroStep {
 /// and stays there feels a step.
 pub fn zero_step(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<ZeroStep> {
     let system = System::stack(pieces, terms, known, Piece::applied_force);
-    let rows = system.target.len();
-    if rows < LEAST_SEGMENT_ROWS {
+    if system.target.len() < LEAST_SEGMENT_ROWS {
         return None;
     }
-    let of = |piece: &Piece| (0..piece.motion.len()).map(|k| piece.start_s + k as f64 * piece.period_s).collect();
-    let time_s = System::stack(pieces, &[], &Known::default(), of).target;
-    let weights = system.solve().ok().and_then(|fit| system.weights(&fit)).unwrap_or_else(|| vec![1.0; rows]);
+    let time_s = System::stack(pieces, &[], &Known::default(), |piece| piece.times_s().collect()).target;
+    // The weights follow from a fit that the step spoils, so the next round takes it from the fit.
+    let (mut rest, mut found) = (system.clone(), (None, false));
+    for _ in 0..WEIGHTING_ROUNDS {
+        let weights = rest.solve().ok().and_then(|fit| rest.weights(&fit));
+        found = scan(&system, &time_s, &weights.unwrap_or_else(|| vec![1.0; time_s.len()]));
+        let step: ZeroStep = found.0?;
+        let after = |t: f64| if t >= step.time_s { step.size } else { 0.0 };
+        rest.target = system.target.iter().zip(&time_s).map(|(force, t)| force - after(*t)).collect();
+    }
+    found.0.filter(|_| found.1)
+}
+
+/// The best step beside the terms of the system; true if it takes enough of the residual's power, and more than a drift does.
+fn scan(system: &System, time_s: &[f64], weights: &[f64]) -> (Option<ZeroStep>, bool) {
+    let rows = time_s.len();
     let root = |i: usize| weights[i].sqrt();
     let place: Vec<f64> = system.motion.iter().map(|(position, _)| *position).collect();
     let columns: Vec<&Vec<f64>> = system.columns.iter().chain([&place]).collect();
@@ -63,7 +74,7 @@ pub fn zero_step(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<Zero
             best = (taken, Some(ZeroStep { time_s: time_s[i], size: product / alone }));
         }
     }
-    best.1.filter(|_| best.0 > (OF_POWER * residual.norm_squared()).max(by_ramp))
+    (best.1, best.0 > (OF_POWER * residual.norm_squared()).max(by_ramp))
 }
 
 #[cfg(test)]
@@ -97,6 +108,7 @@ mod tests {
             motion,
             direction,
             force: Some(force),
+            zero_step: None,
             force_noise: 0.02,
             period_s: PERIOD_S,
             cutoff_hz: 20.0,
