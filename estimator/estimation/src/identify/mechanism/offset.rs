@@ -8,7 +8,7 @@ use foundation::estimate::{Fit, Parameter};
 
 /// Largest relative difference of two forces by rounding.
 /// Choice: halved or doubled, none of 5 answers changes.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The force that stands in every sample of all recordings; `None` where it changes.
 fn level(raws: &[Raw]) -> Option<f64> {

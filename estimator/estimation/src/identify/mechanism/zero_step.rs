@@ -1,6 +1,7 @@
 //! A step in what the fit leaves of the force: somebody zeroed the force sensor, or knocked it, in the middle of a
 //! recording.
 
+use super::offset::ROUNDING;
 use super::parameters::{Known, Term};
 use super::regress::{System, WEIGHTING_ROUNDS};
 use super::signals::Piece;
@@ -57,6 +58,11 @@ fn scan(system: &System, time_s: &[f64], weights: &[f64]) -> (Option<ZeroStep>, 
     let residual = beside(&|i| system.target[i]);
     let ramp = beside(&|i| time_s[i] - time_s[0]);
     let by_ramp = ramp.dot(&residual).powi(2) / ramp.norm_squared().max(f64::MIN_POSITIVE);
+    // A residual of rounding errors holds no step.
+    let weighted = DVector::from_fn(rows, |i, _| root(i) * system.target[i]);
+    if residual.norm() <= ROUNDING * weighted.norm() {
+        return (None, false);
+    }
     // From the last row on: sums over the rows after a step.
     let whole: f64 = weights.iter().sum();
     let (mut product, mut weight, mut shared) = (0.0, 0.0, DVector::zeros(own.ncols()));
@@ -66,7 +72,8 @@ fn scan(system: &System, time_s: &[f64], weights: &[f64]) -> (Option<ZeroStep>, 
         weight += weights[i];
         shared += root(i) * own.row(i).transpose();
         let alone = weight - shared.norm_squared();
-        if alone < STEP_ALONE * weight * (1.0 - weight / whole) || alone <= 0.0 {
+        if i.min(rows - i) < LEAST_SEGMENT_ROWS || alone < STEP_ALONE * weight * (1.0 - weight / whole) || alone <= 0.0
+        {
             continue;
         }
         let taken = product * product / alone;
