@@ -53,3 +53,6 @@ pub(super) const SEARCH_STEPS: usize = 60;
 /// Number of steps of the golden section after the coarse search.
 /// Derived: 0.618⁴⁰ = 4e-9 of the bracket remains.
 pub(super) const GOLDEN_STEPS: usize = 40;
+/// Largest relative difference of two forces by rounding.
+/// Choice: halved or doubled, none of 5 answers changes.
+pub(super) const ROUNDING: f64 = 1e-9;

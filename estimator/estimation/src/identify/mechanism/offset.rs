@@ -4,11 +4,8 @@ use super::parameters::{Known, Term};
 use super::regress::Shown;
 use super::report::{OBJECT, push_known};
 use super::signals::{Piece, Raw};
+use crate::identify::limits::ROUNDING;
 use foundation::estimate::{Fit, Parameter};
-
-/// Largest relative difference of two forces by rounding.
-/// Choice: halved or doubled, none of 5 answers changes.
-pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The force that stands in every sample of all recordings; `None` where it changes.
 fn level(raws: &[Raw]) -> Option<f64> {

@@ -1,11 +1,10 @@
 //! A step in what the fit leaves of the force: somebody zeroed the force sensor, or knocked it, in the middle of a
 //! recording.
 
-use super::offset::ROUNDING;
 use super::parameters::{Known, Term};
 use super::regress::{System, WEIGHTING_ROUNDS};
 use super::signals::Piece;
-use crate::identify::limits::LEAST_SEGMENT_ROWS;
+use crate::identify::limits::{LEAST_SEGMENT_ROWS, ROUNDING};
 use nalgebra::{DMatrix, DVector};
 
 /// Share of the residual's power that a step takes at least. Structured errors that wander are not one step.
