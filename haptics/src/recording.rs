@@ -5,8 +5,8 @@ mod sidecar;
 
 pub use labels::Labels;
 pub use sidecar::{
-    HandMeta, JoinedFile, Meta, OwnClock, Prior, REPAIRS, Segment, SharedChannel, ShiftedClock, TARE_STEP, TimeWindow,
-    VideoMeta,
+    CLOCK_OFFSET, HandMeta, JoinedFile, Meta, OwnClock, Prior, REPAIRS, Segment, SharedChannel, ShiftedClock,
+    TARE_STEP, TimeWindow, VideoMeta,
 };
 
 use schemars::JsonSchema;
@@ -126,6 +126,9 @@ pub struct Warning {
 /// Entries of a sidecar: an object as in the sidecar itself, with null for a value that only the user knows.
 pub type Suggested = serde_json::Map<String, serde_json::Value>;
 
+/// Kind of the warning that a channel was put on the clock of another.
+pub const RESAMPLED: &str = "resampled";
+
 /// One recording: equal-length channels, in SI units, with its sidecar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
@@ -171,6 +174,11 @@ impl Recording {
         let middle = steps.len() / 2;
         let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
         Some(1.0 / *median)
+    }
+
+    /// True if channels of several clocks were put on one.
+    pub fn has_several_clocks(&self) -> bool {
+        self.warnings.iter().any(|warning| warning.kind == RESAMPLED)
     }
 
     /// Length in seconds; `None` for a clockless log.

@@ -204,6 +204,7 @@ fn space_separated() {
 #[test]
 fn sparse_table() {
     is_the_drawer("sparse-table/force_every_fifth.csv");
+    is_the_drawer("sparse-table/interleaved.csv");
     let Some(all) = read("sparse-table/interleaved.csv") else { return };
     assert!(all[0].warnings.iter().any(|w| w.text.contains("the clock is that of")), "{:?}", all[0].warnings);
 }

@@ -221,7 +221,7 @@ fn text_of_labview_is_a_table() {
     let absolute = head.replace("X_Columns", "Time_Pref\tAbsolute\nX_Columns");
     for text in [head.to_owned() + &rows([0.0, -0.2]), absolute + &rows([3.845e9, 3.845e9])] {
         let read = is_the_drawer("two clocks", text, r#"{"columns": {"q_m": "Position", "f_N": "Force"}}"#);
-        assert!(read.warnings.iter().any(|w| w.kind == "clock" && w.text.contains("Force")), "{:?}", read.warnings);
+        assert!(read.warnings.iter().any(|w| w.kind == "resampled" && w.text.contains("Force")), "{:?}", read.warnings);
     }
 }
 

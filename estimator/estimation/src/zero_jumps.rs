@@ -9,7 +9,7 @@ use foundation::tasks::SystemState;
 use foundation::words::amount;
 use haptics::recording::{Recording, TARE_STEP};
 
-/// Least number of samples of a free phase, and the share of them that is left out at either end.
+/// Least number of samples of a free phase.
 /// Choice: not varied.
 const LEAST_SAMPLES: usize = 50;
 /// Change of a level over the noise of one sample.
@@ -73,6 +73,7 @@ fn levels(force: &[f64], segmentation: &Segmentation) -> Vec<Level> {
     let long = free.filter(|s| s.end.min(force.len()) >= s.first + LEAST_SAMPLES);
     long.map(|s| {
         let (first, end) = (s.first, s.end.min(force.len()));
+        // Near its ends a finger may touch already.
         let margin = (end - first) / 5;
         let inner = &force[first + margin..end - margin];
         let median_n = percentile(&mut inner.to_vec(), 0.5);
@@ -111,17 +112,17 @@ pub fn said(jump: &ZeroJump, recordings: &[Recording]) -> String {
         None => format!("row {}", jump.row + 1),
     };
     let (channel, size) = (&jump.channel, amount(jump.size_n, "N"));
-    let what = fate(recording);
+    let what = fate(recording, TARE_STEP, "step");
     format!(
         "{}: the zero of {channel} jumps by {size} at {at}, as after a tare or a knock of its sensor; {what}",
         recording.name
     )
 }
 
-/// The fate of a step, for a sentence.
-pub fn fate(recording: &Recording) -> String {
-    if recording.meta.repairs(TARE_STEP) {
-        return format!("the fit takes the step out (\"as_recorded\": [\"{TARE_STEP}\"] in the sidecar leaves it in)");
+/// The fate of a defect, for a sentence. `kind`: of its repair.
+pub fn fate(recording: &Recording, kind: &str, defect: &str) -> String {
+    if recording.meta.repairs(kind) {
+        return format!("the fit takes the {defect} out (\"as_recorded\": [\"{kind}\"] in the sidecar leaves it in)");
     }
-    "the step is left in, as the sidecar says".to_owned()
+    format!("the {defect} is left in, as the sidecar says")
 }

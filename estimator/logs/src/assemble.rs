@@ -9,7 +9,7 @@ use super::table::{Group, Table};
 use super::{checks, clock, facts, repairs, runs, second_clocks, sidecar, units};
 use foundation::signal::chain::is_chain;
 use foundation::signal::wrench::is_turned_sensor;
-use haptics::recording::{Channel, Meta, Recording, TimeWindow, Warning};
+use haptics::recording::{Channel, Meta, RESAMPLED, Recording, TimeWindow, Warning};
 use std::path::Path;
 
 /// One recording for every group of the table. `said`: warnings of the format's reader.
@@ -32,10 +32,9 @@ pub fn recordings(
     let mut used: Vec<TimeWindow> = Vec::new();
     for (trial, mut group) in apart.runs {
         let doubts = second_clocks::doubts(&group, plan, headers);
-        let mut about_time = second_clocks::on_the_logs_clock(&mut group, plan, headers, path)?;
-        about_time.extend(clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers));
-        let clock::Times { time_s, said: said_of_time, origin } = clock::times(&mut group, plan, meta, headers, path)?;
-        about_time.extend(said_of_time);
+        let mut resampled = second_clocks::on_the_logs_clock(&mut group, plan, headers, path)?;
+        resampled.extend(clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers));
+        let clock::Times { time_s, said: about_time, origin } = clock::times(&mut group, plan, meta, headers, path)?;
         let ends = time_s.as_ref().and_then(|time| Some((*time.first()?, *time.last()?)));
         span_s = ends.map(|(a, b)| span_s.map_or((a, b), |(c, d)| (f64::min(a, c), f64::max(b, d)))).or(span_s);
         for (window, group, time_s) in runs::within(&windows, (group, time_s), path)? {
@@ -51,7 +50,8 @@ pub fn recordings(
             let about = About { plan, meta, path, headers, copies: &copies, table: &table };
             let name = names.iter().fold(String::new(), |all, name| format!("{all}, {name}"));
             let mut made = about.recording(group, (trial, name), time_s)?;
-            let clock = about_time.iter().map(|text| note("clock", Some("t_s"), text.clone()));
+            let worded = |kind: &'static str| move |text: &String| note(kind, Some("t_s"), text.clone());
+            let clock = resampled.iter().map(worded(RESAMPLED)).chain(about_time.iter().map(worded("clock")));
             made.warnings.splice(0..0, said.iter().cloned().chain(clock).chain(doubts.clone()));
             recordings.push(Dated { recording: made, origin });
         }

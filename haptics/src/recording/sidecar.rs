@@ -91,7 +91,8 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
-    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`, `tare-step`.
+    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`, `tare-step`,
+    /// `clock-offset`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
     pub as_recorded: Vec<String>,
@@ -238,10 +239,13 @@ pub struct Prior {
     pub std: f64,
 }
 
-/// Kinds of repairs, by their names in `as_recorded`: those on loading, and that of a fit.
-pub const REPAIRS: [&str; 6] = ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes", TARE_STEP];
+/// Kinds of repairs, by their names in `as_recorded`: those on loading, and those of a fit.
+pub const REPAIRS: [&str; 7] =
+    ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes", TARE_STEP, CLOCK_OFFSET];
 /// The repair of a step in the zero of a force sensor.
 pub const TARE_STEP: &str = "tare-step";
+/// The repair of a lag between channels with clocks of their own.
+pub const CLOCK_OFFSET: &str = "clock-offset";
 
 impl Meta {
     /// True unless the repairs of this kind are switched off.

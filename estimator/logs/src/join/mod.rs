@@ -13,7 +13,7 @@ use crate::mcap::resample;
 use crate::origin::Dated;
 use crate::raw::Cells;
 use crate::{NO_CLOCK, NO_KNOWN_COLUMN, units};
-use haptics::recording::{Channel, JoinedFile, Recording, Warning};
+use haptics::recording::{Channel, JoinedFile, RESAMPLED, Recording, Warning};
 use std::path::{Path, PathBuf};
 
 /// The recordings of a log, with the channels of the files that its sidecar joins. `path`: the log. `read`: reads another
@@ -140,7 +140,7 @@ impl<'a> Other<'a> {
         let about = |kind: &str, text: String| Warning { kind: kind.to_owned(), text, ..Warning::default() };
         let joined = format!("`{name}` is joined: {}; {} of {rows} rows lie within its times", from.said, to.len());
         let put = resample::describe(&name, &from.time_s, to);
-        let mut said = vec![about(JOINED, joined), about("resampled", put)];
+        let mut said = vec![about(JOINED, joined), about(RESAMPLED, put)];
         if resample::is_slower(&from.time_s, to) {
             let text = format!(
                 "`{name}` is slower than the log: its values between samples are interpolated, so standard errors come out \

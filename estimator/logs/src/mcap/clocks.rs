@@ -7,7 +7,7 @@ use super::source::{Source, note};
 use super::stamps::is_increasing;
 use crate::errors::LogError;
 use crate::raw::{Cells, Raw};
-use haptics::recording::{Meta, Warning};
+use haptics::recording::{Meta, RESAMPLED, Warning};
 use std::path::Path;
 
 /// An extra topic may shorten the recording by this share; one that shortens it more is left out.
@@ -222,6 +222,6 @@ fn merge(
     if cut > 0 {
         said.push(format!("{cut} samples that not all topics cover are left out"));
     }
-    notes.push(note("resampled", said.join("; ")));
+    notes.push(note(RESAMPLED, said.join("; ")));
     Ok(raw)
 }

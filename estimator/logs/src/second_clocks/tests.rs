@@ -1,7 +1,7 @@
 //! Tables with two clocks: pairs of time and value side by side.
 
 use crate::load;
-use haptics::recording::Recording;
+use haptics::recording::{RESAMPLED, Recording};
 use std::fmt::Write as _;
 
 fn position(t: f64) -> f64 {
@@ -50,7 +50,7 @@ fn a_column_is_put_on_the_clock_of_the_log() {
             let sidecar = format!(r#"{{{COLUMNS}, "clocks": {{"{clock}": "time_force_s"}}}}"#);
             let one = read(&table, &sidecar).unwrap_or_else(|error| panic!("{rate_hz} Hz: {error}"));
             fits(&one);
-            let said = one.warnings.iter().filter(|w| w.kind == "clock").collect::<Vec<_>>();
+            let said = one.warnings.iter().filter(|w| w.kind == RESAMPLED).collect::<Vec<_>>();
             assert!(said.len() == 1 && said[0].text.contains("of 1000 rows are kept"), "{said:?}");
             assert!(one.channel("time_force_s").is_none());
         }

@@ -79,8 +79,9 @@ impl<'a> Solved<'a> {
         (mut seen, can_hang): (Shown, bool),
     ) -> Result<Self, EstimateError> {
         let swing = if can_hang && seen.fitted == BASE { Swing::of(raws, pieces, known)? } else { None };
-        if swing.is_none() && pieces.iter().any(|piece| piece.zero_step.is_some()) {
-            seen.fitted.push(Term::ZeroStep);
+        if swing.is_none() {
+            seen.fitted.extend(pieces.iter().any(|piece| piece.zero_step.is_some()).then_some(Term::ZeroStep));
+            seen.fitted.extend(pieces.iter().any(|piece| piece.is_late).then_some(Term::Delay));
         }
         let gravity = match &swing {
             Some(_) => Some(Gravity::Present(vec![Term::GravitySine, Term::GravityCosine])),
@@ -207,8 +208,8 @@ fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
     terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
 }
 
-/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %. A step of the zero is taken from the whole fit, because
-/// one part may be without it.
+/// Refit on the first 70 % of every segment, held-out RMS on the last 30 %. Defects of the force channel
+/// are taken from the whole fit, because one part may be without them.
 fn quality(
     pieces: &[Piece],
     system: &System,
@@ -216,7 +217,7 @@ fn quality(
     coordinate: Coordinate,
     known: &Known,
 ) -> Option<Quality> {
-    let system = system.without(Term::ZeroStep, fit);
+    let system = system.without_defects(fit);
     let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
     let late = system.part(|place| place >= 1.0 - HELD_OUT);
     let n = late.target.len();

@@ -7,6 +7,7 @@
 
 mod chain;
 mod driven;
+mod force_channel;
 mod free;
 mod gravity;
 mod motion_segments;
@@ -27,13 +28,11 @@ mod zero_step;
 pub use driven::contradicts_its_clock;
 
 use crate::constraint;
-use crate::zero_jumps;
 use foundation::estimate::{Constraint, EstimateError, Fit, Parameter};
 use foundation::signal::chain::is_chain;
-use foundation::words::amount;
 pub use free::{Stated, stated};
 use haptics::law::Coordinate;
-use haptics::recording::{Recording, TARE_STEP};
+use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use parameters::{Known, Term};
 pub use report::{OBJECT, PHASE};
@@ -90,9 +89,9 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     }
     let mut each = pieces_of_each(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
-    let mut steps = Vec::new();
+    let mut defects = Vec::new();
     for (own, (recording, _)) in each.iter_mut().zip(&usable) {
-        steps.extend(take_step_out(own, recording, (raws[0].coordinate, &known)));
+        defects.extend(force_channel::take_defects_out(own, recording, (raws[0].coordinate, &known)));
     }
     let pieces = each.concat();
     let mut result = if raws.iter().all(|r| r.force.is_some()) {
@@ -103,7 +102,7 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         let text = "some recordings have a force column and others do not; fit the driven and the free ones apart";
         return Err(EstimateError::Other(text.to_owned()));
     };
-    result.warnings.extend(steps);
+    result.warnings.extend(defects);
     result.constraints = constraints;
     result.parameters.extend(transmission::parameters(recordings));
     Ok(result)
@@ -111,28 +110,6 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
 
 fn pieces_of_each(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Result<Vec<Vec<Piece>>, EstimateError> {
     raws.iter().zip(of).map(|(raw, (recording, _))| signals::pieces(raw, &recording.name)).collect()
-}
-
-/// Notes the step of the zero of a recording's force in its segments, unless the sidecar forbids it; a sentence about it.
-fn take_step_out(pieces: &mut [Piece], of: &Recording, (coordinate, known): (Coordinate, &Known)) -> Option<String> {
-    let is_linear = coordinate == Coordinate::Linear;
-    let gravity: &[Term] = if is_linear { &[] } else { &[Term::GravitySine, Term::GravityCosine] };
-    let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].into_iter().chain(gravity.iter().copied());
-    let terms: Vec<Term> = all.filter(|term| known.value(*term).is_none()).collect();
-    let is_driven = pieces.iter().all(|p| p.force.is_some());
-    let step = is_driven.then(|| zero_step::zero_step(pieces, &terms, known)).flatten()?;
-    if of.meta.repairs(TARE_STEP) {
-        for piece in pieces {
-            piece.zero_step = Some(step);
-        }
-    }
-    Some(format!(
-        "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor; {}",
-        of.name,
-        amount(step.size, if is_linear { "N" } else { "N m" }),
-        step.time_s,
-        zero_jumps::fate(of)
-    ))
 }
 
 /// Motion that nothing drives: without its standstills, if enough motion remains.

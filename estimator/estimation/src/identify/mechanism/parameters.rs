@@ -1,9 +1,10 @@
 //! The terms of the base model: the law, the name of the parameter, and the regressor of each.
 
 use super::signals::Piece;
+use foundation::signal::derive::central_differences;
 use haptics::law::{
-    Coordinate, CoulombFriction, EccentricMass, ForceBias, ForceStep, Inertia, Law, MAX_PARAMETERS, Motion,
-    ReturnSpring, ViscousFriction,
+    Coordinate, CoulombFriction, EccentricMass, ForceBias, Inertia, Law, MAX_PARAMETERS, Motion, ReturnSpring,
+    ViscousFriction,
 };
 use haptics::recording::Meta;
 
@@ -30,12 +31,14 @@ pub enum Term {
     Spring,
     /// The step of a segment's force channel, in shares of [`Piece::zero_step`]: 1 if its size is right.
     ZeroStep,
+    /// The time by which the force lags behind the motion, s, where [`Piece::is_late`].
+    Delay,
 }
 
 impl Term {
-    /// The law behind the column and the index of its parameter.
-    pub fn law(self) -> (&'static dyn Law, usize) {
-        match self {
+    /// The law behind the column and the index of its parameter; `None` for a defect of the force channel.
+    pub fn law(self) -> Option<(&'static dyn Law, usize)> {
+        Some(match self {
             Self::Inertia => (&Inertia, 0),
             Self::Viscous => (&ViscousFriction, 0),
             Self::Coulomb => (&CoulombFriction, 0),
@@ -43,8 +46,8 @@ impl Term {
             Self::GravitySine => (&EccentricMass, 0),
             Self::GravityCosine => (&EccentricMass, 1),
             Self::Spring => (&ReturnSpring, 0),
-            Self::ZeroStep => (&ForceStep, 0),
-        }
+            Self::ZeroStep | Self::Delay => return None,
+        })
     }
 
     /// Name in the results; the two gravity parts are reported as moment and phase.
@@ -62,12 +65,13 @@ impl Term {
             Self::GravitySine | Self::GravityCosine => "gravity_moment_Nm",
             Self::Spring => "stiffness",
             Self::ZeroStep => "zero_step",
+            Self::Delay => "delay_s",
         }
     }
 
     /// The law's regressor at one instant.
     pub fn regressor(self, motion: &Motion) -> f64 {
-        let (law, index) = self.law();
+        let Some((law, index)) = self.law() else { return 0.0 };
         let mut columns = [0.0; MAX_PARAMETERS];
         law.regressor(motion, &mut columns);
         columns[index]
@@ -88,7 +92,7 @@ impl Term {
         match self {
             Self::Inertia => [0.0, 0.0, 1.0],
             Self::Viscous => [0.0, 1.0, 0.0],
-            Self::Coulomb | Self::Offset | Self::ZeroStep => [0.0; 3],
+            Self::Coulomb | Self::Offset | Self::ZeroStep | Self::Delay => [0.0; 3],
             Self::GravitySine => [position.cos(), 0.0, 0.0],
             Self::GravityCosine => [-position.sin(), 0.0, 0.0],
             Self::Spring => [1.0, 0.0, 0.0],
@@ -98,10 +102,16 @@ impl Term {
     /// The regressor along a segment, filtered like the force: functions of filtered motion are filtered already, the
     /// sign of the motion is not.
     pub fn column(self, piece: &Piece) -> Vec<f64> {
-        if self == Self::ZeroStep {
-            let after =
-                |time_s| piece.zero_step.map_or(0.0, |step| if time_s >= step.time_s { step.size } else { 0.0 });
-            return piece.filter(&piece.times_s().map(after).collect::<Vec<f64>>());
+        match self {
+            Self::ZeroStep => {
+                let force = |time_s| piece.zero_step.map_or(0.0, |step| step.force_at(time_s));
+                return piece.filter(&piece.times_s().map(force).collect::<Vec<f64>>());
+            }
+            Self::Delay if piece.is_late => {
+                let times_s: Vec<f64> = piece.times_s().collect();
+                return central_differences(&times_s, &piece.applied_force()).iter().map(|rate| -rate).collect();
+            }
+            _ => {}
         }
         let at = |(motion, &direction): (&Motion, &f64)| self.regressor(&Motion { direction, ..*motion });
         let column: Vec<f64> = piece.motion.iter().zip(&piece.direction).map(at).collect();

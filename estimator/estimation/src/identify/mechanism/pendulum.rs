@@ -108,7 +108,7 @@ fn runs(raws: &[Raw], pieces: &[Piece]) -> Option<Vec<Run>> {
 fn effects(terms: &[Term], ratios: &[f64]) -> Vec<Effect> {
     let mut effects = vec![Effect::new(&Inertia, &[1.0])];
     for (term, &ratio) in terms.iter().zip(ratios) {
-        let (law, index) = term.law();
+        let Some((law, index)) = term.law() else { continue };
         let mut parameters = [0.0; MAX_PARAMETERS];
         parameters[index] = ratio;
         effects.push(Effect::new(law, &parameters));

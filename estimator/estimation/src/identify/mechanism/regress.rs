@@ -141,10 +141,10 @@ impl System {
         self.filtered(&kept)
     }
 
-    /// The system with the effect of a term, as fitted, taken from the target.
-    pub fn without(&self, term: Term, fit: &LinearFit) -> Self {
+    /// The system with the effects of the force channel's defects, as fitted, taken from the target.
+    pub fn without_defects(&self, fit: &LinearFit) -> Self {
         let mut rest = self.clone();
-        if let Some(j) = rest.terms.iter().position(|t| *t == term) {
+        for j in (0..self.terms.len()).rev().filter(|&j| self.terms[j].law().is_none()) {
             rest.terms.remove(j);
             let column = rest.columns.remove(j);
             rest.target.iter_mut().zip(column).for_each(|(target, c)| *target -= fit.values[j] * c);

@@ -97,7 +97,8 @@ impl Material<'_> {
     /// Covariance of the fitted terms.
     pub fn correlated(&self) -> Correlated {
         let kept: Vec<usize> = (0..self.terms.len())
-            .filter(|i| !matches!(self.terms[*i], Term::GravitySine | Term::GravityCosine | Term::ZeroStep))
+            .filter(|i| !matches!(self.terms[*i], Term::GravitySine | Term::GravityCosine))
+            .filter(|i| self.terms[*i].law().is_some())
             .filter(|i| !self.shown.hidden.iter().any(|(t, _)| *t == self.terms[*i]))
             .collect();
         Correlated {

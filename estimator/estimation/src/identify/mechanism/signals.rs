@@ -5,7 +5,7 @@ use super::zero_step::ZeroStep;
 use crate::identify::limits::LEAST_SEGMENT_ROWS;
 use crate::regression::linear::COLUMN_NOISE_UNCERTAINTY;
 use foundation::estimate::EstimateError;
-use foundation::signal::derive::{central_differences, stencil};
+use foundation::signal::derive::{central_differences, interpolate_cubic, stencil};
 use foundation::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};
 use foundation::signal::noise::quantum;
 use haptics::law::{Coordinate, Motion};
@@ -82,6 +82,8 @@ pub struct Piece {
     pub force: Option<Vec<f64>>,
     /// Step of the force channel's zero somewhere in the recording.
     pub zero_step: Option<ZeroStep>,
+    /// True if the force was late: a lag was taken out of it.
+    pub is_late: bool,
     /// Standard deviation of the noise left on the filtered force, N or N m, as expected of fast noise.
     pub force_noise: f64,
     /// Samples that are neither at an end nor saturated.
@@ -119,6 +121,20 @@ impl Piece {
     /// Filtered force, N or N m; zero for a free motion.
     pub fn applied_force(&self) -> Vec<f64> {
         self.force.clone().unwrap_or_else(|| vec![0.0; self.motion.len()])
+    }
+
+    /// The segment with its force this much earlier, s. Samples without a force at their new time are not usable.
+    pub fn with_force_earlier(&self, by_s: f64) -> Self {
+        let times_s: Vec<f64> = self.times_s().collect();
+        let wanted: Vec<f64> = times_s.iter().map(|t| t + by_s).collect();
+        let last_s = times_s[times_s.len() - 1];
+        let inside = wanted.iter().map(|t| (self.start_s..=last_s).contains(t));
+        Self {
+            force: self.force.as_ref().map(|force| interpolate_cubic(&times_s, force, &wanted)),
+            usable: self.usable.iter().zip(inside).map(|(usable, inside)| *usable && inside).collect(),
+            is_late: true,
+            ..self.clone()
+        }
     }
 
     /// The same zero-phase filter that the force went through.
@@ -273,6 +289,7 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64, share: f64) -> Piece 
             .map_or(0.0, |force| derived_noise(even.noise(&force[first..end]), rate_hz, choice.cutoff_hz, 0)),
         force: raw_force.as_ref().map(|f| low_pass(f, rate_hz, choice.cutoff_hz)),
         zero_step: None,
+        is_late: false,
         usable: (0..n).map(|i| i >= edge && i + edge < n && !saturated[i]).collect(),
         period_s: even.period_s,
         cutoff_hz: choice.cutoff_hz,

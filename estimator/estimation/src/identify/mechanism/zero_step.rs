@@ -7,9 +7,9 @@ use super::signals::Piece;
 use crate::identify::limits::{LEAST_SEGMENT_ROWS, ROUNDING};
 use nalgebra::{DMatrix, DVector};
 
-/// Share of the residual's power that a step takes at least. Structured errors that wander are not one step.
+/// Share of the residual's power that a defect takes at least. Structured errors that wander are not one step.
 /// Source: the first step of a diagnosis (`force-step`) takes as much.
-const OF_POWER: f64 = 0.5;
+pub(super) const OF_POWER: f64 = 0.5;
 /// Least share of a step that the model's own terms do not describe.
 /// Choice: not varied. A step at an end, and one that goes with the place, have less.
 const STEP_ALONE: f64 = 0.3;
@@ -20,6 +20,13 @@ pub struct ZeroStep {
     pub time_s: f64,
     /// Force after the step less that before it, N or N m.
     pub size: f64,
+}
+
+impl ZeroStep {
+    /// Force of the step at a time, N or N m.
+    pub fn force_at(&self, time_s: f64) -> f64 {
+        if time_s >= self.time_s { self.size } else { 0.0 }
+    }
 }
 
 /// The step in the residual of one recording's fit of these terms; `None` if no step takes half of the residual's
@@ -36,9 +43,8 @@ pub fn zero_step(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<Zero
     for _ in 0..WEIGHTING_ROUNDS {
         let weights = rest.solve().ok().and_then(|fit| rest.weights(&fit));
         found = scan(&system, &time_s, &weights.unwrap_or_else(|| vec![1.0; time_s.len()]));
-        let step: ZeroStep = found.0?;
-        let after = |t: f64| if t >= step.time_s { step.size } else { 0.0 };
-        rest.target = system.target.iter().zip(&time_s).map(|(force, t)| force - after(*t)).collect();
+        let step: ZeroStep = found.0.filter(|_| found.1)?;
+        rest.target = system.target.iter().zip(&time_s).map(|(force, t)| force - step.force_at(*t)).collect();
     }
     found.0.filter(|_| found.1)
 }
@@ -115,6 +121,7 @@ mod tests {
             direction,
             force: Some(force),
             zero_step: None,
+            is_late: false,
             force_noise: 0.02,
             period_s: PERIOD_S,
             cutoff_hz: 20.0,

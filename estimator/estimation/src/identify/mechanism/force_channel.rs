@@ -1,0 +1,80 @@
+//! Defects of a force channel that the fit takes out: a step of its zero, and the offset of a clock of its own.
+
+use super::parameters::{Known, Term};
+use super::regress::System;
+use super::signals::Piece;
+use super::zero_step::{self, OF_POWER};
+use crate::identify::limits::LEAST_SEGMENT_ROWS;
+use crate::zero_jumps;
+use foundation::words::amount;
+use haptics::law::Coordinate;
+use haptics::recording::{CLOCK_OFFSET, Recording, TARE_STEP};
+
+/// Notes the defects of a recording's force channel in its segments, unless the sidecar forbids it; a sentence about each.
+pub fn take_defects_out(
+    pieces: &mut [Piece],
+    of: &Recording,
+    (coordinate, known): (Coordinate, &Known),
+) -> Vec<String> {
+    if pieces.iter().any(|piece| piece.force.is_none()) {
+        return Vec::new();
+    }
+    let is_linear = coordinate == Coordinate::Linear;
+    let gravity: &[Term] = if is_linear { &[] } else { &[Term::GravitySine, Term::GravityCosine] };
+    let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].into_iter().chain(gravity.iter().copied());
+    let mut terms: Vec<Term> = all.filter(|term| known.value(*term).is_none()).collect();
+    let mut said = Vec::new();
+    if let Some(step) = zero_step::zero_step(pieces, &terms, known) {
+        if of.meta.repairs(TARE_STEP) {
+            pieces.iter_mut().for_each(|piece| piece.zero_step = Some(step));
+            terms.push(Term::ZeroStep);
+        }
+        said.push(format!(
+            "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor; {}",
+            of.name,
+            amount(step.size, if is_linear { "N" } else { "N m" }),
+            step.time_s,
+            zero_jumps::fate(of, TARE_STEP, "step")
+        ));
+    }
+    if of.has_several_clocks()
+        && let Some((prompt, delay_s)) = without_delay(pieces, &terms, known)
+    {
+        if of.meta.repairs(CLOCK_OFFSET) {
+            pieces.clone_from_slice(&prompt);
+        }
+        said.push(format!(
+            "the force of {} is {} {} than the motion, and they have clocks of their own; {}",
+            of.name,
+            amount(delay_s.abs(), "s"),
+            if delay_s < 0.0 { "earlier" } else { "later" },
+            zero_jumps::fate(of, CLOCK_OFFSET, "lag")
+        ));
+    }
+    said
+}
+
+/// The segments without the lag of the force behind the motion, and this lag, s. `None` if it takes less than half of the
+/// residual's power. A spring takes part, because its force also differs from that of the other terms by a phase.
+fn without_delay(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<(Vec<Piece>, f64)> {
+    let fit = |pieces: &[Piece], extra: &[Term]| {
+        let terms: Vec<Term> = terms.iter().chain(extra).copied().collect();
+        let system = System::stack(pieces, &terms, known, Piece::applied_force);
+        if system.target.len() < LEAST_SEGMENT_ROWS { None } else { system.solve().ok() }
+    };
+    let (mut prompt, mut delay_s, mut left) = (pieces.to_vec(), 0.0, f64::INFINITY);
+    // Gauss–Newton steps, because the rate of the force describes a small lag only. Ten of them settle a lag of a tenth of a
+    // second in a slow motion.
+    for _ in 0..10 {
+        prompt = pieces.iter().map(|piece| piece.with_force_earlier(delay_s)).collect();
+        let found = fit(&prompt, &[Term::Spring, Term::Delay])?;
+        left = found.rms;
+        let last = found.values.len() - 1;
+        if found.values[last].abs() < 0.01 * found.std_errors[last] {
+            break;
+        }
+        delay_s += found.values[last];
+    }
+    let whole = fit(pieces, &[Term::Spring])?.rms;
+    ((left / whole.max(f64::MIN_POSITIVE)).powi(2) <= 1.0 - OF_POWER).then_some((prompt, delay_s))
+}
