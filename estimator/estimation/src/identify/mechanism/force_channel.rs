@@ -26,7 +26,9 @@ pub fn take_defects_out(
     let mut said = Vec::new();
     if let Some(step) = zero_step::zero_step(pieces, &terms, known) {
         if of.meta.repairs(TARE_STEP) {
-            pieces.iter_mut().for_each(|piece| piece.zero_step = Some(step));
+            for piece in pieces.iter_mut() {
+                piece.zero_step = Some(step);
+            }
             terms.push(Term::ZeroStep);
         }
         said.push(format!(
