@@ -5,6 +5,7 @@
 
 pub mod captured;
 pub mod coverage;
+pub mod drawer;
 pub mod free_motion;
 pub mod fumble;
 pub mod generate;

@@ -3,6 +3,7 @@
 use super::Output;
 use crate::ui::column_mapping::draft::Draft;
 use crate::ui::column_mapping::facts::look;
+use crate::ui::column_mapping::names::dimension;
 use crate::ui::column_mapping::state::mends;
 use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, load, parse_sidecar, put_suggested, sidecar_path};
 use haptics::recording::{Recording, Suggested};
@@ -32,6 +33,8 @@ struct Search<'a> {
     log: &'a Path,
     entries: Suggested,
     has_guessed: bool,
+    /// Sentences about units that were inferred from values.
+    guesses: Vec<String>,
 }
 
 impl Search<'_> {
@@ -50,9 +53,21 @@ impl Search<'_> {
         }
         self.has_guessed = true;
         let meta = parse_sidecar(&Value::Object(self.entries.clone()).to_string(), &sidecar_path(self.log))?;
-        let Value::Object(guessed) = serde_json::to_value(Draft::new(&look(self.log)?, meta).sidecar())? else {
-            return Ok(false);
-        };
+        let draft = Draft::new(&look(self.log)?, meta);
+        let Value::Object(mut guessed) = serde_json::to_value(draft.sidecar())? else { return Ok(false) };
+        for row in draft.rows.iter().filter(|row| !row.unit_stated) {
+            let Some((name, dimension)) = row.name().and_then(|name| Some((name, dimension(name)?))) else { continue };
+            let header = &row.facts.header;
+            if [name, header].iter().any(|key| draft.meta.scale.contains_key(*key)) {
+                continue;
+            }
+            // Only the user knows the factor of a unit that the reader does not know.
+            if !row.facts.unit_text(dimension).is_empty() {
+                put_suggested(&factor_of(name), &mut guessed);
+            } else if let Some(unit) = row.unit {
+                self.guesses.push(format!("`{header}` states no unit; by its values it is {}: check it", unit.shown));
+            }
+        }
         let is_new = guessed != self.entries;
         self.entries = guessed;
         Ok(is_new)
@@ -87,6 +102,15 @@ impl Search<'_> {
     }
 }
 
+/// Entries that ask for the factor of a column.
+fn factor_of(name: &str) -> Suggested {
+    let mut factor = Suggested::new();
+    factor.insert(name.to_owned(), Value::Null);
+    let mut entries = Suggested::new();
+    entries.insert("scale".to_owned(), Value::Object(factor));
+    entries
+}
+
 /// True for entries with a value that only the user knows.
 fn has_null(entries: &Suggested) -> bool {
     let is_open = |value: &Value| match value {
@@ -103,7 +127,7 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
         Ok(text) => serde_json::from_str(text.trim_start_matches('\u{feff}'))?,
         Err(_) => Suggested::new(),
     };
-    let mut search = Search { log, entries: before.clone(), has_guessed: false };
+    let mut search = Search { log, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
     let mut open = None;
     for _ in 0..ROUNDS {
         let (has_step, problem) = search.step()?;
@@ -116,6 +140,7 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
             break;
         }
     }
+    let open = open.or_else(|| (!search.guesses.is_empty()).then(|| search.guesses.join("; ")));
     let written = search.entries != before;
     let sidecar = search.entries;
     let shown = serde_json::to_string_pretty(&sidecar)?;

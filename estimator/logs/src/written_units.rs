@@ -274,7 +274,16 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     if let Some((quantity, Unit { symbol, .. })) = split(header) {
         return (quantity, &header[header.len() - symbol.len()..]);
     }
-    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
+    let ends_with_unit = |(open, close): &(char, char)| {
+        let inside = header.strip_suffix(*close).and_then(|rest| rest.rsplit_once(*open));
+        inside.is_some_and(|(_, inside)| parse(inside, wanted) != Written::Unknown)
+    };
+    if !BRACKETS.iter().any(ends_with_unit)
+        && let Some(found) = within(header, wanted)
+    {
+        return found;
+    }
+    for (open, close) in BRACKETS {
         let inside = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
         let Some((name, inside)) = inside.filter(|(name, _)| !name.trim().is_empty()) else { continue };
         // `position[elbow]` and `q[0]` are items of lists.
@@ -289,7 +298,7 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     {
         return (name.trim(), word);
     }
-    let spoken = [" in ", " / ", "/", ", ", ",", "_in_"].iter().find_map(|mark| {
+    let spoken = [" in ", " / ", "/", ", ", ",", "_in_", "|"].iter().find_map(|mark| {
         let mut places = header.match_indices(mark);
         places.find_map(|(at, _)| (at > 0 && is_unit(&header[at + mark.len()..])).then_some((at, at + mark.len())))
     });
@@ -298,6 +307,22 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
         places.find_map(|(at, _)| (at > 0 && is_suffix(&header[at + 1..], wanted)).then_some((at, at + 1)))
     };
     spoken.or_else(loose).map_or((header, ""), |(at, from)| (header[..at].trim(), header[from..].trim()))
+}
+
+/// Brackets around units, those of East Asian fonts included.
+const BRACKETS: [(char, char); 7] =
+    [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>'), ('（', '）'), ('［', '］'), ('【', '】')];
+
+/// Name and unit of a header with a unit in brackets before other words: `Load (kN) Test 1`, `Force [N] (filtered)`.
+fn within<'a>(header: &'a str, wanted: &[Dimension]) -> Option<(&'a str, &'a str)> {
+    BRACKETS.into_iter().find_map(|(open, close)| {
+        let (name, rest) = header.split_once(open)?;
+        let (inside, behind) = rest.split_once(close)?;
+        let is_unit =
+            matches!(parse(inside.trim(), wanted), Written::Known(dimension, _) if dimension != Dimension::Other);
+        let is_item = open == '[' && !name.ends_with(' ');
+        (is_unit && !name.trim().is_empty() && !behind.is_empty() && !is_item).then(|| (name.trim(), inside.trim()))
+    })
 }
 
 /// True for a unit behind a mere blank, point or underscore. Numbers, single letters, and the words *in* and *min* are more

@@ -92,7 +92,7 @@ impl FileUnit {
 }
 
 /// Dimensions that a dialog offers units for.
-const MECHANICAL: [Dimension; 7] = [
+pub const MECHANICAL: [Dimension; 7] = [
     Dimension::Length,
     Dimension::Angle,
     Dimension::Time,

@@ -7,6 +7,7 @@ use crate::ui::column_mapping::names::{Form, find};
 use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read};
 use estimator::log::PAIRS;
 use estimator::log::units::{self, Dimension};
+use estimator::log::written_units::{self, Written};
 
 /// Proposal for one column.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,16 +51,19 @@ pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
         .collect()
 }
 
-/// Unit of a column in the dimension of `name`: as the header states it, otherwise inferred from the range.
+/// Unit of a column in the dimension of `name`, and true if the header states it. Otherwise it is inferred from the range.
 pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static FileUnit>, bool) {
     let Some(dimension) = name.and_then(crate::ui::column_mapping::names::dimension) else {
         let stated = unit_in(&facts.header).1;
         return (stated, stated.is_some());
     };
-    let stated = spelled_for(facts.unit_text(dimension), &[dimension]);
-    match stated.filter(|unit| unit.dimension == dimension) {
-        Some(unit) => (Some(unit), true),
-        None => (by_range(facts, dimension), false),
+    let text = facts.unit_text(dimension);
+    match written_units::parse(text, &[dimension]) {
+        // A unit that is not offered is the reader's to convert.
+        Written::Known(found, _) if found == dimension => {
+            (spelled_for(text, &[dimension]).filter(|unit| unit.dimension == dimension), true)
+        }
+        _ => (by_range(facts, dimension), false),
     }
 }
 

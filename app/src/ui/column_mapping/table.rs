@@ -132,7 +132,7 @@ fn unit(ui: &mut Ui, row: &mut Row) {
     let header = row.facts.header.clone();
     let hint = if row.unit_stated { "As the name says" } else { "Told from the range of the numbers; please check" };
     let color = if row.unit_stated { palette(ui).text } else { palette(ui).caution };
-    let shown = row.unit.map_or("?", |u| u.shown);
+    let shown = row.unit.map_or_else(|| row.facts.unit_text(dimension), |u| u.shown).to_owned();
     let before = row.unit;
     let response = ComboBox::from_id_salt(("unit", &header))
         .width(ui.available_width() - 2.0)

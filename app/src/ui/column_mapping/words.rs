@@ -1,7 +1,8 @@
 //! Reading of column names as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
 
-use crate::ui::column_mapping::file_units::unit_in;
+use crate::ui::column_mapping::file_units::MECHANICAL;
 use estimator::log::units::Dimension;
+use estimator::log::written_units::{Written, in_header, parse};
 
 /// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,8 +93,8 @@ const BY_UNIT: i32 = 8;
 
 /// Reads a column's name.
 pub fn read(header: &str) -> Reading {
-    let (name, unit) = unit_in(header);
-    let words = words(&name);
+    let (name, unit) = in_header(header, &[]);
+    let words = words(name);
     let mut reading = Reading::default();
     let (mut kinds, mut doubt, mut bonus) = (Vec::new(), 0, 0);
     for word in &words {
@@ -116,7 +117,10 @@ pub fn read(header: &str) -> Reading {
             Meaning::None => {}
         }
     }
-    let by_unit = unit.and_then(|u| Kind::of_dimension(u.dimension));
+    let by_unit = match parse(unit, &MECHANICAL) {
+        Written::Known(dimension, _) => Kind::of_dimension(dimension),
+        _ => None,
+    };
     let fallback = reading.axis.map(|_| Kind::Position).or(by_unit);
     reading.points = if kinds.is_empty() && reading.axis.is_none() { BY_UNIT } else { NAMED } + bonus - doubt;
     reading.kind = combined(&kinds, by_unit).or(fallback).filter(|_| reading.points >= BY_UNIT);
@@ -196,14 +200,15 @@ fn meaning(word: &str) -> Meaning {
         "left" | "links" | "linke" | "linker" | "l" | "li" => Finger(1),
         "right" | "rechts" | "rechte" | "rechter" | "r" | "re" => Finger(2),
         "measured" | "meas" | "ist" | "actual" | "act" | "sensor" | "gemessen" => Measured,
-        "command" | "cmd" | "commanded" | "reference" | "ref" | "desired" | "des" | "soll" | "set" | "setpoint"
-        | "setting" | "target" | "goal" | "estimate" | "est" | "estimated" | "equilibrium" | "simulated" | "sim"
-        | "predicted" | "model" | "max" | "min" => Doubtful,
+        // Set points in German: `Sollweg`.
+        set if set.starts_with("soll") => Doubtful,
+        "command" | "cmd" | "commanded" | "reference" | "ref" | "desired" | "des" | "set" | "setpoint" | "setting"
+        | "target" | "goal" | "estimate" | "est" | "estimated" | "equilibrium" | "simulated" | "sim" | "predicted"
+        | "model" | "max" | "min" => Doubtful,
         "acc" | "accel" | "acceleration" | "beschleunigung" | "jerk" | "current" | "strom" | "voltage" | "spannung"
         | "temp" | "temperature" | "temperatur" | "pressure" | "druck" | "error" | "fehler" | "cov" | "std"
-        | "orientation" | "quat" | "qw" | "qx" | "qy" | "qz" | "wx" | "wy" | "wz" | "frequency" | "frequenz" => {
-            SomethingElse
-        }
+        | "sequence" | "seq" | "counter" | "status" | "orientation" | "quat" | "qw" | "qx" | "qy" | "qz" | "wx"
+        | "wy" | "wz" | "frequency" | "frequenz" => SomethingElse,
         _ => Meaning::None,
     }
 }
@@ -268,7 +273,10 @@ mod tests {
             ("acc_x", None),
             ("qw", None),
             ("comment", None),
+            ("Sollweg (mm)", None),
+            ("F/T Sequence", None),
             ("Messwert [mm]", Some(Kind::Position)),
+            ("Load [kip]", Some(Kind::Force)),
         ] {
             assert_eq!(read(header).kind, kind, "{header}");
         }

@@ -86,7 +86,7 @@ fn is_number(cell: &str, notation: Notation) -> bool {
 pub struct Layout {
     /// Index of the header.
     pub header: usize,
-    /// Index of the row of units.
+    /// Index of the row of units: below the header, or above it.
     pub units: Option<usize>,
     /// Index of the first row.
     pub first: usize,
@@ -111,7 +111,9 @@ pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let width = body.width;
     // Names in the first line belong to the row below them, whatever its fault is.
     let (header, first) = if may_be_names(header) { (header, first) } else { (0, 1) };
-    may_be_names(header).then(|| Layout { header, units: is_units.then(|| first - 1), first, width, body })
+    let is_above = header > 0 && records[header - 1].cells.len() == width && holds_units(&records[header - 1].cells);
+    let units = if is_units { Some(first - 1) } else { is_above.then(|| header - 1) };
+    may_be_names(header).then(|| Layout { header, units, first, width, body })
 }
 
 /// True for a header with a last name above no cells, as LabVIEW's `Comment`.

@@ -159,8 +159,9 @@ fn laid_out(text: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialec
             ..Dialect::default()
         };
         dialect.note_decimals(grouped);
-        if found.header > 0 {
-            let lines = records[found.header].line;
+        let unread = records[found.header].line - usize::from(found.units.is_some_and(|k| k < found.header)) as u64;
+        if found.header > 0 && unread > 0 {
+            let lines = unread;
             dialect.notes.push(format!("{lines} line(s) above the header are not read"));
         }
         Some(dialect)

@@ -2,7 +2,7 @@
 
 use super::column::{self, Flat, Meaning};
 use super::list::{self, Items, List};
-use super::metadata::{SIDECAR, is_index, one_line};
+use super::metadata::{self, SIDECAR, is_index, one_line};
 use super::shape::{self, Shape};
 use super::sums::Sums;
 use super::{footer, guard};
@@ -72,7 +72,11 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
         Stop::Cancelled => LogError::Cancelled { path: path.to_path_buf() },
         Stop::Damaged(why) => damaged(why),
     })?;
-    let raw = table(fields, &mut said);
+    let mut raw = table(fields, &mut said);
+    let units = metadata::units(&facts);
+    if !units.is_empty() {
+        raw.units = raw.headers.iter().map(|name| units.get(name).cloned().unwrap_or_default()).collect();
+    }
     if raw.columns.is_empty() {
         let why = said.first().map_or_else(|| "it has no columns".to_owned(), |w| w.text.clone());
         return Err(LogError::NoColumns { format: "Parquet", why, path: path.to_path_buf() });

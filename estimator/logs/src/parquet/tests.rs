@@ -169,3 +169,28 @@ fn brotli_is_read_and_a_packing_that_is_not_is_no_damage() {
         assert!(!text.contains("damaged"), "{text}");
     }
 }
+
+#[test]
+fn units_in_the_metadata_are_those_of_the_columns() {
+    for (key, value) in [
+        ("units", r#"{"time":"s","position":"mm","force":"kN"}"#),
+        ("PANDAS_ATTRS", r#"{"units":{"time":"s","position":"mm","force":"kN"}}"#),
+    ] {
+        let schema = "message s { required double time; required double position; required double force; }";
+        let mut out = Out::new(schema, Compression::UNCOMPRESSED);
+        let entry = parquet::file::metadata::KeyValue::new(key.to_owned(), value.to_owned());
+        out.writer.append_key_value_metadata(entry);
+        let column = |values: &'static [f64]| {
+            move |writer: &mut parquet::file::writer::SerializedColumnWriter<'_>| {
+                writer.typed::<DoubleType>().write_batch(values, None, None).expect("written");
+            }
+        };
+        out.block(&[&column(&[0.0, 0.1, 0.2]), &column(&[5.0, 6.0, 7.0]), &column(&[1.0, 2.0, 3.0])]);
+        out.writer.close().expect("closes");
+        let log = out.folder.path().join("log.parquet");
+        let sidecar = r#"{"columns":{"t_s":"time","q_m":"position","f_N":"force"}}"#;
+        std::fs::write(crate::sidecar_path(&log), sidecar).expect("writable");
+        let read = load(&log, None).expect("read").remove(0);
+        assert_eq!((read.channel("q_m").expect("q")[1], read.channel("f_N").expect("f")[1]), (0.006, 2000.0), "{key}");
+    }
+}

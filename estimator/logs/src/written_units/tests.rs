@@ -103,6 +103,13 @@ fn units_are_found_in_headers() {
         ("sensor V2", "sensor V2", ""),
         ("x_min", "x_min", ""),
         ("motor_t_s", "motor_t", "s"),
+        ("Load (kN) Test 1", "Load", "kN"),
+        ("Position (cm) Run #1", "Position", "cm"),
+        ("Force [N] (filtered)", "Force", "N"),
+        ("Angle (deg) rate (deg/s)", "Angle (deg) rate", "deg/s"),
+        ("変位（mm）", "変位", "mm"),
+        ("Position|mm", "Position", "mm"),
+        ("Motor (left) 1", "Motor (left) 1", ""),
     ] {
         assert_eq!(in_header(header, &[]), (name, unit), "{header}");
     }

@@ -1,0 +1,44 @@
+//! Sidecars that `info --suggest` writes.
+
+use std::fmt::Write as _;
+use tests::drawer::{File, drawer, is_the_drawer};
+
+/// A suggested sidecar leaves a known unit to the reader and asks for the factor of an unknown one; no factor is invented.
+#[test]
+fn a_suggested_sidecar_invents_no_factor() {
+    let rows = |length: f64, force: f64| {
+        let mut text = String::new();
+        for [t, place, push] in drawer(1500, 100.0) {
+            let _ = writeln!(text, "{t:.3},{:.9e},{:.9e}", place / length, push / force);
+        }
+        text
+    };
+    for (length, length_m, force, force_n) in [
+        ("mm", 1e-3, "cN", 1e-2),
+        ("yd", 0.9144, "kip", 4_448.221_615_260_5),
+        ("mil", 2.54e-5, "daN", 10.0),
+        ("steps", 1e-5, "N", 1.0),
+        ("mm", 1e-3, "x1000 N", 1e3),
+        ("1/10 mm", 1e-4, "%", 0.5),
+    ] {
+        let name = format!("{length}, {force}");
+        let table = format!("Time (s),Position ({length}),Force ({force})\n{}", rows(length_m, force_n));
+        let file = File::new(&table, r#"{"task":"mechanism"}"#);
+        let mut command = std::process::Command::new(tests::touchstone());
+        let output =
+            command.args(["info", "--suggest", "log.csv"]).current_dir(file.0.path()).output().expect("it runs");
+        assert!(output.status.success(), "{name}: {output:?}");
+        let path = file.0.path().join("log.meta.json");
+        let sidecar = std::fs::read_to_string(path).expect("a sidecar");
+        let scale = serde_json::from_str::<serde_json::Value>(&sidecar).expect("JSON")["scale"].clone();
+        let stated = scale.as_object().into_iter().flatten();
+        assert!(stated.clone().all(|(_, factor)| factor.is_null()), "{name}: {sidecar}");
+        // The user states the factors that are asked for.
+        let known = [("q_m", length_m), ("f_N", force_n)];
+        let filled = stated.fold(sidecar.clone(), |text, (asked, _)| {
+            let factor = known.iter().find(|(name, _)| name == asked).map_or(1.0, |(_, factor)| *factor);
+            text.replace(&format!("\"{asked}\": null"), &format!("\"{asked}\": {factor}"))
+        });
+        is_the_drawer(&name, &table, &filled);
+    }
+}
