@@ -17,6 +17,11 @@ const NO_SECONDS: f64 = 1e11;
 const EPOCHS: std::ops::Range<f64> = 6.3e8..4.1e9;
 /// Units that stamps since 1970 are counted in.
 const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
+/// Ranges of stamps in ticks of 100 ns, 2000 to 2100, with the epochs that they count from: of Windows since 1601, of .NET since
+/// the year 1.
+const TICKS: [(&str, std::ops::Range<f64>); 2] = [("1601", 1.25e17..1.58e17), ("year 1", 6.3e17..6.63e17)];
+/// Length of a tick, s.
+const TICK_S: f64 = 1e-7;
 /// Rates at which motion is measured, Hz.
 const RATES_HZ: std::ops::Range<f64> = 5.0..50_000.0;
 /// Fewer stamps show no clock: they may count poses.
@@ -89,7 +94,8 @@ fn origin(time: &[f64], clock: Use) -> Option<Origin> {
 
 /// Name and length, s, of the unit of stamps since 1970 that can be no seconds.
 fn stamp_unit(first: f64, factor: f64) -> Option<(&'static str, f64)> {
-    let is_large = first.abs() >= NO_SECONDS && factor == 1.0;
+    let is_tick = TICKS.iter().any(|(_, range)| range.contains(&first));
+    let is_large = first.abs() >= NO_SECONDS && factor == 1.0 && !is_tick;
     STAMP_UNITS.into_iter().find(|(_, unit)| is_large && EPOCHS.contains(&(first * unit)))
 }
 
@@ -172,14 +178,18 @@ fn on_the_next_day(time: &mut [f64]) -> Option<String> {
     first.map(|row| format!("passes midnight {days} time(s), first in row {row}: its times go on on the next day"))
 }
 
-/// Turns stamps since 1970 that can be no seconds into seconds since the first row.
+/// Turns stamps since an epoch that can be no seconds into seconds since the first row.
 fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
     let first = *time.first()?;
-    let (name, unit) = stamp_unit(first, factor)?;
+    let ticks = TICKS.into_iter().find(|(_, range)| factor == 1.0 && range.contains(&first));
+    let (name, unit, epoch) = match ticks {
+        Some((epoch, _)) => ("ticks of 100 ns", TICK_S, epoch),
+        None => stamp_unit(first, factor).map(|(name, unit)| (name, unit, "1970"))?,
+    };
     for t in time.iter_mut() {
         *t = (*t - first) * unit;
     }
-    Some(format!("counts {name} since 1970, not seconds: its times are seconds since the first row"))
+    Some(format!("counts {name} since {epoch}, not seconds: its times are seconds since the first row"))
 }
 
 /// Doubt about the unit of a clock whose stamps are whole numbers and slower than a measurement of motion.

@@ -225,3 +225,17 @@ proptest! {
         let _ = folder.load(text);
     }
 }
+
+#[test]
+fn ticks_of_windows_and_of_dotnet_are_of_a_hundred_nanoseconds() {
+    for (first, epoch) in [(133_600_000_000_000_000_u64, "1601"), (638_970_336_000_000_000, "year 1")] {
+        let rows: Vec<String> = (0..50).map(|k| format!("{},{},1", first + 50_000 * k, k)).collect();
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let log = folder.path().join("log.csv");
+        std::fs::write(&log, format!("Ticks,q_m,f_N\n{}\n", rows.join("\n"))).expect("writable");
+        std::fs::write(sidecar_path(&log), r#"{"columns":{"t_s":"Ticks"}}"#).expect("writable");
+        let one = load(&log, None).expect("reads").remove(0);
+        assert!((one.rate_hz().expect("a rate") - 200.0).abs() < 1.0, "{:?}", one.rate_hz());
+        assert!(one.warnings.iter().any(|w| w.text.contains(epoch)), "{:?}", one.warnings);
+    }
+}

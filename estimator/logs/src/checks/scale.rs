@@ -40,6 +40,9 @@ const SMALLEST_FINGER_N: f64 = 0.01;
 const WEIGHT_FACTOR: f64 = 200.0;
 /// A coordinate of a mechanism does not go further, m: a metre of travel in mm.
 const FARTHEST_MECHANISM_M: f64 = 100.0;
+/// A coordinate of a mechanism moves no faster, m/s.
+/// Choice: belts and linear motors reach a tenth of it; millimetres read as metres exceed it from 50 mm/s on.
+const FASTEST_MECHANISM_M_S: f64 = 50.0;
 /// Fewer samples do not show a range.
 const FEWEST_SAMPLES: usize = 50;
 
@@ -53,7 +56,34 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     }
     let mut found = rates(recording);
     found.extend(ranges(recording, profiles));
+    if found.is_empty() {
+        found.extend(speed(recording));
+    }
     found
+}
+
+/// Doubt about a mechanism's coordinate that is faster than mechanisms are.
+fn speed(recording: &Recording) -> Option<Warning> {
+    let (time_s, place_m) = (recording.time_s.as_ref()?, recording.channel("q_m")?);
+    let over = (place_m.len() / WINDOWS).max(WINDOW_SAMPLES);
+    let speeds = (over..place_m.len()).map(|i| {
+        let (way_m, took_s) = (place_m[i] - place_m[i - over], time_s[i] - time_s[i - over]);
+        way_m.abs() / took_s
+    });
+    let mut speeds: Vec<f64> = speeds.filter(|speed| speed.is_finite()).collect();
+    // Nine tenths of the samples: a jump of the zero is not a unit.
+    let at = speeds.len() * 9 / 10;
+    if speeds.is_empty() {
+        return None;
+    }
+    let usual_m_s = *speeds.select_nth_unstable_by(at, f64::total_cmp).1;
+    (usual_m_s > FASTEST_MECHANISM_M_S).then(|| {
+        let text = format!(
+            "q_m moves at {usual_m_s:.0} m/s, faster than a mechanism does: its unit looks wrong by 1000; correct it in the \
+             column's name, or give \"scale\" in the sidecar"
+        );
+        doubt(recording, "q_m", text, &[("q_m", THOUSAND.1.recip())])
+    })
 }
 
 /// `scale`: factors by channel that would settle the doubt.

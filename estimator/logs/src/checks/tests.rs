@@ -72,6 +72,20 @@ fn a_rate_of_another_size_than_its_position_s_is_doubted_and_a_filtered_or_noisy
 }
 
 #[test]
+fn millimetres_read_as_metres_are_doubted_by_their_speed() {
+    let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 5e-3).collect();
+    let doubts = |size_m: f64| {
+        let place = time.iter().map(|t| size_m * ((3.8 * t).sin() + 0.4 * (8.2 * t).sin())).collect();
+        let found = warnings(&recording(time.clone(), vec![channel("q_m", place)]));
+        found.into_iter().filter(|w| w.kind == "unit").collect::<Vec<_>>()
+    };
+    let found = doubts(80.0);
+    assert!(found.len() == 1 && found[0].text.contains("faster than a mechanism"), "{found:?}");
+    assert_eq!(found[0].suggested.as_ref().expect("a factor")["scale"]["q_m"], 1e-3);
+    assert!(doubts(0.08).is_empty() && doubts(3.0).is_empty());
+}
+
+#[test]
 fn stuck_channels_are_found_and_rest_is_not_one() {
     let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
     let mut force = wave(1000);

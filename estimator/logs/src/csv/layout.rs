@@ -113,7 +113,7 @@ pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let (header, first) = if may_be_names(header) { (header, first) } else { (0, 1) };
     let is_above = header > 0 && records[header - 1].cells.len() == width && holds_units(&records[header - 1].cells);
     let units = if is_units { Some(first - 1) } else { is_above.then(|| header - 1) };
-    may_be_names(header).then(|| Layout { header, units, first, width, body })
+    may_be_names(header).then_some(Layout { header, units, first, width, body })
 }
 
 /// True for a header with a last name above no cells, as LabVIEW's `Comment`.

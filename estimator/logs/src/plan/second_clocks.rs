@@ -97,13 +97,14 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Notes the columns that read as clocks and are none so far: with such a name, and a unit of time.
+    /// Notes the columns that read as clocks and are none so far: with such a name, and a unit of time or none.
     pub(super) fn suspect_clocks(&mut self) {
         let is_suspect = |target: &&Target| {
             let header = &self.headers[target.column];
             let (name, _) = written_units::in_header(header, &[Dimension::Time]);
             let is_free = !self.meta.columns.values().any(|source| source == header);
-            let has_unit = !self.unit_text(target.column, &[Dimension::Time]).is_empty();
+            // Beside a clock, values that increase in every row are enough.
+            let has_unit = self.plan.time.is_some() || !self.unit_text(target.column, &[Dimension::Time]).is_empty();
             let name = if self.stated(target.column).is_empty() { name } else { header.as_str() };
             is_free && has_unit && is_like_a_clock(name) && self.time_factor(target.column).is_some()
         };

@@ -103,3 +103,16 @@ fn a_receive_time_and_a_parameter_are_no_second_clock() {
     let one = read("q_m,f_N,dead_time_s\n1,2,0.1\n2,3,0.1\n3,4,0.1\n", "{}").expect("reads");
     assert!(one.time_s.is_none());
 }
+
+#[test]
+fn a_second_clock_needs_no_unit() {
+    let table: String = (0..60).fold("Time - Pos,Pos (mm),Time - F,F (N)\n".to_owned(), |mut text, k| {
+        let t = 0.01 * f64::from(k);
+        let _ = writeln!(text, "{t:.4},{:.4},{:.4},{:.4}", 1e3 * position(t), t + 0.0021, position(t));
+        text
+    });
+    let sidecar = r#"{"columns":{"t_s":"Time - Pos","q_m":"Pos (mm)","f_N":"F (N)"}}"#;
+    let one = read(&table, sidecar).expect("reads");
+    let said = one.warnings.iter().filter(|w| w.suggested.is_some()).collect::<Vec<_>>();
+    assert!(said.len() == 1 && said[0].text.contains("`Time - F` is a second clock"), "{:?}", one.warnings);
+}
