@@ -6,6 +6,7 @@ use super::mcap::resample;
 use super::origin::Origin;
 use super::plan::{Plan, Use};
 use super::raw::{Cells, is_missing};
+use super::row_order;
 use super::table::Group;
 use haptics::recording::{Labels, Meta, Warning};
 use serde_json::json;
@@ -140,6 +141,9 @@ fn advice(time: &[f64], (goes_back, in_container): (bool, bool), rate_hz: Option
         // Nobody removes a row of an MCAP or Parquet file.
         None if in_container => {
             format!("map another clock to `t_s`, or state {no_clock} and \"rate_hz\" in the sidecar")
+        }
+        None if goes_back && let Some(how) = row_order::fault(time) => {
+            format!("{how}, and no recording starts again: sort the rows by this column")
         }
         None if goes_back => {
             "if several recordings stand one after the other, tell them apart with a `trial` column".to_owned()

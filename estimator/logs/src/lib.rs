@@ -26,6 +26,7 @@ pub mod pyramid;
 mod raw;
 mod repairs;
 mod room;
+mod row_order;
 mod rows;
 mod runs;
 mod second_clocks;

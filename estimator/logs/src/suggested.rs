@@ -13,6 +13,8 @@ impl LogError {
             Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
             Self::DuplicateColumn { column, header: Some(header), .. } => json!({ "columns": { column: header } }),
             Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),
+            // Another order of the rows would go with them.
+            Self::Time { goes_back: true, .. } => return None,
             Self::Time { rate_hz, .. } => json!({ "columns": { "t_s": null }, "rate_hz": rate_hz }),
             Self::NoClock { .. } => json!({ "rate_hz": null }),
             _ => return None,
