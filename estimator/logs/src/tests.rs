@@ -239,3 +239,12 @@ fn ticks_of_windows_and_of_dotnet_are_of_a_hundred_nanoseconds() {
         assert!(one.warnings.iter().any(|w| w.text.contains(epoch)), "{:?}", one.warnings);
     }
 }
+
+#[test]
+fn a_delimiter_behind_every_row_begins_no_cell() {
+    let folder = Folder::new();
+    let one = load(&folder.file("log.csv", "t_s,q_m\n0,1,\n0.1,2,\n0.2,3,\n"), None).expect("reads").remove(0);
+    assert_eq!(one.channel("q_m"), Some(&[1.0, 2.0, 3.0][..]));
+    let error = load(&folder.file("other.csv", "t_s,q_m\n0,1,5\n0.1,2,6\n0.2,3,7\n"), None).expect_err("refused");
+    assert!(error.to_string().contains("has 3 cells and the header has 2"), "{error}");
+}

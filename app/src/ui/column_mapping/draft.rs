@@ -72,10 +72,11 @@ impl Row {
         units::split(&self.facts.header).map(|(_, unit)| unit)
     }
 
-    /// True if the header's unit has another dimension than the name: a factor is then required.
+    /// True if the file's unit is unknown, or of another dimension than the name: a factor is then required.
     pub fn needs_a_factor(&self) -> bool {
         let Some(wanted) = self.name().and_then(dimension) else { return false };
-        self.own_unit().is_some_and(|own| own.dimension != wanted)
+        let is_unknown = self.unit.is_none() && !self.unit_stated && !self.facts.unit_text(wanted).is_empty();
+        is_unknown || self.own_unit().is_some_and(|own| own.dimension != wanted)
     }
 
     /// Name that the reader assigns to a column without a sidecar entry.

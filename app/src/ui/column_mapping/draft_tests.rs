@@ -115,3 +115,18 @@ fn a_table_of_several_things_begins_with_the_first() {
     assert_eq!(draft.values_of("mechanism"), ["door", "drawer"]);
     assert_eq!(table.load(&draft.sidecar()).expect("loads").len(), 1);
 }
+
+/// A known unit that the dialog does not offer is left to the reader; an unknown one needs its factor.
+#[test]
+fn no_factor_of_a_stated_unit_is_guessed() {
+    let table = Table::new("Zeit [s],Weg [mm],Kraft [cN]\n0,1,2\n0.01,2,3\n0.02,3,4\n");
+    let log = table.load(&table.draft("{}").sidecar()).expect("loads").remove(0);
+    assert!((log.channel("f_N").expect("a force")[0] - 0.02).abs() < 1e-12);
+    let table = Table::new("Zeit [s],Weg [steps],Kraft [N]\n0,1000,2\n0.01,2000,3\n0.02,3000,4\n");
+    let mut draft = table.draft("{}");
+    assert!(draft.rows[1].needs_a_factor() && draft.sidecar().scale.is_empty());
+    assert!(table.load(&draft.sidecar()).is_err());
+    draft.rows[1].scale = 1e-5;
+    let log = table.load(&draft.sidecar()).expect("loads").remove(0);
+    assert!((log.channel("q_m").expect("a place")[0] - 0.01).abs() < 1e-12);
+}

@@ -63,7 +63,9 @@ pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static File
         Written::Known(found, _) if found == dimension => {
             (spelled_for(text, &[dimension]).filter(|unit| unit.dimension == dimension), true)
         }
-        _ => (by_range(facts, dimension), false),
+        _ if text.is_empty() => (by_range(facts, dimension), false),
+        // Only the user knows the factor of another unit.
+        _ => (None, false),
     }
 }
 

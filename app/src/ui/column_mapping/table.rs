@@ -130,7 +130,11 @@ pub fn said(role: &Role) -> String {
 fn unit(ui: &mut Ui, row: &mut Row) {
     let Some(dimension) = row.name().and_then(dimension) else { return };
     let header = row.facts.header.clone();
-    let hint = if row.unit_stated { "As the name says" } else { "Told from the range of the numbers; please check" };
+    let hint = match row.unit {
+        _ if row.unit_stated => "As the name says",
+        Some(_) => "Told from the range of the numbers; please check",
+        None => "This unit is not known; choose another, or state its factor",
+    };
     let color = if row.unit_stated { palette(ui).text } else { palette(ui).caution };
     let shown = row.unit.map_or_else(|| row.facts.unit_text(dimension), |u| u.shown).to_owned();
     let before = row.unit;
@@ -168,7 +172,7 @@ fn factor(ui: &mut Ui, row: &mut Row) {
         let response =
             ui.add_sized([ui.available_width() - 2.0, 24.0], DragValue::new(&mut value).speed(speed).max_decimals(9));
         let hint = if row.needs_a_factor() {
-            "The column's own unit measures something else: how much is one of it?"
+            "The column's own unit is unknown or measures something else: how much is one of it?"
         } else {
             "Times this, beside the unit"
         };

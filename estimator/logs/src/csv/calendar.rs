@@ -126,15 +126,37 @@ fn zone(text: &str) -> (&str, i64) {
     parsed.unwrap_or((text, 0))
 }
 
-/// Days since the start of 1970 of `2025-04-17`, `2025/04/17`, `17.04.2025` or `4/17/2025`.
+/// Number of a month by its name, in English or German, or by its first three letters.
+fn month(text: &str) -> Option<i64> {
+    const NAMES: [(&str, &str); 12] = [
+        ("january", "januar"),
+        ("february", "februar"),
+        ("march", "märz"),
+        ("april", "april"),
+        ("may", "mai"),
+        ("june", "juni"),
+        ("july", "juli"),
+        ("august", "august"),
+        ("september", "september"),
+        ("october", "oktober"),
+        ("november", "november"),
+        ("december", "dezember"),
+    ];
+    let text = text.to_lowercase();
+    let is = |name: &str| text == name || name.chars().take(3).eq(text.chars());
+    let at = NAMES.iter().position(|(english, german)| is(english) || is(german))?;
+    i64::try_from(at + 1).ok()
+}
+
+/// Days since the start of 1970 of `2025-04-17`, `2025/04/17`, `17.04.2025`, `17-Apr-2025` or `4/17/2025`.
 fn day(date: &str, order: Order) -> Option<i64> {
     let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
     let [a, b, c] = parts.as_slice() else { return None };
     let number = |text: &str| text.parse::<i64>().ok().filter(|_| text.bytes().all(|b| b.is_ascii_digit()));
     let (year, month, day) = match () {
-        () if a.len() == 4 => (number(a)?, number(b)?, number(c)?),
+        () if a.len() == 4 => (number(a)?, number(b).or_else(|| month(b))?, number(c)?),
         () if is_month_first(date, order) => (number(c)?, number(a)?, number(b)?),
-        () => (number(c)?, number(b)?, number(a)?),
+        () => (number(c)?, number(b).or_else(|| month(b))?, number(a)?),
     };
     let year = if year < 100 { 2000 + year } else { year };
     if !(1900..2200).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
@@ -151,15 +173,17 @@ fn is_month_first(date: &str, order: Order) -> bool {
     if date.contains('/') { order == Order::Usual } else { date.contains('-') && order == Order::Other }
 }
 
-/// Nanoseconds since midnight of `17:00`, `17:00:08` or `17:00:08.123456`.
+/// Nanoseconds since midnight of `17:00`, `17:00:08` or `17:00:08.123456`, and of minutes and seconds, `58:55.000`, as
+/// spreadsheets write them.
 fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
     let mut parts = time.split(':');
-    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
-    let (second, fraction) = match parts.next() {
-        None => ("0", ""),
-        Some(text) => text.split_once(['.', ',']).unwrap_or((text, "")),
+    let (first, next, last) = (parts.next()?, parts.next()?, parts.next());
+    let (hour, minute, second) = match last {
+        None if next.contains(['.', ',']) => ("0", first, next),
+        _ => (first, next, last.unwrap_or("0")),
     };
-    let second = whole(second)?;
+    let (second, fraction) = second.split_once(['.', ',']).unwrap_or((second, ""));
+    let (hour, minute, second) = (whole(hour)?, whole(minute)?, whole(second)?);
     if parts.next().is_some() || hour > 23 || minute > 59 || second > 60 {
         return None;
     }
@@ -194,6 +218,8 @@ mod tests {
             ("4/17/25 5:00:08 PM", base),
             ("2025/04/17 17:00:08.123456789", base + 123_456_789),
             ("17:00:08.120", (17 * 3600 + 8) * NS + 120_000_000),
+            ("58:55.005", (58 * 60 + 55) * NS + 5_000_000),
+            ("17-Apr-2025 17:00:08.12", base + 120_000_000),
             ("12:30 AM", 30 * 60 * NS),
             ("1970-01-01T00:00:00", 0),
         ] {
@@ -211,6 +237,7 @@ mod tests {
         assert_eq!(parse("04-13-2026 12:00"), parse("13.04.2026 12:00"));
         assert_eq!(parse("03/04/2026 12:00"), parse("04.03.2026 12:00"));
         let texts = ["03/04/2026 12:00", "13/04/2026", "04-13-2026", "03/03/2026", "2026/03/04", "03.04.2026", "12:00"];
+        assert!(is_date("02-mai-2026") && !is_date("02-xyz-2026") && settles_order("2-Jan-2026") == Some(true));
         assert_eq!(texts.map(settles_order), [Some(false), Some(true), Some(true), None, None, None, None]);
         assert!(is_date("2026-04-13") && !is_date("2026-04-13 12:00") && !is_date("12:00") && !is_date("1.2"));
     }

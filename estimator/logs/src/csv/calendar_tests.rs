@@ -80,3 +80,11 @@ fn a_date_that_is_none_is_named() {
     let log = read("Date", &["2026-04-17", "2026-04-18"]).unwrap_or_else(|e| panic!("{e}"));
     assert!(log.time_s.is_none());
 }
+
+#[test]
+fn months_by_name_and_minutes_with_seconds_are_read() {
+    assert_eq!(clock("Time", &["02-Jan-2026 09:05:08.5", "02-Jan-2026 09:05:09"]).0, [0.0, 0.5]);
+    assert_eq!(clock("Zeit", &["28-Dez-2026 09:05:08", "28-Dez-2026 09:05:09"]).0, [0.0, 1.0]);
+    let (times_s, _) = clock("Time", &["58:55.000", "58:55.250"]);
+    assert!((times_s[1] - times_s[0] - 0.25).abs() < 1e-9, "{times_s:?}");
+}

@@ -100,9 +100,12 @@ pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let body = Body::of(records, notation)?;
     let is_row = |k: usize| records.get(k).is_none_or(|r| body.is_row(r, notation));
     let first = (1..records.len()).find(|&k| is_row(k) && is_row(k + 1))?;
+    // A delimiter behind the last cell of every row, but not behind the last name.
+    let ends_blank = records[first..].iter().take(2).all(|r| r.cells.last().is_some_and(String::is_empty));
     let may_be_names = |k: usize| {
         let cells = &records[k].cells;
-        let is_wide = cells.len() == body.width || is_one_more(cells, body.width);
+        let is_wide =
+            cells.len() == body.width || is_one_more(cells, body.width) || ends_blank && cells.len() + 1 == body.width;
         let numbers = cells.iter().filter(|cell| is_number(cell, notation)).count();
         is_wide && (numbers == 0 || k == 0 && numbers < cells.len())
     };

@@ -145,7 +145,7 @@ fn laid_out(text: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialec
         let found = layout::of(&records, notation).filter(|found| found.width > 1 || stated.is_some())?;
         let [header, first] = [found.header, found.first].map(|k| &records[k]);
         let mut headers = header.cells.clone();
-        headers.truncate(found.width);
+        headers.resize(found.width, String::new());
         let units = found.units.map_or_else(Vec::new, |k| records[k].cells.clone());
         let first_cells = first.cells.clone();
         let mut dialect = Dialect {
