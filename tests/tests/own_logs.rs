@@ -324,3 +324,12 @@ fn of_two_thousand_variants_none_gives_a_wrong_number_in_silence() {
     println!("{read} read, {refused} refused, {doubted} doubted");
     assert!(read > 1000, "{read} read, {refused} refused, {doubted} doubted");
 }
+
+#[test]
+fn units_may_stand_above_the_names() {
+    let samples = drawer(1500, 100.0);
+    let row = |[t, place, push]: &Sample| format!("{t:.3},{:.6},{:.7}", 1e3 * place, 1e-3 * push);
+    let sidecar = r#"{"task":"mechanism","columns":{"t_s":"Time","q_m":"Position","f_N":"Force"}}"#;
+    let read = is_the_drawer("units above", table("s,mm,kN\nTime,Position,Force", &samples, row), sidecar);
+    assert!(read.warnings.iter().all(|w| !w.text.contains("not read")), "{:?}", read.warnings);
+}

@@ -3,6 +3,37 @@
 use std::fmt::Write as _;
 use tests::drawer::{File, drawer, is_the_drawer};
 
+/// Runs `info --suggest`; its output.
+fn suggest(file: &File) -> String {
+    let mut command = std::process::Command::new(tests::touchstone());
+    let output = command.args(["info", "--suggest", "log.csv"]).current_dir(file.0.path()).output().expect("it runs");
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Rows in another order keep their clock: the file is sorted, and no rate stands in for its times.
+#[test]
+fn rows_in_the_wrong_order_are_to_be_sorted() {
+    let mut rows: Vec<String> =
+        drawer(200, 100.0).iter().map(|[t, place, push]| format!("{t:.2},{place:.6},{push:.4}")).collect();
+    rows.reverse();
+    let sidecar = r#"{"task":"mechanism"}"#;
+    let file = File::new(format!("t_s,q_m,f_N\n{}\n", rows.join("\n")), sidecar);
+    let error = file.load().expect_err("refused");
+    assert!(error.contains("the newest row stands first") && error.contains("sort the rows"), "{error}");
+    suggest(&file);
+    assert_eq!(std::fs::read_to_string(file.0.path().join("log.meta.json")).expect("a sidecar"), sidecar);
+}
+
+/// A unit that only the values tell is named as a guess.
+#[test]
+fn a_unit_by_the_values_is_said_to_be_a_guess() {
+    let rows: Vec<String> =
+        drawer(200, 100.0).iter().map(|[t, place, push]| format!("{t:.2},{:.3},{push:.4}", 1e3 * place)).collect();
+    let said = suggest(&File::new(format!("Time (s),Position,Force (N)\n{}\n", rows.join("\n")), "{}"));
+    assert!(said.contains("still open: `Position` states no unit; by its values it is mm"), "{said}");
+}
+
 /// A suggested sidecar leaves a known unit to the reader and asks for the factor of an unknown one; no factor is invented.
 #[test]
 fn a_suggested_sidecar_invents_no_factor() {
@@ -24,10 +55,7 @@ fn a_suggested_sidecar_invents_no_factor() {
         let name = format!("{length}, {force}");
         let table = format!("Time (s),Position ({length}),Force ({force})\n{}", rows(length_m, force_n));
         let file = File::new(&table, r#"{"task":"mechanism"}"#);
-        let mut command = std::process::Command::new(tests::touchstone());
-        let output =
-            command.args(["info", "--suggest", "log.csv"]).current_dir(file.0.path()).output().expect("it runs");
-        assert!(output.status.success(), "{name}: {output:?}");
+        suggest(&file);
         let path = file.0.path().join("log.meta.json");
         let sidecar = std::fs::read_to_string(path).expect("a sidecar");
         let scale = serde_json::from_str::<serde_json::Value>(&sidecar).expect("JSON")["scale"].clone();

@@ -274,21 +274,19 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     if let Some((quantity, Unit { symbol, .. })) = split(header) {
         return (quantity, &header[header.len() - symbol.len()..]);
     }
-    let ends_with_unit = |(open, close): &(char, char)| {
-        let inside = header.strip_suffix(*close).and_then(|rest| rest.rsplit_once(*open));
-        inside.is_some_and(|(_, inside)| parse(inside, wanted) != Written::Unknown)
+    let groups = bracketed(header);
+    let is_read = |group: &&Bracketed<'a>| match parse(group.inside, wanted) {
+        Written::Unknown => false,
+        _ if group.is_last => true,
+        Written::Known(dimension, _) => dimension != Dimension::Other && !group.may_be_item,
+        Written::Counts => false,
     };
-    if !BRACKETS.iter().any(ends_with_unit)
-        && let Some(found) = within(header, wanted)
-    {
-        return found;
+    let last = groups.last().filter(|group| group.is_last);
+    if let Some(group) = last.into_iter().chain(&groups).find(is_read) {
+        return (group.name, group.inside);
     }
-    for (open, close) in BRACKETS {
-        let inside = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
-        let Some((name, inside)) = inside.filter(|(name, _)| !name.trim().is_empty()) else { continue };
-        // `position[elbow]` and `q[0]` are items of lists.
-        let is_item = open == '[' && !name.ends_with(' ') && parse(inside, wanted) == Written::Unknown;
-        return if is_item { (header, "") } else { (name.trim(), inside.trim()) };
+    if let Some(group) = last {
+        return if group.may_be_item { (header, "") } else { (group.name, group.inside) };
     }
     let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
     // A word behind *in* is meant as a unit, whether it is known or not.
@@ -313,16 +311,32 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
 const BRACKETS: [(char, char); 7] =
     [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>'), ('（', '）'), ('［', '］'), ('【', '】')];
 
-/// Name and unit of a header with a unit in brackets before other words: `Load (kN) Test 1`, `Force [N] (filtered)`.
-fn within<'a>(header: &'a str, wanted: &[Dimension]) -> Option<(&'a str, &'a str)> {
-    BRACKETS.into_iter().find_map(|(open, close)| {
-        let (name, rest) = header.split_once(open)?;
-        let (inside, behind) = rest.split_once(close)?;
-        let is_unit =
-            matches!(parse(inside.trim(), wanted), Written::Known(dimension, _) if dimension != Dimension::Other);
-        let is_item = open == '[' && !name.ends_with(' ');
-        (is_unit && !name.trim().is_empty() && !behind.is_empty() && !is_item).then(|| (name.trim(), inside.trim()))
-    })
+/// Text in brackets of a header.
+struct Bracketed<'a> {
+    name: &'a str,
+    inside: &'a str,
+    /// True if nothing stands behind it. Others state a unit only if it is known: `Load (kN) Test 1`, `Force [N] (filtered)`.
+    is_last: bool,
+    /// True for `position[elbow]` and `q[0]`, items of lists.
+    may_be_item: bool,
+}
+
+/// The texts in brackets behind a name, in their order.
+fn bracketed(header: &str) -> Vec<Bracketed<'_>> {
+    let opened = header.char_indices().filter_map(|(at, c)| Some((at, BRACKETS.iter().find(|(open, _)| *open == c)?)));
+    let group = |(at, (open, close)): (usize, &(char, char))| {
+        let (name, rest) = (&header[..at], &header[at + open.len_utf8()..]);
+        let (inside, behind) = rest.split_once(*close)?;
+        let may_be_item = *open == '[' && !name.ends_with(' ');
+        let is_last = behind.is_empty();
+        (!name.trim().is_empty()).then_some(Bracketed {
+            name: name.trim(),
+            inside: inside.trim(),
+            is_last,
+            may_be_item,
+        })
+    };
+    opened.filter_map(group).collect()
 }
 
 /// True for a unit behind a mere blank, point or underscore. Numbers, single letters, and the words *in* and *min* are more

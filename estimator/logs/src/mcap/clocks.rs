@@ -199,10 +199,12 @@ fn merge(
     };
     push("t_s".to_owned(), String::new(), Cells::Numbers(time.clone()));
     let mut said = Vec::new();
+    let mut kind = "clock";
     for (index, (part, from)) in timed.into_iter().enumerate() {
         let time_field = part.time_field();
         let same = index == master || from == time;
         if !same && !part.names.is_empty() {
+            kind = RESAMPLED;
             said.push(resample::describe(&part.source.name, &from, &time));
             notes.extend(resample::gaps(&part.source.name, &from, &time).map(|t| note("gap", t)));
         }
@@ -222,6 +224,6 @@ fn merge(
     if cut > 0 {
         said.push(format!("{cut} samples that not all topics cover are left out"));
     }
-    notes.push(note(RESAMPLED, said.join("; ")));
+    notes.push(note(kind, said.join("; ")));
     Ok(raw)
 }

@@ -110,6 +110,7 @@ fn units_are_found_in_headers() {
         ("変位（mm）", "変位", "mm"),
         ("Position|mm", "Position", "mm"),
         ("Motor (left) 1", "Motor (left) 1", ""),
+        ("Force (left) (N) 2", "Force (left)", "N"),
     ] {
         assert_eq!(in_header(header, &[]), (name, unit), "{header}");
     }

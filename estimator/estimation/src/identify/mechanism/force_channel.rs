@@ -4,7 +4,7 @@ use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
 use super::zero_step::{self, OF_POWER};
-use crate::identify::limits::LEAST_SEGMENT_ROWS;
+use crate::identify::limits::{LEAST_SEGMENT_ROWS, SIGNIFICANT};
 use crate::zero_jumps;
 use foundation::words::amount;
 use haptics::law::Coordinate;
@@ -72,6 +72,10 @@ fn without_delay(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<(Vec
         let found = fit(&prompt, &[Term::Spring, Term::Delay])?;
         left = found.rms;
         let last = found.values.len() - 1;
+        // The first step shows if there is a lag.
+        if delay_s == 0.0 && found.values[last].abs() < SIGNIFICANT * found.std_errors[last] {
+            return None;
+        }
         if found.values[last].abs() < 0.01 * found.std_errors[last] {
             break;
         }
