@@ -70,3 +70,70 @@ fn a_suggested_sidecar_invents_no_factor() {
         is_the_drawer(&name, &table, &filled);
     }
 }
+
+/// A table of the drawer: a header, and rows of time (s), position (mm) and force (N).
+fn table(header: &str, row: impl Fn(usize, [f64; 3]) -> String) -> File {
+    let rows = drawer(1500, 100.0).into_iter().enumerate();
+    let text = rows.fold(header.to_owned() + "\n", |mut text, (at, [t, place, push])| {
+        let _ = writeln!(text, "{}", row(at, [t, 1e3 * place, push]));
+        text
+    });
+    File::new(text, r#"{"task":"mechanism"}"#)
+}
+
+/// The drawer from a file with the sidecar that `--suggest` writes; the output.
+fn mended(name: &str, file: &File) -> String {
+    let said = suggest(file);
+    let read = |name: &str| std::fs::read_to_string(file.0.path().join(name)).expect("a file");
+    is_the_drawer(name, read("log.csv"), &read("log.meta.json"));
+    said
+}
+
+/// Stamps of whole seconds keep the rate of the rows between them.
+#[test]
+fn coarse_stamps_show_the_rate() {
+    let file = table("Time (s),Position (mm),Force (N)", |at, [t, place, push]| {
+        format!("{:.0},{place:.5},{push:.6}", (t + 0.37 + 1e-9 * at as f64).floor())
+    });
+    mended("whole seconds", &file);
+}
+
+/// The parts on both sides of a leap are read on their own.
+#[test]
+fn a_position_whose_zero_was_set_is_cut_there() {
+    let file = table("Time (s),Position (mm),Force (N)", |at, [t, place, push]| {
+        format!("{t:.3},{:.5},{push:.6}", if at < 700 { place } else { place + 431.7 })
+    });
+    mended("a zero that was set", &file);
+}
+
+/// The raw channel comes before a filtered one, and both are named.
+#[test]
+fn rival_columns_are_named() {
+    let file = table("Time (s),Position (mm),Force filtered (N),Force raw (N)", |_, [t, place, push]| {
+        format!("{t:.3},{place:.5},{:.6},{push:.6}", 0.8 * push)
+    });
+    let said = mended("two forces", &file);
+    assert!(said.contains("`Force raw (N)` and `Force filtered (N)` may both be `f_N`"), "{said}");
+}
+
+/// Values that only the user knows are asked for: a factor of volts, and the rate of a log that counts its samples.
+#[test]
+fn unknown_factors_and_rates_are_asked_for() {
+    let volts =
+        table("Time (s),Position (mm),Load cell (V)", |_, [t, place, push]| format!("{t},{place:.5},{push:.6}"));
+    let counted = table("Sample,Position (mm),Force (N)", |at, [_, place, push]| format!("{at},{place:.5},{push:.6}"));
+    for (file, entry) in [(volts, r#""f_N": null"#), (counted, r#""rate_hz": null"#)] {
+        assert!(suggest(&file).contains(entry), "{entry}");
+    }
+}
+
+/// A few words among the numbers do not hide a column: its first one is named.
+#[test]
+fn words_for_missing_values_do_not_hide_a_force() {
+    let file = table("Time (s),Position (mm),Force (N)", |at, [t, place, push]| {
+        if at % 200 == 150 { format!("{t},{place:.5},#N/A") } else { format!("{t},{place:.5},{push:.6}") }
+    });
+    let said = suggest(&file);
+    assert!(said.contains(r#""f_N": "Force (N)""#) && said.contains("`#N/A` is not a number"), "{said}");
+}

@@ -5,6 +5,7 @@ use crate::ui::column_mapping::draft::Draft;
 use crate::ui::column_mapping::facts::look;
 use crate::ui::column_mapping::names::dimension;
 use crate::ui::column_mapping::state::mends;
+use estimator::log::units;
 use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, load, parse_sidecar, put_suggested, sidecar_path};
 use haptics::recording::{Recording, Suggested};
 use schemars::JsonSchema;
@@ -46,23 +47,28 @@ impl Search<'_> {
         Ok(load(self.log, Some(&sidecar)))
     }
 
-    /// Takes the meanings of the columns from their names and values; false if that was done before.
+    /// Takes the meanings of the columns from their names and values, but for those that the entries have; false if that was done
+    /// before.
     fn guess(&mut self) -> anyhow::Result<bool> {
         if self.has_guessed {
             return Ok(false);
         }
         self.has_guessed = true;
         let meta = parse_sidecar(&Value::Object(self.entries.clone()).to_string(), &sidecar_path(self.log))?;
-        let draft = Draft::new(&look(self.log)?, meta);
+        let mut draft = Draft::new(&look(self.log)?, meta);
+        draft.guess_the_rest();
         let Value::Object(mut guessed) = serde_json::to_value(draft.sidecar())? else { return Ok(false) };
-        for row in draft.rows.iter().filter(|row| !row.unit_stated) {
-            let Some((name, dimension)) = row.name().and_then(|name| Some((name, dimension(name)?))) else { continue };
+        for row in &draft.rows {
+            let Some(name) = row.name().filter(|name| dimension(name).is_some()) else { continue };
             let header = &row.facts.header;
-            if [name, header].iter().any(|key| draft.meta.scale.contains_key(*key)) {
+            if let Some(rival) = &row.rival {
+                self.guesses.push(format!("`{header}` and `{rival}` may both be `{name}`: check which one is meant"));
+            }
+            if row.unit_stated || [name, header].iter().any(|key| draft.meta.scale.contains_key(*key)) {
                 continue;
             }
             // Only the user knows the factor of a unit that the reader does not know.
-            if !row.facts.unit_text(dimension).is_empty() {
+            if row.needs_a_factor() {
                 put_suggested(&factor_of(name), &mut guessed);
             } else if let Some(unit) = row.unit {
                 self.guesses.push(format!("`{header}` states no unit; by its values it is {}: check it", unit.shown));
@@ -85,9 +91,12 @@ impl Search<'_> {
         Ok(match self.read()? {
             Ok(recordings) => {
                 let mut warnings = recordings.iter().flat_map(|r| &r.warnings);
-                let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()));
+                let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()))
+                    || recordings.iter().any(|recording| !has_motion_and_force(recording));
                 let doubt = warnings.find(|w| w.suggested.is_some());
+                let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
                 let has_step = is_mute && self.guess()?
+                    || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&rate())
                     || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries));
                 (has_step, doubt.map(|w| w.text.clone()))
             }
@@ -100,6 +109,22 @@ impl Search<'_> {
             }
         })
     }
+}
+
+/// Entries that ask for the rate of a log without a clock.
+fn rate() -> Suggested {
+    let mut entries = Suggested::new();
+    entries.insert("rate_hz".to_owned(), Value::Null);
+    entries
+}
+
+/// True for a recording with a motion and a force.
+fn has_motion_and_force(recording: &Recording) -> bool {
+    let names = || recording.channels.iter().filter(|channel| units::is_program_name(&channel.name));
+    let quantity = |name: &str| units::split(name).map(|(quantity, _)| quantity.to_owned()).unwrap_or_default();
+    let is_force = |name: &str| name.starts_with('f') || name.starts_with("tau");
+    let is_motion = |name: &str| ["q", "dq", "ddq", "x", "y", "z", "v"].iter().any(|start| name.starts_with(start));
+    names().any(|c| is_force(&quantity(&c.name))) && names().any(|c| is_motion(&quantity(&c.name)))
 }
 
 /// Entries that ask for the factor of a column.

@@ -23,6 +23,8 @@ const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 
 const TICKS: [(&str, std::ops::Range<f64>); 2] = [("1601", 1.25e17..1.58e17), ("year 1", 6.3e17..6.63e17)];
 /// Length of a tick, s.
 const TICK_S: f64 = 1e-7;
+/// Ranges of days that stamps count, 1954 to 2119, with the epochs that they count from: of spreadsheets, and of MATLAB.
+const DAYS: [(&str, std::ops::Range<f64>); 2] = [("1900", 2e4..8e4), ("year 0", 7.1e5..7.8e5)];
 /// Rates at which motion is measured, Hz.
 const RATES_HZ: std::ops::Range<f64> = 5.0..50_000.0;
 /// Fewer stamps show no clock: they may count poses.
@@ -95,9 +97,13 @@ fn origin(time: &[f64], clock: Use) -> Option<Origin> {
 
 /// Name and length, s, of the unit of stamps since 1970 that can be no seconds.
 fn stamp_unit(first: f64, factor: f64) -> Option<(&'static str, f64)> {
-    let is_tick = TICKS.iter().any(|(_, range)| range.contains(&first));
-    let is_large = first.abs() >= NO_SECONDS && factor == 1.0 && !is_tick;
+    let is_large = first.abs() >= NO_SECONDS && factor == 1.0 && !is_tick(first);
     STAMP_UNITS.into_iter().find(|(_, unit)| is_large && EPOCHS.contains(&(first * unit)))
+}
+
+/// True for a stamp in ticks of 100 ns, which the reader converts.
+pub fn is_tick(stamp: f64) -> bool {
+    TICKS.iter().any(|(_, range)| range.contains(&stamp))
 }
 
 /// Spans after which a clock starts again and time goes on, in its own numbers times their factor.
@@ -120,11 +126,13 @@ pub fn usual_step(time: &[f64]) -> Option<f64> {
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Rows a second of times that stand still at times and never go back.
+/// Rows a second of times that stand still at times and never go back: those between the first change and the last one.
 fn mean_rate(time: &[f64]) -> Option<f64> {
-    let span = time.last()? - time.first()?;
-    let rate = (time.len() - 1) as f64 / span;
-    (span > 0.0 && time.windows(2).all(|w| w[1] >= w[0])).then_some(rate)
+    let changes = |row: &usize| time[*row] != time[*row - 1];
+    let (first, last) = ((1..time.len()).find(changes)?, (1..time.len()).rfind(changes)?);
+    let (from, to) = if first < last { (first, last) } else { (0, time.len() - 1) };
+    let rate = (to - from) as f64 / (time[to] - time[from]);
+    (rate > 0.0 && time.windows(2).all(|w| w[1] >= w[0])).then_some(rate)
 }
 
 /// A way out for times that do not increase.
@@ -185,10 +193,15 @@ fn on_the_next_day(time: &mut [f64]) -> Option<String> {
 /// Turns stamps since an epoch that can be no seconds into seconds since the first row.
 fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
     let first = *time.first()?;
-    let ticks = TICKS.into_iter().find(|(_, range)| factor == 1.0 && range.contains(&first));
-    let (name, unit, epoch) = match ticks {
-        Some((epoch, _)) => ("ticks of 100 ns", TICK_S, epoch),
-        None => stamp_unit(first, factor).map(|(name, unit)| (name, unit, "1970"))?,
+    let of = |epochs: [(&'static str, std::ops::Range<f64>); 2]| {
+        epochs.into_iter().find(|(_, range)| factor == 1.0 && range.contains(&first)).map(|(epoch, _)| epoch)
+    };
+    let is_motion = |unit: f64| usual_step(time).is_some_and(|step| RATES_HZ.contains(&(unit * step).recip()));
+    let (name, unit, epoch) = match (of(TICKS), of(DAYS)) {
+        (Some(epoch), _) => ("ticks of 100 ns", TICK_S, epoch),
+        // Seconds since the start of a machine have such values, too, and other steps.
+        (_, Some(epoch)) if is_motion(DAY_S) && !is_motion(1.0) => ("days", DAY_S, epoch),
+        _ => stamp_unit(first, factor).map(|(name, unit)| (name, unit, "1970"))?,
     };
     for t in time.iter_mut() {
         *t = (*t - first) * unit;

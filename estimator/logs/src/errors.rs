@@ -4,6 +4,11 @@ use haptics::text_file::one_line as plain;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+/// Fault of a unit: it is not known, or not stated.
+fn unit_fault(unit: &str) -> String {
+    if unit.is_empty() { "states no unit".to_owned() } else { format!("has the unknown unit `{}`", plain(unit)) }
+}
+
 /// Error that kept a log from being loaded. Nothing is half-loaded: the result is a recording or one of these.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
@@ -201,7 +206,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A unit the program cannot convert.
-    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted} and the like, or state its factor in the sidecar: \"columns\": {{\"{name}\": \"{column}\"}}, \"scale\": {{\"{name}\": SI value of 1}}: {path}", name = plain(name), column = plain(column), unit = plain(unit), path = path.display())]
+    #[error("the column `{column}` {has}; use one of {accepted} and the like, or state its factor in the sidecar: \"columns\": {{\"{name}\": \"{column}\"}}, \"scale\": {{\"{name}\": SI value of 1}}: {path}", name = plain(name), column = plain(column), has = unit_fault(unit), path = path.display())]
     UnknownUnit {
         /// The column.
         column: String,

@@ -39,6 +39,7 @@ mod watch;
 mod write;
 pub mod written_units;
 
+pub use self::clock::is_tick;
 pub use self::csv::calendar::parse as stamp_ns;
 pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;

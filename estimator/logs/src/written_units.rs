@@ -2,7 +2,14 @@
 //!
 //! A unit is a product and quotient of atoms with prefixes and exponents. Its dimension follows from theirs.
 
+mod plain_text;
+mod spellings;
+
 use super::units::{Dimension, Unit, split};
+use plain_text::{tidied, times};
+use spellings::{
+    Atom, COUNTS, Exponents, FORCE, GRAVITY_M_S2, HABITS, LENGTH, MASS, OTHER, PLAIN, PREFIXED, PREFIXES, PRESSURE,
+};
 
 /// Meaning of the text of a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,131 +22,24 @@ pub enum Written {
     Unknown,
 }
 
-/// Standard gravity, m/s² (exact, CGPM 1901): turns a mass on a scale into its weight.
-const GRAVITY_M_S2: f64 = 9.806_65;
-/// One inch, m, and one pound, kg (both exact, 1959).
-const INCH_M: f64 = 0.0254;
-const POUND_KG: f64 = 0.453_592_37;
-const TURN_RAD: f64 = std::f64::consts::TAU;
-
-/// Exponents of length, time, force, mass, angle; units of other kinds have none.
-type Exponents = [i32; 5];
-const LENGTH: Exponents = [1, 0, 0, 0, 0];
-const TIME: Exponents = [0, 1, 0, 0, 0];
-const FORCE: Exponents = [0, 0, 1, 0, 0];
-const MASS: Exponents = [0, 0, 0, 1, 0];
-const ANGLE: Exponents = [0, 0, 0, 0, 1];
-const PRESSURE: Exponents = [-2, 0, 1, 0, 0];
-const TURN_RATE: Exponents = [0, -1, 0, 0, 1];
-const SPEED: Exponents = [1, -1, 0, 0, 0];
-/// Voltage, current, temperature, frequency: no mechanical dimension.
-const OTHER: Exponents = [0, 0, 0, 0, 9];
-
-/// A base unit: spellings, exponents, factor. A spelling of one letter or with capitals keeps its case.
-type Atom = (&'static [&'static str], Exponents, f64);
-
-/// Units that take the prefixes of [`PREFIXES`].
-const PREFIXED: [Atom; 9] = [
-    (&["m", "meter", "meters", "metre", "metres"], LENGTH, 1.0),
-    (&["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden"], TIME, 1.0),
-    (&["rad", "radian", "radians"], ANGLE, 1.0),
-    (&["N", "newton", "newtons"], FORCE, 1.0),
-    (&["g", "gram", "grams"], MASS, 1e-3),
-    (&["Pa", "pascal"], PRESSURE, 1.0),
-    (&["bar"], PRESSURE, 1e5),
-    (&["V", "volt", "volts"], OTHER, 1.0),
-    (&["A", "amp", "amps", "ampere"], OTHER, 1.0),
-];
-
-const PLAIN: [Atom; 30] = [
-    (&["in", "inch", "inches", "zoll", "\""], LENGTH, INCH_M),
-    (&["ft", "foot", "feet"], LENGTH, 12.0 * INCH_M),
-    (&["mil", "mils", "thou"], LENGTH, 1e-3 * INCH_M),
-    (&["micron", "microns"], LENGTH, 1e-6),
-    (&["min", "minute", "minutes"], TIME, 60.0),
-    (&["h", "hr", "hour", "hours"], TIME, 3600.0),
-    (&["micros"], TIME, 1e-6),
-    (&["millis"], TIME, 1e-3),
-    (&["nanos"], TIME, 1e-9),
-    (&["deg", "degs", "degree", "degrees"], ANGLE, TURN_RAD / 360.0),
-    (&["gon"], ANGLE, TURN_RAD / 400.0),
-    (&["arcmin"], ANGLE, TURN_RAD / 21_600.0),
-    (&["arcsec"], ANGLE, TURN_RAD / 1_296_000.0),
-    (&["rev", "revs", "revolution", "revolutions", "turn", "turns", "umdr"], ANGLE, TURN_RAD),
-    (&["gf", "pond"], FORCE, 1e-3 * GRAVITY_M_S2),
-    (&["kgf", "kp"], FORCE, GRAVITY_M_S2),
-    (&["lbf", "lbsf"], FORCE, POUND_KG * GRAVITY_M_S2),
-    (&["ozf"], FORCE, POUND_KG / 16.0 * GRAVITY_M_S2),
-    (&["dyn", "dyne", "dynes"], FORCE, 1e-5),
-    (&["kip", "kips"], FORCE, 1e3 * POUND_KG * GRAVITY_M_S2),
-    (&["lb", "lbs", "pound", "pounds"], MASS, POUND_KG),
-    (&["oz", "ounce", "ounces"], MASS, POUND_KG / 16.0),
-    (&["psi"], PRESSURE, POUND_KG * GRAVITY_M_S2 / (INCH_M * INCH_M)),
-    (&["atm"], PRESSURE, 101_325.0),
-    (&["rpm"], TURN_RATE, TURN_RAD / 60.0),
-    (&["rps"], TURN_RATE, TURN_RAD),
-    (&["dps"], TURN_RATE, TURN_RAD / 360.0),
-    (&["mps"], SPEED, 1.0),
-    (&["ips"], SPEED, INCH_M),
-    (&["degc", "celsius", "K", "kelvin", "Hz", "hertz", "W", "watt"], OTHER, 1.0),
-];
-
-const PREFIXES: [(&[&str], f64); 8] = [
-    (&["n", "nano"], 1e-9),
-    (&["u", "micro"], 1e-6),
-    (&["m", "milli"], 1e-3),
-    (&["c", "centi"], 1e-2),
-    (&["d", "deci"], 1e-1),
-    (&["h", "hecto"], 1e2),
-    (&["k", "kilo"], 1e3),
-    (&["M", "mega"], 1e6),
-];
-
-/// Numbers without a unit of their own.
-const COUNTS: [&str; 16] = [
-    "count", "counts", "cts", "cnt", "tick", "ticks", "lsb", "raw", "adc", "digit", "digits", "step", "steps", "pulse",
-    "pulses", "inc",
-];
-
-/// Texts that mean a unit only for quantities of some dimensions.
-const HABITS: [(&str, Dimension, f64); 8] = [
-    ("g", Dimension::Acceleration, GRAVITY_M_S2),
-    ("G", Dimension::Acceleration, GRAVITY_M_S2),
-    ("1/s", Dimension::AngularVelocity, 1.0),
-    ("s-1", Dimension::AngularVelocity, 1.0),
-    ("1/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
-    ("U/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
-    ("r/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
-    ("r/s", Dimension::AngularVelocity, TURN_RAD),
-];
-
 /// Meaning of a unit's text for a quantity of one of these dimensions, or of any if there are none. A mass stands for its
 /// weight where a force is wanted.
 pub fn parse(text: &str, wanted: &[Dimension]) -> Written {
     let text = tidied(text);
+    let (number, text) = times(&text);
     let habit = HABITS.iter().find(|(habit, dimension, _)| *habit == text && wanted.contains(dimension));
     if let Some(&(_, dimension, factor)) = habit {
-        return Written::Known(dimension, factor);
+        return Written::Known(dimension, number * factor);
     }
     let readings = [Case::Kept, Case::Free, Case::FreeProduct].map(|case| product(&text, case));
     let mut named = readings.into_iter().flatten().map(|found| named(found, wanted));
     let first = named.clone().next();
     let fitting = named.find(|(dimension, _)| wanted.is_empty() || wanted.contains(dimension));
     match fitting.or(first) {
-        Some((dimension, factor)) => Written::Known(dimension, factor),
+        Some((dimension, factor)) => Written::Known(dimension, number * factor),
         None if COUNTS.contains(&text.to_lowercase().as_str()) => Written::Counts,
         None => Written::Unknown,
     }
-}
-
-/// Brackets and blanks taken off, one spelling for each sign.
-fn tidied(text: &str) -> String {
-    let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}', '<', '>']).trim();
-    let inner = inner.strip_prefix("in ").unwrap_or(inner).trim();
-    let signs = [("µ", "u"), ("μ", "u"), ("·", "."), ("⋅", "."), ("×", "."), ("*", "."), ("²", "2"), ("⁻¹", "-1")];
-    let signs =
-        signs.into_iter().chain([("⁻²", "-2"), ("°C", "degc"), ("°", "deg"), ("º", "deg"), ("^", ""), (" per ", "/")]);
-    signs.fold(inner.to_owned(), |text, (from, to)| text.replace(from, to))
 }
 
 /// Regard to capitals.
@@ -240,7 +140,9 @@ fn atom(word: &str, case: Case) -> Option<(Exponents, f64)> {
             let (exponents, factor) = find(&PREFIXED, rest)?;
             // A mega of a length, a time or an angle is a capital that a spreadsheet made.
             let fits = *by < 1e6 || exponents == FORCE || exponents == PRESSURE || exponents == OTHER;
-            let spelled = prefix.len() == 1 || rest.len() > 2;
+            // Words go with words: no `millim`.
+            let is_sign = !prefix.is_ascii() || prefix.len() <= 2;
+            let spelled = is_sign || rest.len() > 2;
             (fits && spelled).then_some((exponents, by * factor))
         })
     };
@@ -288,7 +190,6 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     if let Some(group) = last {
         return if group.may_be_item { (header, "") } else { (group.name, group.inside) };
     }
-    let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
     // A word behind *in* is meant as a unit, whether it is known or not.
     if let Some((name, word)) = header.split_once(" in ")
         && word.len() > 1
@@ -296,6 +197,12 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     {
         return (name.trim(), word);
     }
+    without_brackets(header, wanted)
+}
+
+/// Name and unit text of a header that names a unit in words, behind a sign, or at the end of its name.
+fn without_brackets<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str) {
+    let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
     let spoken = [" in ", " / ", "/", ", ", ",", "_in_", "|"].iter().find_map(|mark| {
         let mut places = header.match_indices(mark);
         places.find_map(|(at, _)| (at > 0 && is_unit(&header[at + mark.len()..])).then_some((at, at + mark.len())))
@@ -304,7 +211,30 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
         let mut places = header.match_indices(['_', ' ', '.', '-']);
         places.find_map(|(at, _)| (at > 0 && is_suffix(&header[at + 1..], wanted)).then_some((at, at + 1)))
     };
-    spoken.or_else(loose).map_or((header, ""), |(at, from)| (header[..at].trim(), header[from..].trim()))
+    // `positionMm`: a capital behind a small letter begins a word.
+    let joined = || {
+        let pairs = header.char_indices().zip(header.char_indices().skip(1));
+        let mut places = pairs.filter(|((_, a), (_, b))| a.is_lowercase() && b.is_uppercase()).map(|(_, (at, _))| at);
+        places.find_map(|at| is_suffix(&header[at..], wanted).then_some((at, at)))
+    };
+    // `force_kN_raw`: a sign of a unit between words that are none.
+    let between = || {
+        let cuts: Vec<usize> = header.match_indices(['_', ' ', '.', '-']).map(|(at, _)| at).collect();
+        cuts.windows(2).find_map(|cut| is_sign(&header[cut[0] + 1..cut[1]]).then_some((cut[0], cut[1])))
+    };
+    let suffix = spoken.or_else(loose);
+    let is_known = suffix.is_some_and(|(_, from)| matches!(parse(&header[from..], wanted), Written::Known(..)));
+    if let Some((at, end)) = between().filter(|(at, _)| !is_known && *at > 0) {
+        return (header[..at].trim(), &header[at + 1..end]);
+    }
+    suffix.or_else(joined).map_or((header, ""), |(at, from)| (header[..at].trim(), header[from..].trim()))
+}
+
+/// True for the sign of a mechanical unit that is no word, and no abbreviation of one as *sec* and *in* are.
+fn is_sign(text: &str) -> bool {
+    (2..=3).contains(&text.len())
+        && !matches!(text.to_lowercase().as_str(), "in" | "min")
+        && matches!(parse(text, &[]), Written::Known(dimension, _) if !matches!(dimension, Dimension::Other | Dimension::Time))
 }
 
 /// Brackets around units, those of East Asian fonts included.

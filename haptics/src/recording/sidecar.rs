@@ -3,9 +3,14 @@
 use super::{Task, WrenchFrame};
 use crate::hand::Hand;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::json;
 use std::collections::BTreeMap;
+
+/// Writes null for the empty text that stands for a name without a column.
+fn with_null<S: Serializer>(columns: &BTreeMap<String, String>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(columns.iter().map(|(name, source)| (name, Some(source).filter(|text| !text.is_empty()))))
+}
 
 /// Geometry of the hand that made the recording.
 #[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
@@ -56,7 +61,7 @@ pub struct Meta {
     #[schemars(extend("x-absent" = "the hand of the program"), example = json!({ "link_m": 0.08, "base1_m": [-0.04, 0.0], "base2_m": [0.04, 0.0] }))]
     pub hand: Option<HandMeta>,
     /// The file's column for each name of the program; null for a name that the file does not have.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", serialize_with = "with_null")]
     #[schemars(with = "BTreeMap<String, Option<String>>", extend("x-absent" = "known names are read"), example = json!({ "q_m": "Extension [mm]", "t_s": null }))]
     pub columns: BTreeMap<String, String>,
     /// Column of the times of a channel that has a clock of its own, such as pairs of time and value side by side.
@@ -91,8 +96,8 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
-    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`, `spikes`, `tare-step`,
-    /// `clock-offset`.
+    /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`,
+    /// `wrapped-counter`, `spikes`, `tare-step`, `clock-offset`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
     pub as_recorded: Vec<String>,
@@ -240,8 +245,16 @@ pub struct Prior {
 }
 
 /// Kinds of repairs, by their names in `as_recorded`: those on loading, and those of a fit.
-pub const REPAIRS: [&str; 7] =
-    ["sentinels", "burst-stamps", "held-samples", "wrapped-angle", "spikes", TARE_STEP, CLOCK_OFFSET];
+pub const REPAIRS: [&str; 8] = [
+    "sentinels",
+    "burst-stamps",
+    "held-samples",
+    "wrapped-angle",
+    "wrapped-counter",
+    "spikes",
+    TARE_STEP,
+    CLOCK_OFFSET,
+];
 /// The repair of a step in the zero of a force sensor.
 pub const TARE_STEP: &str = "tare-step";
 /// The repair of a lag between channels with clocks of their own.

@@ -6,8 +6,9 @@ use crate::ui::column_mapping::file_units::FileUnit;
 use crate::ui::column_mapping::guess::{guess, unit_of};
 use crate::ui::column_mapping::names;
 use crate::ui::column_mapping::names::{Form, dimension};
+use estimator::log;
+use estimator::log::units::{self, Dimension};
 use estimator::log::written_units::{self, Written};
-use estimator::log::{self, units};
 use haptics::recording::{Meta, Task};
 use serde_json::Value;
 
@@ -33,6 +34,8 @@ pub struct Row {
     pub unit_stated: bool,
     /// True if the sign is inverted.
     pub negative: bool,
+    /// Another column that may have the same meaning, if the role is a guess.
+    pub rival: Option<String>,
     /// Factor applied beside the unit.
     pub scale: f64,
     /// Key of this row in the sidecar.
@@ -75,7 +78,9 @@ impl Row {
     /// True if the file's unit is unknown, or of another dimension than the name: a factor is then required.
     pub fn needs_a_factor(&self) -> bool {
         let Some(wanted) = self.name().and_then(dimension) else { return false };
-        let is_unknown = self.unit.is_none() && !self.unit_stated && !self.facts.unit_text(wanted).is_empty();
+        // A clock that counts rows is no clock before its period is known.
+        let is_asked_for = wanted == Dimension::Time || !self.facts.unit_text(wanted).is_empty();
+        let is_unknown = self.unit.is_none() && !self.unit_stated && is_asked_for;
         is_unknown || self.own_unit().is_some_and(|own| own.dimension != wanted)
     }
 
@@ -98,7 +103,7 @@ impl Row {
     }
 
     /// Factor of the unit that the file states, for a quantity of this dimension.
-    fn read_factor(&self, dimension: units::Dimension) -> Option<f64> {
+    fn read_factor(&self, dimension: Dimension) -> Option<f64> {
         match written_units::parse(self.facts.unit_text(dimension), &[dimension]) {
             Written::Known(found, factor) if found == dimension => Some(factor),
             _ => None,
@@ -139,6 +144,7 @@ impl Draft {
             unit: None,
             unit_stated: false,
             negative: false,
+            rival: None,
             scale: 1.0,
             key: None,
         };
@@ -193,17 +199,35 @@ impl Draft {
 
     /// Replaces every row by a guess.
     pub fn guess(&mut self) {
+        self.rows.iter_mut().for_each(|row| row.role = Role::Extra);
+        self.guess_those(|_| true);
+        self.select_one_object();
+    }
+
+    /// Guesses the meanings of the columns that have none, but for meanings that others have.
+    pub fn guess_the_rest(&mut self) {
+        self.guess_those(|row| row.role == Role::Extra && row.key.is_none());
+    }
+
+    fn guess_those(&mut self, is_free: impl Fn(&Row) -> bool) {
+        let taken: Vec<String> = self.rows.iter().filter_map(Row::name).map(str::to_owned).collect();
         let facts: Vec<ColumnFacts> = self.rows.iter().map(|r| r.facts.clone()).collect();
         for (row, guess) in self.rows.iter_mut().zip(guess(&facts)) {
+            if !is_free(row) || guess.name.as_ref().is_some_and(|name| taken.contains(name)) {
+                continue;
+            }
+            (row.unit, row.unit_stated, row.rival) = (guess.unit, guess.stated, guess.rival);
             row.role = guess.name.map_or(Role::Extra, Role::Named);
-            (row.unit, row.unit_stated) = (guess.unit, guess.stated);
             if let Role::Named(name) = row.role.clone() {
                 row.take_factors(&self.meta, &name);
             }
         }
+    }
+
+    /// In a table of several objects, the first is selected until the user chooses another.
+    fn select_one_object(&mut self) {
         // Runs are recordings of one object.
         let words = |r: &Row| !r.facts.numeric && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
-        // A table of several objects: the first is selected until the user chooses another.
         if self.meta.select.is_empty()
             && let Some(row) = self.rows.iter().find(|r| words(r) && several(&r.facts))
             && let Some(first) = row.facts.distinct.as_ref().and_then(|d| d.first())

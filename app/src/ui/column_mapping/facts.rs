@@ -12,6 +12,8 @@ use std::path::Path;
 
 /// Number of bytes of a text table that are inspected.
 const LOOK_BYTES: u64 = 32 << 20;
+/// Share of numbers among the cells of a column of numbers, as in the reader of tables.
+const NUMERIC: f64 = 0.9;
 /// Number of first values that are shown.
 const SHOWN_CELLS: usize = 3;
 /// Minimum number of increasing rows between two restarts of a clock that starts again for every trial.
@@ -28,7 +30,7 @@ pub struct ColumnFacts {
     pub stated_unit: String,
     /// First values, as written in the file.
     pub first: Vec<String>,
-    /// True if every cell is a number.
+    /// True if the cells are numbers, but for a few.
     pub numeric: bool,
     /// Smallest and largest number.
     pub range: Option<(f64, f64)>,
@@ -83,10 +85,16 @@ fn from_cells(table: &TextTable) -> FileFacts {
         // Times of the calendar count from the first row.
         let origin_ns = cells().next().and_then(log::stamp_ns);
         let seconds = |cell: &str| Some(1e-9 * log::stamp_ns(cell)?.saturating_sub(origin_ns?) as f64);
-        let numbers: Vec<f64> = cells().map_while(|cell| cell.parse().ok().or_else(|| seconds(cell))).collect();
-        let mut facts = if numbers.len() == rows.len() { of_numbers(&numbers) } else { ColumnFacts::default() };
+        let numbers: Vec<f64> = cells().filter_map(|cell| cell.parse().ok().or_else(|| seconds(cell))).collect();
+        let filled = cells().filter(|cell| !cell.is_empty()).count();
+        // A few words stand for values that are missing.
+        let is_numeric = numbers.len() as f64 >= NUMERIC * filled as f64;
+        let mut facts = if is_numeric { of_numbers(&numbers) } else { ColumnFacts::default() };
         facts.header.clone_from(header);
         facts.stated_unit = table.units.get(column).cloned().unwrap_or_default();
+        if facts.numeric && origin_ns.is_some() {
+            "s".clone_into(&mut facts.stated_unit);
+        }
         facts.first = cells().take(SHOWN_CELLS).map(str::to_owned).collect();
         facts.changes = cells().zip(cells().skip(1)).filter(|(a, b)| a != b).count();
         facts.distinct = distinct(cells());
@@ -159,6 +167,8 @@ fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogE
         }
         let mut facts = of_numbers(&values);
         facts.header.clone_from(own);
+        let stated = recordings.first().and_then(|r| r.channels.iter().find(|c| c.name == name || c.name == *own));
+        facts.stated_unit = stated.filter(|_| si.is_none()).map(|c| c.unit.clone()).unwrap_or_default();
         facts.first = values.iter().take(SHOWN_CELLS).map(f64::to_string).collect();
         facts.changes = values.windows(2).filter(|w| w[0] != w[1]).count();
         facts

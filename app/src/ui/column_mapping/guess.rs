@@ -3,11 +3,11 @@
 
 use crate::ui::column_mapping::facts::ColumnFacts;
 use crate::ui::column_mapping::file_units::{FileUnit, spelled, spelled_for, unit_in};
-use crate::ui::column_mapping::names::{Form, find};
+use crate::ui::column_mapping::names::{Form, dimension, find};
 use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read};
-use estimator::log::PAIRS;
 use estimator::log::units::{self, Dimension};
 use estimator::log::written_units::{self, Written};
+use estimator::log::{PAIRS, is_tick};
 
 /// Proposal for one column.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,8 +18,12 @@ pub struct Guess {
     pub unit: Option<&'static FileUnit>,
     /// True if the name states the unit, false if it was inferred from the range.
     pub stated: bool,
+    /// Another column that may have the same meaning.
+    pub rival: Option<String>,
 }
 
+/// Points that a column loses if only the user can convert its unit.
+const UNCONVERTED: i32 = 4;
 /// Points of a column that has the program's own name.
 const OWN_NAME: i32 = 1_000;
 
@@ -37,23 +41,35 @@ pub fn guess(columns: &[ColumnFacts]) -> Vec<Guess> {
     let readings: Vec<Reading> = columns.iter().map(|c| read(&c.with_unit())).collect();
     let mut candidates: Vec<Candidate> =
         columns.iter().enumerate().filter_map(|(at, facts)| candidate(at, facts, &readings[at])).collect();
+    name_one_coordinate(&mut candidates, columns);
     prefer_pairs(&mut candidates);
-    let mut chosen = best_of_each(candidates);
+    let mut chosen = best_of_each(&candidates);
     settle_forms(&mut chosen);
+    // Columns of one dimension without units have the same one.
+    let alike = |facts: &ColumnFacts, name: Option<&str>| {
+        let wanted = name.and_then(dimension).filter(|wanted| *wanted != Dimension::Time);
+        let is_alike = |c: &&Candidate| dimension(&c.name) == wanted && !unit_of(&columns[c.column], Some(&c.name)).1;
+        let ranges = chosen.iter().filter(|_| wanted.is_some()).filter(is_alike);
+        let ranges = ranges.filter_map(|c| columns[c.column].range).chain(facts.range);
+        let range = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        ColumnFacts { range, ..facts.clone() }
+    };
     columns
         .iter()
         .enumerate()
         .map(|(at, facts)| {
             let name = chosen.iter().find(|c| c.column == at).map(|c| c.name.clone());
-            let (unit, stated) = unit_of(facts, name.as_deref());
-            Guess { name, unit, stated }
+            let (unit, stated) = unit_of(&alike(facts, name.as_deref()), name.as_deref());
+            let is_rival = |c: &&Candidate| c.column != at && name.as_ref() == Some(&c.name) && c.points < OWN_NAME;
+            let rival = candidates.iter().find(is_rival).map(|c| columns[c.column].header.clone());
+            Guess { name, unit, stated, rival }
         })
         .collect()
 }
 
 /// Unit of a column in the dimension of `name`, and true if the header states it. Otherwise it is inferred from the range.
 pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static FileUnit>, bool) {
-    let Some(dimension) = name.and_then(crate::ui::column_mapping::names::dimension) else {
+    let Some(dimension) = name.and_then(dimension) else {
         let stated = unit_in(&facts.header).1;
         return (stated, stated.is_some());
     };
@@ -73,6 +89,7 @@ pub fn unit_of(facts: &ColumnFacts, name: Option<&str>) -> (Option<&'static File
 fn by_range(facts: &ColumnFacts, dimension: Dimension) -> Option<&'static FileUnit> {
     let reach = facts.range.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
     let symbol = match dimension {
+        Dimension::Time if counts_rows(facts) => return None,
         Dimension::Time => return Some(clock_unit(facts, reach)),
         // A workspace is at most a metre; values above 5000 are micrometres.
         Dimension::Length if reach > 5_000.0 => "um",
@@ -88,10 +105,17 @@ fn by_range(facts: &ColumnFacts, dimension: Dimension) -> Option<&'static FileUn
     FileUnit::of_symbol(symbol)
 }
 
+/// True for a clock that counts rows, or periods of an unknown length.
+fn counts_rows(facts: &ColumnFacts) -> bool {
+    facts.whole && facts.step == Some(1.0) && facts.range.is_some_and(|(low, _)| low == 0.0 || low == 1.0)
+}
+
 /// Unit of a clock: epochs by their magnitude in our century, counters by their steps.
 fn clock_unit(facts: &ColumnFacts, reach: f64) -> &'static FileUnit {
     let step = facts.step.unwrap_or(0.0);
     let shown = match () {
+        // The reader converts ticks of 100 ns itself.
+        () if is_tick(reach) => "s",
         () if reach > 1e17 => "ns",
         () if reach > 1e14 => "µs",
         () if reach > 1e11 => "ms",
@@ -132,18 +156,23 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     if kind == Kind::Time {
         return facts.increasing.then(|| made("t_s".to_owned(), reading.points)).flatten();
     }
-    if stated_otherwise(facts, kind) {
-        return None;
-    }
     let name = name_of(kind, reading)?;
     find(&name)?;
-    made(name, reading.points)
+    match stated_otherwise(facts, kind) {
+        None => made(name, reading.points),
+        // A sensor of force may state volts, which only the user can convert.
+        Some(Dimension::Other) if kind == Kind::Force => made(name, reading.points - UNCONVERTED),
+        Some(_) => None,
+    }
 }
 
-/// True if the unit in the header measures something else.
-fn stated_otherwise(facts: &ColumnFacts, kind: Kind) -> bool {
-    let outside = spelled(&facts.stated_unit);
-    outside.or_else(|| unit_in(&facts.header).1).is_some_and(|unit| !kind.dimensions().contains(&unit.dimension))
+/// Dimension of the unit in the header if it measures something else.
+fn stated_otherwise(facts: &ColumnFacts, kind: Kind) -> Option<Dimension> {
+    let text = kind.dimensions().first().map_or("", |dimension| facts.unit_text(*dimension));
+    match written_units::parse(text, kind.dimensions()) {
+        Written::Known(dimension, _) => Some(dimension).filter(|found| !kind.dimensions().contains(found)),
+        Written::Counts | Written::Unknown => None,
+    }
 }
 
 /// Program's name for the reading of a header.
@@ -178,6 +207,22 @@ fn name_of(kind: Kind, reading: &Reading) -> Option<String> {
     Some(name)
 }
 
+/// Beside a force without a direction, `q` is a length, and so is `x` without `y`.
+fn name_one_coordinate(candidates: &mut [Candidate], columns: &[ColumnFacts]) {
+    let has = |name: &str| candidates.iter().any(|c| c.name == name);
+    if !has("f_N") || has("tau_Nm") || has("q_m") {
+        return;
+    }
+    let is_one = |c: &Candidate| match c.name.as_str() {
+        "q_rad" => columns[c.column].header.eq_ignore_ascii_case("q"),
+        "x_m" => !has("y_m") && c.points < OWN_NAME,
+        _ => false,
+    };
+    if let Some(at) = candidates.iter().position(is_one) {
+        candidates[at].name = "q_m".into();
+    }
+}
+
 /// Prefers pairs of coordinate and force of one place: `jaw_angle` with `jaw_torque`.
 fn prefer_pairs(candidates: &mut [Candidate]) {
     let mates = [("q_m", "f_N"), ("q_rad", "tau_Nm")];
@@ -201,9 +246,9 @@ fn prefer_pairs(candidates: &mut [Candidate]) {
 }
 
 /// One column per name: the one with the most points, the first of equals.
-fn best_of_each(candidates: Vec<Candidate>) -> Vec<Candidate> {
+fn best_of_each(candidates: &[Candidate]) -> Vec<Candidate> {
     let mut chosen: Vec<Candidate> = Vec::new();
-    for candidate in candidates {
+    for candidate in candidates.iter().cloned() {
         match chosen.iter_mut().find(|c| c.name == candidate.name) {
             Some(other) if candidate.points > other.points => *other = candidate,
             Some(_) => {}
@@ -237,7 +282,8 @@ fn settle_forms(chosen: &mut Vec<Candidate>) {
         () => Form::Coordinate,
     };
     // One coordinate: the one whose force is present, otherwise the length.
-    let angle = has("q_rad") && (!has("q_m") || (has("tau_Nm") && !has("f_N")));
+    let turns = has("q_rad") || has("dq_rad_s");
+    let angle = turns && (!(has("q_m") || has("dq_m_s")) || (has("tau_Nm") && !has("f_N")));
     let dropped: &[&str] = if angle { &["q_m", "dq_m_s", "f_N"] } else { &["q_rad", "dq_rad_s", "tau_Nm"] };
     chosen.retain(|c| {
         let of = find(&c.name).map_or(form, |n| n.form);

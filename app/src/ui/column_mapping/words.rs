@@ -1,4 +1,4 @@
-//! Reading of column names as people write them, in English and German: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
+//! Reading of column names as people write them, in English, German, and words of other languages: `force_left_x`, `Kraft rechts Y [N]`, `posX`.
 
 use crate::ui::column_mapping::file_units::MECHANICAL;
 use estimator::log::units::Dimension;
@@ -96,7 +96,7 @@ pub fn read(header: &str) -> Reading {
     let (name, unit) = in_header(header, &[]);
     let words = words(name);
     let mut reading = Reading::default();
-    let (mut kinds, mut doubt, mut bonus) = (Vec::new(), 0, 0);
+    let (mut kinds, mut doubt, mut bonus, mut processed) = (Vec::new(), 0, 0, 0);
     for word in &words {
         match meaning(word) {
             Meaning::Kind(kind) => kinds.push(kind),
@@ -112,6 +112,7 @@ pub fn read(header: &str) -> Reading {
             Meaning::Finger(number) => reading.finger = Some(number),
             Meaning::Measured => bonus = 2,
             Meaning::Doubtful => doubt = 5,
+            Meaning::Processed => processed = 1,
             Meaning::SomethingElse => return Reading { words, ..Reading::default() },
             Meaning::Rate => kinds.push(Kind::Velocity),
             Meaning::None => {}
@@ -123,6 +124,8 @@ pub fn read(header: &str) -> Reading {
     };
     let fallback = reading.axis.map(|_| Kind::Position).or(by_unit);
     reading.points = if kinds.is_empty() && reading.axis.is_none() { BY_UNIT } else { NAMED } + bonus - doubt;
+    // A filter delays and attenuates: the raw channel comes first.
+    reading.points -= if reading.points > BY_UNIT { processed } else { 0 };
     reading.kind = combined(&kinds, by_unit).or(fallback).filter(|_| reading.points >= BY_UNIT);
     reading.words = words.into_iter().filter(|w| !matches!(meaning(w), Meaning::Kind(_))).collect();
     reading
@@ -137,6 +140,10 @@ fn combined(kinds: &[Kind], by_unit: Option<Kind>) -> Option<Kind> {
     if has(Velocity) && (by_unit == Some(AngularVelocity) || has(Angle)) {
         return Some(AngularVelocity);
     }
+    // The position of a shaft in turns.
+    if has(Position) && by_unit == Some(Angle) && kinds.iter().all(|kind| *kind == Position) {
+        return by_unit;
+    }
     [Torque, Force, AngularVelocity, Velocity, Angle, Position, Time, Trial, Label].into_iter().find(|kind| has(*kind))
 }
 
@@ -149,36 +156,69 @@ enum Meaning {
     Rate,
     Measured,
     Doubtful,
+    Processed,
     SomethingElse,
     None,
 }
 
+/// Words for the quantities, in English, German, French, Spanish, Russian, and Chinese.
+const QUANTITIES: [(Kind, &str); 7] = [
+    (
+        Kind::Time,
+        "t time zeit stamp timestamp zeitstempel clock uhrzeit elapsed \
+         ts tick ticks datenum время 时间 tiempo temps 时刻",
+    ),
+    (
+        Kind::Position,
+        "pos position weg lage ort tip tcp displacement disp \
+         auslenkung hub stroke travel extension schlitten перемещение положение 位移 位置",
+    ),
+    (Kind::Angle, "angle winkel theta phi alpha q drehwinkel rotation encoder угол 角度"),
+    (Kind::Velocity, "v vel velocity speed geschwindigkeit geschw"),
+    (Kind::AngularVelocity, "omega dq qd qdot winkelgeschwindigkeit drehzahl thetadot"),
+    (Kind::Force, "f force forces kraft zugkraft druckkraft loadcell load kraftsensor effort сила усилие 力"),
+    (Kind::Torque, "tau torque moment drehmoment tq trq couple момент 扭矩"),
+];
+
 fn meaning(word: &str) -> Meaning {
-    use Meaning::{Along, Doubtful, Finger, Measured, OfJoint, Rate, SomethingElse};
+    use Meaning::{Doubtful, Finger, Measured, Processed, Rate, SomethingElse};
     if let Ok(number) = word.parse() {
         return Finger(number);
     }
+    if let Some((kind, _)) = QUANTITIES.iter().find(|(_, words)| words.split(' ').any(|known| known == word)) {
+        return Meaning::Kind(*kind);
+    }
+    if let Some(component) = component(word) {
+        return component;
+    }
     match word {
-        "t" | "time" | "zeit" | "stamp" | "timestamp" | "zeitstempel" | "clock" | "uhrzeit" | "elapsed" => {
-            Meaning::Kind(Kind::Time)
-        }
-        "pos" | "position" | "weg" | "lage" | "ort" | "tip" | "tcp" | "displacement" | "disp" | "auslenkung"
-        | "hub" | "stroke" | "travel" | "extension" | "schlitten" => Meaning::Kind(Kind::Position),
-        "angle" | "winkel" | "theta" | "phi" | "alpha" | "q" | "drehwinkel" | "rotation" | "encoder" => {
-            Meaning::Kind(Kind::Angle)
-        }
-        "v" | "vel" | "velocity" | "speed" | "geschwindigkeit" | "geschw" => Meaning::Kind(Kind::Velocity),
         "rate" | "dot" | "angular" => Rate,
-        "omega" | "dq" | "qd" | "qdot" | "winkelgeschwindigkeit" | "drehzahl" | "thetadot" => {
-            Meaning::Kind(Kind::AngularVelocity)
-        }
-        "f" | "force" | "forces" | "kraft" | "zugkraft" | "druckkraft" | "loadcell" | "kraftsensor" => {
-            Meaning::Kind(Kind::Force)
-        }
-        "tau" | "torque" | "moment" | "drehmoment" | "tq" | "trq" => Meaning::Kind(Kind::Torque),
         // The reader decides if `segment` stands for runs or for the phases of one.
         run if run != "segment" && estimator::log::counts_runs(run) => Meaning::Kind(Kind::Trial),
         "label" | "state" | "zustand" | "phase" | "annotation" => Meaning::Kind(Kind::Label),
+        "bottom" | "unten" | "unteres" | "lower" | "proximal" => Meaning::Joint(Joint::Bottom),
+        "top" | "oben" | "oberes" | "upper" | "distal" => Meaning::Joint(Joint::Top),
+        "left" | "links" | "linke" | "linker" | "l" | "li" => Finger(1),
+        "right" | "rechts" | "rechte" | "rechter" | "r" | "re" => Finger(2),
+        "measured" | "meas" | "ist" | "actual" | "act" | "sensor" | "gemessen" => Measured,
+        // Set points in German: `Sollweg`.
+        set if set.starts_with("soll") => Doubtful,
+        "command" | "cmd" | "commanded" | "reference" | "ref" | "desired" | "des" | "set" | "setpoint" | "setting"
+        | "target" | "goal" | "estimate" | "est" | "estimated" | "equilibrium" | "simulated" | "sim" | "predicted"
+        | "model" | "max" | "min" => Doubtful,
+        "filtered" | "filt" | "smoothed" | "smooth" | "lowpass" | "gefiltert" | "avg" | "mean" => Processed,
+        "acc" | "accel" | "acceleration" | "beschleunigung" | "jerk" | "current" | "strom" | "voltage" | "spannung"
+        | "temp" | "temperature" | "temperatur" | "pressure" | "druck" | "error" | "fehler" | "cov" | "std"
+        | "sequence" | "seq" | "counter" | "status" | "orientation" | "quat" | "qw" | "qx" | "qy" | "qz" | "wx"
+        | "wy" | "wz" | "frequency" | "frequenz" => SomethingElse,
+        _ => Meaning::None,
+    }
+}
+
+/// Meaning of the name of a vector's component, or of a joint's coordinate.
+fn component(word: &str) -> Option<Meaning> {
+    use Meaning::{Along, OfJoint};
+    Some(match word {
         "x" => Along(None, Axis::X),
         "y" => Along(None, Axis::Y),
         "z" => Along(None, Axis::Z),
@@ -195,22 +235,8 @@ fn meaning(word: &str) -> Meaning {
         "qt" => OfJoint(Kind::Angle, Joint::Top),
         "dqb" => OfJoint(Kind::AngularVelocity, Joint::Bottom),
         "dqt" => OfJoint(Kind::AngularVelocity, Joint::Top),
-        "bottom" | "unten" | "unteres" | "lower" | "proximal" => Meaning::Joint(Joint::Bottom),
-        "top" | "oben" | "oberes" | "upper" | "distal" => Meaning::Joint(Joint::Top),
-        "left" | "links" | "linke" | "linker" | "l" | "li" => Finger(1),
-        "right" | "rechts" | "rechte" | "rechter" | "r" | "re" => Finger(2),
-        "measured" | "meas" | "ist" | "actual" | "act" | "sensor" | "gemessen" => Measured,
-        // Set points in German: `Sollweg`.
-        set if set.starts_with("soll") => Doubtful,
-        "command" | "cmd" | "commanded" | "reference" | "ref" | "desired" | "des" | "set" | "setpoint" | "setting"
-        | "target" | "goal" | "estimate" | "est" | "estimated" | "equilibrium" | "simulated" | "sim" | "predicted"
-        | "model" | "max" | "min" => Doubtful,
-        "acc" | "accel" | "acceleration" | "beschleunigung" | "jerk" | "current" | "strom" | "voltage" | "spannung"
-        | "temp" | "temperature" | "temperatur" | "pressure" | "druck" | "error" | "fehler" | "cov" | "std"
-        | "sequence" | "seq" | "counter" | "status" | "orientation" | "quat" | "qw" | "qx" | "qy" | "qz" | "wx"
-        | "wy" | "wz" | "frequency" | "frequenz" => SomethingElse,
-        _ => Meaning::None,
-    }
+        _ => return None,
+    })
 }
 
 /// `forceLeftX` → force, left, x; `Fx1` → fx, 1; `Prüf-Kraft` → pruef, kraft.

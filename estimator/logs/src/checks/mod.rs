@@ -8,6 +8,7 @@
 mod clock;
 mod findings;
 mod held;
+mod leaps;
 mod profile;
 mod repeats;
 mod scale;
@@ -40,8 +41,9 @@ pub fn warnings_of(recording: &Recording, with_spikes: bool) -> Vec<Warning> {
         of_channel(recording, &channels[i], with_spikes)
     });
     let (profiles, own): (Vec<Profile>, Vec<Vec<Warning>>) = own.into_iter().unzip();
-    let about_all: [&(dyn Fn() -> Vec<Warning> + Sync); 4] = [
+    let about_all: [&(dyn Fn() -> Vec<Warning> + Sync); 5] = [
         &|| clock::warnings(recording),
+        &|| leaps::warnings(recording),
         &|| held::coarse(recording, &profiles),
         &|| repeats::warnings(recording, &profiles),
         &|| scale::warnings(recording, &profiles),

@@ -28,6 +28,22 @@ fn a_clean_recording_has_no_warnings() {
 }
 
 #[test]
+fn a_position_that_leaps_and_stays_is_doubted_with_the_parts() {
+    let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
+    let mut zeroed = wave(2000);
+    let at = zeroed[1199];
+    zeroed[1200..].iter_mut().for_each(|v| *v -= at + 3.0);
+    let found = warnings(&recording(time.clone(), vec![channel("q_m", zeroed)]));
+    assert_eq!(kinds(&found), ["leap"]);
+    assert_eq!(found[0].spans, [Span { first: 1199, end: 1201 }]);
+    let windows = serde_json::json!([{ "from_s": 0.0, "to_s": 1.199 }, { "from_s": 1.2, "to_s": 1.999 }]);
+    assert_eq!(found[0].suggested.as_ref().and_then(|entries| entries.get("windows")), Some(&windows));
+    // A snap takes some samples, and its speed shows before and behind it.
+    let snap = |i: usize| wave(2000)[i] + 0.4 * (1.0 + ((i as f64 - 1000.0) / 3.0).tanh());
+    assert!(warnings(&recording(time, vec![channel("q_m", (0..2000).map(snap).collect())])).is_empty());
+}
+
+#[test]
 fn gaps_dropped_samples_and_jumps_are_told_apart() {
     let mut time: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
     time[100..].iter_mut().for_each(|t| *t += 0.02);

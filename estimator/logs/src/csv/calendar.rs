@@ -98,11 +98,14 @@ pub fn is_another_day(a_ns: i64, b_ns: i64) -> bool {
     a_ns.div_euclid(DAY_S * NS) != b_ns.div_euclid(DAY_S * NS)
 }
 
-/// The text without AM or PM, and true for PM.
+/// The text without AM or PM, also written `a.m.`, and true for PM.
 fn half_day(text: &str) -> (&str, Option<bool>) {
     let upper = text.to_ascii_uppercase();
-    let ends = |end: &str| upper.ends_with(end).then(|| text[..text.len() - end.len()].trim_end());
-    match (ends("AM"), ends("PM")) {
+    let ends = |ends: [&str; 2]| {
+        let end = ends.into_iter().find(|end| upper.ends_with(end))?;
+        Some(text[..text.len() - end.len()].trim_end())
+    };
+    match (ends(["AM", "A.M."]), ends(["PM", "P.M."])) {
         (Some(rest), _) => (rest, Some(false)),
         (_, Some(rest)) => (rest, Some(true)),
         _ => (text, None),
@@ -173,8 +176,8 @@ fn is_month_first(date: &str, order: Order) -> bool {
     if date.contains('/') { order == Order::Usual } else { date.contains('-') && order == Order::Other }
 }
 
-/// Nanoseconds since midnight of `17:00`, `17:00:08` or `17:00:08.123456`, and of minutes and seconds, `58:55.000`, as
-/// spreadsheets write them.
+/// Nanoseconds since midnight of `17:00`, `17:00:08`, `17:00:08.123456` or `17:00:08:123`, and of minutes and seconds,
+/// `58:55.000`, as spreadsheets write them.
 fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
     let mut parts = time.split(':');
     let (first, next, last) = (parts.next()?, parts.next()?, parts.next());
@@ -182,7 +185,12 @@ fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
         None if next.contains(['.', ',']) => ("0", first, next),
         _ => (first, next, last.unwrap_or("0")),
     };
-    let (second, fraction) = second.split_once(['.', ',']).unwrap_or((second, ""));
+    let (second, fraction) = match (second.split_once(['.', ',']), parts.next()) {
+        (Some(parted), None) => parted,
+        (None, None) => (second, ""),
+        (None, Some(thousandths)) if thousandths.len() == 3 => (second, thousandths),
+        _ => return None,
+    };
     let (hour, minute, second) = (whole(hour)?, whole(minute)?, whole(second)?);
     if parts.next().is_some() || hour > 23 || minute > 59 || second > 60 {
         return None;
@@ -221,11 +229,25 @@ mod tests {
             ("58:55.005", (58 * 60 + 55) * NS + 5_000_000),
             ("17-Apr-2025 17:00:08.12", base + 120_000_000),
             ("12:30 AM", 30 * 60 * NS),
+            ("12:30:08.5 p.m.", (12 * 3600 + 30 * 60 + 8) * NS + NS / 2),
+            ("17:00:08:120", (17 * 3600 + 8) * NS + 120_000_000),
             ("1970-01-01T00:00:00", 0),
         ] {
             assert_eq!(parse(text), Some(ns), "{text}");
         }
-        for text in ["", "17", "0.5", "2025-04-17", "25:00", "2025-13-01T00:00", "a:b", "12:00:00.x", "-1:00"] {
+        for text in [
+            "",
+            "17",
+            "0.5",
+            "2025-04-17",
+            "25:00",
+            "2025-13-01T00:00",
+            "a:b",
+            "12:00:00.x",
+            "-1:00",
+            "1:2:3:4",
+            "1:2:3.5:400",
+        ] {
             assert_eq!(parse(text), None, "{text}");
         }
     }

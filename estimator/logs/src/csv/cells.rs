@@ -1,5 +1,6 @@
 //! Cells and records: their ends, and the number in a cell.
 
+use super::decimal::Decimal;
 use memchr::{memchr, memchr2};
 
 /// Rows that are read before they are distributed to the columns.
@@ -20,49 +21,13 @@ impl Default for Notation {
     }
 }
 
-/// Decimal mark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decimal {
-    /// A comma may stand between thousands, beside a point.
-    Point,
-    /// A point stands between thousands.
-    Comma,
-    /// The file shows both, or neither.
-    Either,
-}
-
-impl Decimal {
-    /// The mark that cells with this delimiter use, and true if the other one occurs, too.
-    pub fn of<'a>(cells: impl Iterator<Item = &'a str>, delimiter: u8) -> (Self, bool) {
-        let [mut points, mut commas, mut groups] = [false; 3];
-        for cell in cells {
-            let marks = cell.bytes().filter(|b| matches!(b, b'.' | b',')).count();
-            let Some(at) = cell.rfind(['.', ',']) else { continue };
-            let (before, after) = (cell[..at].trim_start_matches(['+', '-']), &cell[at + 1..]);
-            let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
-            let decimals = after.split(['e', 'E']).next().unwrap_or(after);
-            if !is_digits(&before.replace(['.', ','], "")) || !is_digits(decimals) {
-                continue;
-            }
-            // Three digits may be a thousand, but not behind a zero, nor behind more than three others.
-            let certain =
-                decimals.len() != 3 || marks == 1 && (before.starts_with('0') || !(1..=3).contains(&before.len()));
-            let is_comma = cell.as_bytes()[at] == b',';
-            (points, commas) = (points || certain && !is_comma, commas || certain && is_comma);
-            groups |= !certain && !is_comma;
-        }
-        match (points, commas) {
-            _ if delimiter == b',' => (Self::Point, false),
-            (false, true) => (Self::Comma, groups),
-            (true, false) => (Self::Point, false),
-            (both, _) => (Self::Either, both),
-        }
-    }
-}
-
 /// A number from the bytes of a cell. NaN and infinities come back as such. Correctly rounded.
 pub fn number(cell: &[u8], notation: Notation) -> Option<f64> {
     let cell = cell.trim_ascii();
+    plain_number(cell, notation).or_else(|| plain_number(&respelled(cell)?, notation))
+}
+
+fn plain_number(cell: &[u8], notation: Notation) -> Option<f64> {
     if notation.decimal == Decimal::Comma && cell.contains(&b'.') {
         return grouped(cell, b'.', b',');
     }
@@ -70,7 +35,7 @@ pub fn number(cell: &[u8], notation: Notation) -> Option<f64> {
         return Some(value);
     }
     if notation.decimal == Decimal::Point {
-        return if cell.contains(&b'.') { grouped(cell, b',', b'.') } else { None };
+        return grouped(cell, b',', b'.');
     }
     if cell.contains(&b'.') {
         return None;
@@ -79,6 +44,41 @@ pub fn number(cell: &[u8], notation: Notation) -> Option<f64> {
     let mut point = cell.to_vec();
     point[comma] = b'.';
     fast_float2::parse(&point).ok()
+}
+
+/// A number in the spelling of Rust, from those of other programs: a minus sign of typography or behind the number, an exponent
+/// of Fortran, blanks or apostrophes between thousands, an infinity as a sign, a formula of a spreadsheet.
+fn respelled(cell: &[u8]) -> Option<Vec<u8>> {
+    let text = std::str::from_utf8(cell).ok()?;
+    let text = text.strip_prefix("=\"").and_then(|text| text.strip_suffix('"')).unwrap_or(text);
+    let (minus, digits) = match text.strip_suffix('-') {
+        Some(digits) => ("-", digits),
+        None => match text.strip_prefix(['-', '\u{2212}', '\u{2013}']) {
+            Some(digits) => ("-", digits),
+            None => ("", text),
+        },
+    };
+    let is_digit = |c: char| c.is_ascii_digit();
+    if digits == "\u{221e}" {
+        return Some([minus, "inf"].concat().into_bytes());
+    }
+    let is_between = |c: char| matches!(c, '\'' | '\u{2019}') || c.is_whitespace();
+    // Three digits stand between two marks, and before a decimal mark.
+    let is_group = |group: &str| {
+        let behind = group.get(3..).filter(|behind| !behind.starts_with(is_digit));
+        behind.is_some() && group[..3].chars().all(is_digit)
+    };
+    let mut groups = digits.split(is_between);
+    if !groups.next()?.starts_with(|c| is_digit(c) || c == '.' || c == ',') || !groups.all(is_group) {
+        return None;
+    }
+    let plain: String = digits.chars().filter(|c| !is_between(*c)).collect();
+    // Fortran writes the sign of an exponent, hexadecimal numbers have none.
+    let plain = ["D+", "D-", "d+", "d-"]
+        .iter()
+        .fold(plain, |plain, mark| plain.replacen(mark, &mark.replace(['D', 'd'], "e"), 1));
+    let spelled = [minus, &plain].concat();
+    (spelled.as_bytes() != cell).then(|| spelled.into_bytes())
 }
 
 /// A number with marks between its thousands.
@@ -250,11 +250,12 @@ mod tests {
     #[test]
     fn decimal_commas_count_where_the_comma_is_free() {
         let of = |delimiter, decimal| Notation { delimiter, decimal };
-        let [point, comma, either] = [of(b',', Decimal::Point), of(b';', Decimal::Comma), of(b';', Decimal::Either)];
+        let [point, comma, either] = [of(b';', Decimal::Point), of(b';', Decimal::Comma), of(b';', Decimal::Either)];
         assert_eq!(number(b" 1,5 ", either), Some(1.5));
         assert_eq!((number(b"1,5", point), number(b"1.234,5", either)), (None, None));
         assert_eq!((number(b"+2e0", point), number(b"1,5e3", comma)), (Some(2.0), Some(1500.0)));
         assert_eq!((number(b"-1.372", comma), number(b"51.262,5", comma)), (Some(-1372.0), Some(51262.5)));
+        assert_eq!((number(b"11,683", point), number(b"11,6835", point)), (Some(11683.0), None));
         assert_eq!(
             (number(b"1.5", comma), number(b"12.3456", comma), number(b"1,234.5", point)),
             (None, None, Some(1234.5))
@@ -262,13 +263,43 @@ mod tests {
     }
 
     #[test]
-    fn the_cells_of_a_file_show_its_decimal_mark() {
-        let of = |cells: &[&str]| Decimal::of(cells.iter().copied(), b';');
-        assert_eq!(of(&["0,000", "0,051263", "-1.372"]), (Decimal::Comma, true));
-        assert_eq!(of(&["0.000", "12"]), (Decimal::Point, false));
-        assert_eq!(of(&["0.5", "0,5"]), (Decimal::Either, true));
-        assert_eq!(of(&["1.234", "12"]), (Decimal::Either, false));
-        assert_eq!(Decimal::of(["1,5"].into_iter(), b','), (Decimal::Point, false));
+    fn other_programs_spell_numbers_otherwise() {
+        let of = |cell: &str, decimal| number(cell.as_bytes(), Notation { delimiter: b'\t', decimal });
+        let point = |cell: &str| of(cell, Decimal::Point);
+        for (cell, value) in [
+            ("\u{2212}0.0167", -0.0167),
+            ("\u{2212}1.5e-3", -1.5e-3),
+            ("1.00D+02", 100.0),
+            ("-0.5d-1", -0.05),
+            ("0.0167-", -0.0167),
+            ("11'682.6", 11_682.6),
+            ("1\u{2019}234\u{2019}567", 1_234_567.0),
+            ("11 682.6", 11_682.6),
+            ("=\"11.6826\"", 11.6826),
+            ("\u{221e}", f64::INFINITY),
+        ] {
+            assert_eq!(point(cell), Some(value), "{cell}");
+        }
+        assert_eq!(of("-11\u{a0}682,6", Decimal::Comma), Some(-11_682.6));
+        for text in [
+            "1 2",
+            "11 6826",
+            "12:30",
+            "D",
+            "1D",
+            "1-2",
+            "11'68",
+            "=\"a\"",
+            "",
+            "-",
+            "2026-10-25",
+            "1 234 5",
+            "0x1D",
+            "1D2",
+            "1.2.3",
+        ] {
+            assert_eq!(point(text), None, "{text}");
+        }
     }
 
     proptest! {

@@ -1,6 +1,7 @@
 //! Notation and layout of a table of text.
 
-use super::cells::{Decimal, Notation};
+use super::cells::Notation;
+use super::decimal::Decimal;
 use super::layout::{self, Body};
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -39,7 +40,8 @@ impl Dialect {
     /// Says how the decimal marks were understood, where it is not obvious.
     pub(super) fn note_decimals(&mut self, grouped: bool) {
         let note = match self.notation.decimal {
-            Decimal::Comma if grouped => "the file has decimal commas: points between digits are taken for thousands",
+            Decimal::Comma if grouped => "points between digits stand between thousands",
+            Decimal::Point if grouped => "commas between digits stand between thousands",
             Decimal::Either if grouped => {
                 "the file has decimal commas and decimal points: both are taken as decimal marks"
             }

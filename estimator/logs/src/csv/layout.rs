@@ -4,6 +4,7 @@
 //! last line of the table's width above the first row of numbers, unless that one holds nothing but units.
 
 use super::cells::{Cells, Notation, number, record_end};
+use super::encoding;
 use crate::written_units::{self, Written};
 
 /// Records at the start of a file that are looked at.
@@ -32,7 +33,7 @@ pub fn records(text: &[u8], delimiter: u8, most: usize) -> Vec<Record> {
         let end = record_end(text, at, delimiter).unwrap_or(text.len());
         let record = &text[at..end];
         let record = record.strip_suffix(b"\r").unwrap_or(record);
-        if !record.trim_ascii().is_empty() && record.first() != Some(&b'#') {
+        if !record.trim_ascii().is_empty() && record.first() != Some(&b'#') && !is_rule(record) {
             cells.split(record, delimiter);
             let cells = (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(record, i)).into_owned()).collect();
             found.push(Record { start: at, end, line, cells });
@@ -41,6 +42,11 @@ pub fn records(text: &[u8], delimiter: u8, most: usize) -> Vec<Record> {
         at = end + 1;
     }
     found
+}
+
+/// True for a line that a person drew below the names.
+fn is_rule(record: &[u8]) -> bool {
+    record.iter().all(|b| matches!(b, b'-' | b'=' | b'|' | b'+' | b':' | b' ' | b'\t')) && record.contains(&b'-')
 }
 
 /// Columns of numbers of a table.
@@ -84,8 +90,10 @@ fn is_number(cell: &str, notation: Notation) -> bool {
 /// Header and first row among the records.
 #[derive(Debug)]
 pub struct Layout {
-    /// Index of the header.
-    pub header: usize,
+    /// Names of the columns; empty for a column without one.
+    pub names: Vec<String>,
+    /// Index of the header; none if it is a comment.
+    pub header: Option<usize>,
     /// Index of the row of units: below the header, or above it.
     pub units: Option<usize>,
     /// Index of the first row.
@@ -98,25 +106,75 @@ pub struct Layout {
 /// Layout of the records at the start of a file; `None` if they show none. Then the first record is the header.
 pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let body = Body::of(records, notation)?;
+    let width = body.width;
     let is_row = |k: usize| records.get(k).is_none_or(|r| body.is_row(r, notation));
     let first = (1..records.len()).find(|&k| is_row(k) && is_row(k + 1))?;
-    // A delimiter behind the last cell of every row, but not behind the last name.
+    // A delimiter behind the last cell of every row, but not behind the last name; or numbers of rows, without a name.
     let ends_blank = records[first..].iter().take(2).all(|r| r.cells.last().is_some_and(String::is_empty));
+    let may_lack_one = ends_blank || counts_rows(&records[first..], notation);
     let may_be_names = |k: usize| {
         let cells = &records[k].cells;
-        let is_wide =
-            cells.len() == body.width || is_one_more(cells, body.width) || ends_blank && cells.len() + 1 == body.width;
+        let is_wide = cells.len() == width || is_one_more(cells, width) || may_lack_one && cells.len() + 1 == width;
         let numbers = cells.iter().filter(|cell| is_number(cell, notation)).count();
         is_wide && (numbers == 0 || k == 0 && numbers < cells.len())
     };
-    let is_units = first >= 2 && holds_units(&records[first - 1].cells) && may_be_names(first - 2);
-    let header = if is_units { first - 2 } else { first - 1 };
-    let width = body.width;
+    let (header, units) = if records[0].cells.first().is_some_and(|cell| cell == "TOA5") && first == 4 {
+        // Campbell Scientific: a station, names, units, and the kind of each value.
+        (1, Some(2))
+    } else if let Some(units) = units_below_names(records, first, may_be_names) {
+        (units - 1, Some(units))
+    } else {
+        let is_above = first > 1 && records[first - 2].cells.len() == width && holds_units(&records[first - 2].cells);
+        (first - 1, is_above.then(|| first - 2))
+    };
     // Names in the first line belong to the row below them, whatever its fault is.
     let (header, first) = if may_be_names(header) { (header, first) } else { (0, 1) };
-    let is_above = header > 0 && records[header - 1].cells.len() == width && holds_units(&records[header - 1].cells);
-    let units = if is_units { Some(first - 1) } else { is_above.then(|| header - 1) };
-    may_be_names(header).then_some(Layout { header, units, first, width, body })
+    let mut names = records[header].cells.clone();
+    if let Some(name) = names[0].strip_prefix("% ") {
+        names[0] = name.trim_start().into();
+    }
+    if names.len() + 1 == width && !ends_blank {
+        names.insert(0, String::new());
+    }
+    names.resize(width, String::new());
+    may_be_names(header).then_some(Layout { names, header: Some(header), units, first, width, body })
+}
+
+/// Index of a row of units right below names, perhaps with a row of remarks between it and the first row.
+fn units_below_names(records: &[Record], first: usize, may_be_names: impl Fn(usize) -> bool) -> Option<usize> {
+    let is_complete = |k: usize| {
+        let cells = &records[k].cells;
+        cells.iter().enumerate().all(|(at, cell)| !cell.is_empty() && !cells[..at].contains(cell))
+    };
+    let holds = |k: usize| k > 0 && holds_units(&records[k].cells) && may_be_names(k - 1);
+    let above_remarks = || first.checked_sub(2).filter(|&k| holds(k) && is_complete(k - 1) && may_be_names(k + 1));
+    Some(first - 1).filter(|&k| holds(k)).or_else(above_remarks)
+}
+
+/// Layout of rows below a comment with their names, as `NumPy` writes them.
+pub fn below_comment(records: &[Record], comments: &[u8], notation: Notation) -> Option<Layout> {
+    let body = Body::of(records, notation)?;
+    let is_row = |k: usize| records.get(k).is_some_and(|r| body.is_row(r, notation));
+    if !is_row(0) || !is_row(1) {
+        return None;
+    }
+    let mut lines = comments.rsplit(|b| *b == b'\n').filter_map(|line| line.trim_ascii().strip_prefix(b"#"));
+    let names = lines.find_map(|line| {
+        let mut cells = Cells::default();
+        cells.split(line, notation.delimiter);
+        let divided: Vec<&[u8]> = (0..cells.len()).map(|k| cells.get(line, k)).collect();
+        let names = if divided.len() == body.width { divided } else { encoding::cells(line, body.width) };
+        let names = names.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect::<Vec<_>>();
+        let is_text = names.iter().all(|name| !is_number(name, notation));
+        (names.len() == body.width && is_text).then_some(names)
+    })?;
+    Some(Layout { names, header: None, units: None, first: 0, width: body.width, body })
+}
+
+/// True if the first cells of these rows count them from 0 or 1 on.
+fn counts_rows(rows: &[Record], notation: Notation) -> bool {
+    let number = |k: usize| number(rows.get(k)?.cells.first()?.as_bytes(), notation);
+    matches!((number(0), number(1)), (Some(a), Some(b)) if (a == 0.0 || a == 1.0) && b - a == 1.0)
 }
 
 /// True for a header with a last name above no cells, as LabVIEW's `Comment`.

@@ -9,6 +9,7 @@ mod batch;
 mod blocks;
 pub mod calendar;
 mod cells;
+mod decimal;
 mod dialect;
 mod encoding;
 mod join;
@@ -139,6 +140,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             layout: Layout {
                 notation,
                 width,
+                headers: &dialect.headers,
                 plan,
                 uses: plan.uses.clone(),
                 undecided: true,

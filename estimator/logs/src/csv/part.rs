@@ -19,6 +19,8 @@ pub struct Layout<'a> {
     pub notation: Notation,
     /// Cells in a row.
     pub width: usize,
+    /// Names of the columns.
+    pub headers: &'a [String],
     /// Use of each column.
     pub plan: &'a Plan,
     /// The plan's uses, less the columns that turned out to hold text.
@@ -201,11 +203,23 @@ impl<'a, 'p> Reader<'a, 'p> {
     fn careful_row(&mut self, record: &[u8]) {
         let mut cells = std::mem::take(&mut self.cells);
         cells.split(record, self.layout.notation.delimiter);
-        if let Err(fault) = self.take(record, &cells) {
-            self.part.fault = Some((self.part.rows, self.part.lines, fault));
+        // Every page, and every file that was appended, may begin with the names.
+        if !self.repeats_header(record, &cells) {
+            if let Err(fault) = self.take(record, &cells) {
+                self.part.fault = Some((self.part.rows, self.part.lines, fault));
+            }
+            self.part.rows += 1;
         }
-        self.part.rows += 1;
         self.cells = cells;
+    }
+
+    fn repeats_header(&self, record: &[u8], cells: &Cells) -> bool {
+        let headers = self.layout.headers;
+        let is_name = |k: usize| {
+            let cell = cells.get(record, k);
+            cell.strip_prefix("\u{feff}".as_bytes()).unwrap_or(cell) == headers[k].as_bytes()
+        };
+        cells.len() == headers.len() && headers.iter().any(|name| !name.is_empty()) && (0..headers.len()).all(is_name)
     }
 
     fn take(&mut self, record: &[u8], cells: &Cells) -> Result<(), Fault> {

@@ -1,6 +1,7 @@
 //! Rows that hold nothing but plain numbers where numbers belong, straight into their columns.
 
-use super::cells::{BATCH, Decimal, Notation, is_skippable, length_ahead, number_ahead};
+use super::cells::{BATCH, Notation, is_skippable, length_ahead, number_ahead};
+use super::decimal::Decimal;
 #[cfg(target_arch = "x86_64")]
 use super::{batch::Batch, simd};
 use crate::plan::Use;
@@ -68,6 +69,8 @@ impl<'a> Plain<'a> {
         if simd::is_at_home() {
             let comma = match self.notation.decimal {
                 Decimal::Point => false,
+                // Decimal commas stand in quotes, and quoted rows need a closer look.
+                _ if self.notation.delimiter == b',' => false,
                 // The vector instructions take every point for a decimal one.
                 Decimal::Comma if memchr::memchr(b'.', &bytes[at..]).is_some() => return (0, at),
                 Decimal::Either | Decimal::Comma => true,

@@ -1,13 +1,14 @@
 //! Encoding, delimiter, header and first row of a file, told by its first bytes.
 
-use super::cells::{Cells, Decimal, Notation, number, record_end};
+use super::cells::{Cells, Notation, number, record_end};
+use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
 use super::{labview, layout};
 use crate::errors::LogError;
 use crate::format;
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
 /// Number of bytes that are looked at to tell a table from something else.
@@ -21,8 +22,19 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
         return Err(LogError::NotATable { why: what.to_owned(), path: path.to_path_buf() });
     }
     let (encoding, is_short) = (encoding::of(&start), start.len() < SNIFF_BYTES);
-    let whole = |start: &[u8]| if is_short { Ok(start.to_vec()) } else { std::fs::read(path).map_err(io) };
+    let end = match encoding {
+        Encoding::Utf16(_) => None,
+        _ => end_before_zeros(path).map_err(io)?,
+    };
+    let behind = end.map_or(usize::MAX, |end| end as usize);
+    start.truncate(behind);
+    let whole = |start: &[u8]| {
+        let mut all = if is_short { start.to_vec() } else { std::fs::read(path).map_err(io)? };
+        all.truncate(behind);
+        Ok(all)
+    };
     let mut notes = Vec::new();
+    notes.extend(end.map(|_| "the zeros behind the text, which a logger reserves, are not read".to_owned()));
     let (mut text, mut clocks) = (None, Vec::new());
     if encoding != Encoding::Utf8 && !is_binary(&start, encoding) {
         text = Some(encoding::decoded(whole(&start)?, encoding));
@@ -34,39 +46,46 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         let made = labview::table(&all, path)?;
         (text, clocks) = (Some(made.text), made.clocks);
-    } else if is_blank_separated(&start) {
+    } else if let Some(width) = encoding::blank_width(&start, !is_short) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
-        text = Some(encoding::tabbed(&all));
+        text = Some(encoding::tabbed(&all, width));
     }
     start = text.as_deref().map_or(start, beginning);
     let mut found = dialect(&start, path)?;
     found.notes.splice(0..0, notes);
-    found.leave_summary_out(path, text.as_deref()).map_err(io)?;
+    if end.is_some() && text.is_none() {
+        found.end = end;
+    } else {
+        found.leave_summary_out(path, text.as_deref()).map_err(io)?;
+    }
     (found.text, found.clocks) = (text, clocks);
     Ok(found)
+}
+
+/// End of a text before zeros that fill the rest of its file, bytes; none without them.
+fn end_before_zeros(path: &Path) -> std::io::Result<Option<u64>> {
+    let mut file = File::open(path)?;
+    let length = file.seek(SeekFrom::End(0))?;
+    let mut block = vec![0; SNIFF_BYTES.min(length as usize)];
+    let mut end = length;
+    while end > 0 {
+        // All of the file is looked at only if all of it is zeros.
+        let size = if end == length { 1 } else { block.len().min(end as usize) };
+        file.seek(SeekFrom::Start(end - size as u64))?;
+        file.read_exact(&mut block[..size])?;
+        let last = block[..size].iter().rposition(|b| *b != 0);
+        end -= (size - last.map_or(0, |last| last + 1)) as u64;
+        if last.is_some() {
+            break;
+        }
+    }
+    Ok((1..length).contains(&end).then_some(end))
 }
 
 /// True for bytes that no text holds.
 fn is_binary(start: &[u8], encoding: Encoding) -> bool {
     let is_control = |b: &u8| *b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0c);
     !matches!(encoding, Encoding::Utf16(_)) && start.iter().any(is_control)
-}
-
-/// True for a text whose cells only blanks divide.
-fn is_blank_separated(start: &[u8]) -> bool {
-    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(start);
-    let lines = text.split(|b| *b == b'\n').filter(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
-    let mut lines = lines.take(20).peekable();
-    let has_blanks = |line: &[u8]| {
-        line.trim_ascii().contains(&b' ') && !line.iter().any(|b| matches!(b, b'\t' | b';' | b',' | b'"'))
-    };
-    let widths = |line: &[u8]| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
-    let Some(width) = lines.peek().map(|line| widths(line)) else { return false };
-    let mut last = text.len() == SNIFF_BYTES;
-    lines.all(|line| {
-        last = false;
-        has_blanks(line) && widths(line) == width
-    }) && !last
 }
 
 pub(super) fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
@@ -95,7 +114,7 @@ pub(super) fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
         }
         (at, line) = (end + 1, line + 1);
     };
-    if let Some(found) = laid_out(&text[at..], stated, delimiter_of(header_line)) {
+    if let Some(found) = laid_out(&text[at..], &text[..at], stated, delimiter_of(header_line)) {
         let before = (start.len() - text.len() + at) as u64;
         return Ok(Dialect { start: before + found.start, line: line + found.line, ..found });
     }
@@ -127,11 +146,11 @@ fn stated_delimiter(line: &[u8]) -> Option<u8> {
     if let [one] = sign { Some(*one) } else { line.len().eq(&4).then_some(b'\t') }
 }
 
-/// Header, units and first row as the rows of numbers show them; places count from the start of `text`.
-fn laid_out(text: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialect> {
+/// Header, units and first row as the rows of numbers show them; places count from the start of `text`. `above`: comments.
+fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialect> {
     let candidates = match stated {
         Some(delimiter) => vec![delimiter],
-        None => vec![of_first_line, b'\t', b';', b','],
+        None => vec![of_first_line, b'\t', b';', b',', b'|'],
     };
     candidates.into_iter().find_map(|delimiter| {
         let mut records = layout::records(text, delimiter, layout::LOOKED_AT);
@@ -139,30 +158,26 @@ fn laid_out(text: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialec
         if text.len() + 3 >= SNIFF_BYTES && records.last().is_some_and(|r| r.end == text.len()) {
             records.pop();
         }
-        let cells = records.iter().flat_map(|r| r.cells.iter().map(String::as_str));
-        let (decimal, grouped) = Decimal::of(cells, delimiter);
+        let (decimal, grouped) = Decimal::of(records.iter().map(|record| record.cells.as_slice()));
         let notation = Notation { delimiter, decimal };
-        let found = layout::of(&records, notation).filter(|found| found.width > 1 || stated.is_some())?;
-        let [header, first] = [found.header, found.first].map(|k| &records[k]);
-        let mut headers = header.cells.clone();
-        headers.resize(found.width, String::new());
-        let units = found.units.map_or_else(Vec::new, |k| records[k].cells.clone());
-        let first_cells = first.cells.clone();
+        let found = layout::of(&records, notation).or_else(|| layout::below_comment(&records, above, notation));
+        let found = found.filter(|found| found.width > 1 || stated.is_some())?;
+        let first = &records[found.first];
         let mut dialect = Dialect {
             notation,
-            headers,
-            units,
-            first: first_cells,
+            headers: found.names,
+            units: found.units.map_or_else(Vec::new, |k| records[k].cells.clone()),
+            first: first.cells.clone(),
             start: first.start as u64,
             line: first.line,
             body: found.body,
             ..Dialect::default()
         };
         dialect.note_decimals(grouped);
-        let unread = records[found.header].line - usize::from(found.units.is_some_and(|k| k < found.header)) as u64;
-        if found.header > 0 && unread > 0 {
-            let lines = unread;
-            dialect.notes.push(format!("{lines} line(s) above the header are not read"));
+        let header = found.header.map_or(0, |k| records[k].line);
+        let unread = header.saturating_sub(u64::from(found.units.is_some_and(|k| Some(k) < found.header)));
+        if unread > 0 {
+            dialect.notes.push(format!("{unread} line(s) above the header are not read"));
         }
         Some(dialect)
     })
@@ -174,10 +189,10 @@ fn names(header: &[u8], delimiter: u8) -> Vec<String> {
     (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(header, i)).into_owned()).collect()
 }
 
-/// The most frequent of tab, semicolon and comma outside quotes.
+/// The most frequent of tab, semicolon, comma and bar outside quotes.
 fn delimiter_of(header: &[u8]) -> u8 {
     let mut quoted = false;
-    let mut counts = [(b'\t', 0), (b';', 0), (b',', 0)];
+    let mut counts = [(b'|', 0), (b'\t', 0), (b';', 0), (b',', 0)];
     for &byte in header {
         quoted ^= byte == b'"';
         if let Some(entry) = counts.iter_mut().find(|(d, _)| *d == byte && !quoted) {

@@ -44,7 +44,8 @@ pub fn read(path: &Path, most_bytes: u64) -> Result<TextTable, LogError> {
         _ => cell,
     };
     let width = found.headers.len();
-    let rows = records.into_iter().filter(|record| record.cells.len() == width);
+    let is_row = |record: &layout::Record| record.cells.len() == width && record.cells != found.headers;
+    let rows = records.into_iter().filter(is_row);
     let rows = rows.map(|record| record.cells.into_iter().map(plain).collect()).collect();
     Ok(TextTable { headers: found.headers, units: found.units, rows, is_whole })
 }

@@ -1,4 +1,4 @@
-//! Repairs of a recording on loading: numbers that stand for no value, stamps in bursts, held samples, wrapped angles, spikes. Each is told by a warning,
+//! Repairs of a recording on loading: numbers that stand for no value, stamps in bursts, held samples, wrapped angles and counters, spikes. Each is told by a warning,
 //! and `"as_recorded"` in the sidecar switches it off by its kind.
 
 mod bursts;
@@ -6,6 +6,7 @@ mod held_samples;
 mod integrated;
 mod sentinels;
 mod wrapped_angles;
+mod wrapped_counters;
 
 use super::checks;
 use haptics::recording::{REPAIRS, Recording, Warning};
@@ -16,18 +17,19 @@ type Step = fn(&mut Recording) -> Vec<Warning>;
 /// Repairs a recording; the warnings tell what was done.
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
-    let steps: [(&str, Step); 4] = [
+    let steps: [(&str, Step); 5] = [
         (REPAIRS[0], sentinels::take_out),
         (REPAIRS[1], |recording| bursts::spread(recording).into_iter().collect()),
         (REPAIRS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
         (REPAIRS[3], wrapped_angles::unwrap),
+        (REPAIRS[4], wrapped_counters::unwrap),
     ];
     for (kind, step) in steps {
         if recording.meta.repairs(kind) {
             found.extend(step(recording));
         }
     }
-    if recording.meta.repairs(REPAIRS[4])
+    if recording.meta.repairs(REPAIRS[5])
         && let Some((other, said)) = checks::repaired(recording)
     {
         recording.channels = other.channels;

@@ -4,8 +4,9 @@ use crate::checks::{extremes, is_position, limited, place};
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
-/// Digits of numbers that stand for no value, whatever the power of ten: nines, and the ends of integers of 15 to 32 bits.
-const CODES: [f64; 10] = [
+/// Digits of numbers that stand for no value, whatever the power of ten: nines, the ends of integers of 15 to 32 bits, and the
+/// numbers that the standard commands of instruments (SCPI) and simulators write.
+const CODES: [f64; 13] = [
     999.0,
     9_999.0,
     99_999.0,
@@ -16,6 +17,9 @@ const CODES: [f64; 10] = [
     16_777_215.0,
     2_147_483_647.0,
     4_294_967_295.0,
+    9.9e37,
+    9.91e37,
+    1e30,
 ];
 /// Least step to and from a number that stands for no value, in multiples of the step quantile. Half of it also occurs in
 /// fast motion.

@@ -45,6 +45,35 @@ fn wrapped_angles_are_put_together() {
 }
 
 #[test]
+fn counters_go_on_where_they_run_over() {
+    // A position in steps of 0.5 µm, and a force in mN, with a sign and without one.
+    for (name, unit, least, low) in [("q_m", "m", 5e-7, 0.0), ("f_N", "N", 1e-3, -32_768.0), ("f_N", "N", 1e-3, 0.0)] {
+        let (mut one, size) = (swing(4000), 40_000.0);
+        let counts: Vec<f64> = one.channels[0].values.iter().map(|v| (v / 3.7 * size).round()).collect();
+        let wrapped = counts.iter().map(|count| least * ((count - low).rem_euclid(65_536.0) + low)).collect();
+        one.channels[0] = channel(name, unit, wrapped);
+        one.channels.truncate(1);
+        let found = repair(&mut one);
+        assert_eq!(kinds(&found), ["wrapped-counter"], "{name}");
+        let shift = one.channels[0].values[0] - least * counts[0];
+        assert!(unit == "m" || shift.abs() < 1e-9, "forces are about zero");
+        let off = one.channels[0].values.iter().zip(&counts).map(|(v, count)| (v - least * count - shift).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-9);
+    }
+}
+
+#[test]
+fn a_torque_that_switches_between_its_limits_is_no_counter() {
+    let mut one = swing(4000);
+    let switched = |i: usize| if (i / 300).is_multiple_of(2) { 32.767 } else { -32.768 + 0.001 * (i % 7) as f64 };
+    one.channels[1].values = (0..4000).map(switched).collect();
+    let before = one.clone();
+    assert!(
+        repair(&mut one).iter().all(|warning| warning.kind != "wrapped-counter") && one.channels == before.channels
+    );
+}
+
+#[test]
 fn held_rows_are_left_out() {
     for every in [2, 3, 5, 10] {
         let (mut held, whole) = (swing(6000), swing(6000));

@@ -1,5 +1,6 @@
 //! Units and headers as people write them.
 
+use super::spellings::TURN_RAD;
 use super::*;
 use Dimension::{Acceleration, Angle, AngularVelocity, Force, Length, Other, Time, Torque, Velocity};
 
@@ -54,6 +55,32 @@ fn units_are_read_as_people_write_them() {
         ("Minutes", Time, 60.0),
         ("kPa", Other, 1e3),
         ("N/mm2", Other, 1e6),
+        ("daN", Force, 10.0),
+        ("µin", Length, 2.54e-8),
+        ("in/min", Velocity, 0.0254 / 60.0),
+        ("кН", Force, 1e3),
+        ("мм", Length, 1e-3),
+        ("см", Length, 1e-2),
+        ("мкм", Length, 1e-6),
+        ("мм/с", Velocity, 1e-3),
+        ("Н·м", Torque, 1.0),
+        ("об/мин", AngularVelocity, TURN_RAD / 60.0),
+        ("千牛", Force, 1e3),
+        ("毫米", Length, 1e-3),
+        ("度/秒", AngularVelocity, TURN_RAD / 360.0),
+        ("ｋＮ", Force, 1e3),
+        ("㎜", Length, 1e-3),
+        ("㎏ m/s²", Force, 1.0),
+        ("10^-3 m", Length, 1e-3),
+        ("10⁻³ m", Length, 1e-3),
+        ("10³ N", Force, 1e3),
+        ("×10³ N", Force, 1e3),
+        ("x1000 N", Force, 1e3),
+        ("0.1 N", Force, 0.1),
+        ("1/10 mm", Length, 1e-4),
+        ("m*1e-3", Length, 1e-3),
+        ("0.1 ms", Time, 1e-4),
+        ("m s⁻²", Acceleration, 1.0),
         ("psi", Other, 6_894.757_293_168_361),
     ] {
         let found = parse(text, &[]);
@@ -73,7 +100,7 @@ fn the_wanted_quantity_decides_between_two_meanings() {
     assert!(close(parse("1/min", &[AngularVelocity]), AngularVelocity, TURN_RAD / 60.0));
     assert_eq!(parse("counts", &[Force]), Written::Counts);
     assert_eq!(
-        (parse("stone", &[]), parse("hex", &[]), parse("", &[])),
+        (parse("stone", &[]), parse("10", &[]), parse("", &[])),
         (Written::Unknown, Written::Unknown, Written::Unknown)
     );
 }
@@ -111,6 +138,16 @@ fn units_are_found_in_headers() {
         ("Position|mm", "Position", "mm"),
         ("Motor (left) 1", "Motor (left) 1", ""),
         ("Force (left) (N) 2", "Force (left)", "N"),
+        ("positionMm", "position", "Mm"),
+        ("position_mm_raw", "position", "mm"),
+        ("force kN filtered", "force", "kN"),
+        ("pos_min_x", "pos_min_x", ""),
+        ("ForceKilonewtons", "Force", "Kilonewtons"),
+        ("torqueNm", "torque", "Nm"),
+        ("forceLeftX", "forceLeftX", ""),
+        ("tipMin", "tipMin", ""),
+        ("Перемещение, мм", "Перемещение", "мм"),
+        ("力(千牛)", "力", "千牛"),
     ] {
         assert_eq!(in_header(header, &[]), (name, unit), "{header}");
     }

@@ -97,7 +97,7 @@ fn own_names_follow_the_rules_of_every_format() {
     let mapped = super::tests::log(&foreign, meta);
     assert_eq!(mapped.channel("f_N").map(|f| f[1]), Some(-2.5));
     let text = loaded(&Form::ALL[0].file(&foreign), "{}").expect_err("no unit").to_string();
-    assert!(text.contains("the column `t` has the unknown unit"), "{text}");
+    assert!(text.contains("the column `t` states no unit"), "{text}");
 }
 
 #[test]

@@ -1,0 +1,138 @@
+//! Tables as other programs spell them: each leads to the same samples.
+
+use std::fmt::Write as _;
+use tests::drawer::{Sample, drawer, is_the_drawer};
+
+const MAPPED: &str =
+    r#"{"task": "mechanism", "columns": {"t_s": "Time (s)", "q_m": "Position (um)", "f_N": "Force (mN)"}}"#;
+const NAMES: [&str; 3] = ["Time (s)", "Position (um)", "Force (mN)"];
+
+/// Cells in s, µm and mN.
+fn cells([t, place, push]: &Sample) -> [String; 3] {
+    [format!("{t:.2}"), format!("{:.3}", 1e6 * place), format!("{:.4}", 1e3 * push)]
+}
+
+/// A table of the drawer, each number as `spell` has it.
+fn table(delimiter: &str, spell: impl Fn(&str) -> String) -> String {
+    drawer(1500, 100.0).iter().fold(NAMES.join(delimiter) + "\n", |mut text, sample| {
+        let _ = writeln!(text, "{}", cells(sample).map(|cell| spell(&cell)).join(delimiter));
+        text
+    })
+}
+
+/// A number with a mark between its thousands.
+fn grouped(cell: &str, thousands: &str, decimal: &str) -> String {
+    let (sign, digits) = cell.strip_prefix('-').map_or(("", cell), |digits| ("-", digits));
+    let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
+    let mut marked = String::new();
+    for (at, digit) in whole.chars().enumerate() {
+        marked += if at > 0 && (whole.len() - at).is_multiple_of(3) { thousands } else { "" };
+        marked.push(digit);
+    }
+    if decimals.is_empty() { format!("{sign}{marked}") } else { format!("{sign}{marked}{decimal}{decimals}") }
+}
+
+#[test]
+fn numbers_of_other_programs_are_read() {
+    let semicolon = |spell: &dyn Fn(&str) -> String| table(";", spell);
+    let quoted = |spell: &dyn Fn(&str) -> String| table(",", |cell| format!("\"{}\"", spell(cell)));
+    let fortran = |cell: &str| format!("{:.9e}", cell.parse::<f64>().expect("a number")).replace("e-", "D-");
+    let signed = |cell: &str| {
+        let spelled = fortran(cell);
+        if spelled.contains("D-") { spelled } else { spelled.replace('e', "D+") }
+    };
+    for (name, text) in [
+        ("minus signs of typography", semicolon(&|cell| cell.replace('-', "\u{2212}"))),
+        (
+            "minus signs behind the number",
+            semicolon(&|cell| match cell.strip_prefix('-') {
+                Some(digits) => format!("{digits}-"),
+                None => cell.to_owned(),
+            }),
+        ),
+        ("exponents of Fortran", semicolon(&signed)),
+        ("decimal commas in quotes", quoted(&|cell| cell.replace('.', ","))),
+        ("thousands in quotes", quoted(&|cell| grouped(cell, ",", "."))),
+        ("thousands with commas", semicolon(&|cell| grouped(cell, ",", "."))),
+        ("thousands with points", semicolon(&|cell| grouped(cell, ".", ","))),
+        ("thousands with blanks", semicolon(&|cell| grouped(cell, "\u{a0}", ","))),
+        ("thousands with apostrophes", semicolon(&|cell| grouped(cell, "'", "."))),
+        ("formulas of a spreadsheet", table(",", |cell| format!("=\"{cell}\""))),
+    ] {
+        is_the_drawer(name, text, MAPPED);
+    }
+}
+
+/// Whole numbers, of which those above 999 have a mark: nothing else tells thousands from decimals.
+#[test]
+fn whole_numbers_below_a_thousand_tell_thousands_from_decimals() {
+    for mark in [".", ","] {
+        let rows = drawer(1500, 100.0).iter().fold("t_ms;q_um;f_mN\n".to_owned(), |mut text, [t, place, push]| {
+            let cells = [1e3 * t, 1e6 * place, 1e3 * push].map(|value| grouped(&format!("{value:.0}"), mark, ""));
+            let _ = writeln!(text, "{}", cells.join(";"));
+            text
+        });
+        let read = is_the_drawer(mark, rows, r#"{"task": "mechanism"}"#);
+        assert!(read.warnings.iter().any(|w| w.text.contains("stand between thousands")), "{:?}", read.warnings);
+    }
+}
+
+#[test]
+fn layouts_of_other_programs_are_read() {
+    let same = |cell: &str| cell.to_owned();
+    let comma = table(",", same);
+    let rows = |text: &str| text.split_once('\n').expect("names").1.to_owned();
+    let numbered = |text: String| {
+        let mut lines = text.lines();
+        let names = lines.next().unwrap_or_default().to_owned() + "\n";
+        lines.enumerate().fold(names, |mut text, (at, line)| {
+            let _ = writeln!(text, "{},{line}", at + 1);
+            text
+        })
+    };
+    let bars = format!("| {} |\n", comma.trim_end().replace(',', " | ").replace('\n', " |\n| "));
+    let (first, last) = comma.split_at(comma.len() / 2 + comma[comma.len() / 2..].find('\n').expect("a line") + 1);
+    let blanks = rows(&comma).replace(',', "  ");
+    let mut reserved = comma.clone().into_bytes();
+    reserved.resize(reserved.len() + 100_000, 0);
+    is_the_drawer("zeros that a logger reserved", reserved, MAPPED);
+    for (name, text) in [
+        ("bars", comma.replace(',', "|")),
+        ("a table of Markdown", bars.replacen('\n', "\n|---|---|---|\n", 1)),
+        ("a rule below the names", table("\t", same).replacen('\n', "\n----\t----\t----\n", 1)),
+        ("numbers of rows, as R writes them", numbered(comma.clone())),
+        ("a comment of names", format!("# {}\n{}", NAMES.join(","), rows(&comma))),
+        ("a comment of names above blanks", format!("# {}\n{blanks}", NAMES.join("  "))),
+        ("names in a comment of MATLAB", format!("% {comma}")),
+        ("names divided by tabs above blanks", format!("{}\n{blanks}", NAMES.join("\t"))),
+        ("names divided by blanks", format!("{}\n{blanks}", NAMES.join("    "))),
+        ("a repeated header", format!("{first}{}\n{last}", NAMES.join(","))),
+        ("files one behind the other", format!("{first}\u{feff}{}\n{last}", NAMES.join(","))),
+    ] {
+        is_the_drawer(name, text, MAPPED);
+    }
+}
+
+/// Campbell Scientific's loggers: station, names, units, kind of each value; Origin: names, units, remarks.
+#[test]
+fn rows_between_the_units_and_the_numbers_are_remarks() {
+    let rows = |head: &str| format!("{head}\n{}", table(",", str::to_owned).split_once('\n').expect("names").1);
+    let mapped = r#"{"task": "mechanism", "columns": {"t_s": "Time", "q_m": "Position", "f_N": "Force"}}"#;
+    is_the_drawer("remarks", rows("Time,Position,Force\ns,um,mN\nraw,raw,tared"), mapped);
+    let station = r#""TOA5","A","CR1000X""#;
+    is_the_drawer("TOA5", rows(&format!("{station}\nTime,Position,Force\n\"s\",\"um\",\"mN\"\n\"\",Smp,Smp")), mapped);
+}
+
+/// Days of a spreadsheet, and counters of 16 bits.
+#[test]
+fn days_and_overrun_counters_are_told() {
+    let text = drawer(1500, 100.0).iter().fold("time_s,q_um,f_mN\n".to_owned(), |mut text, [t, place, push]| {
+        let count = (1e6 * place).round().rem_euclid(65_536.0);
+        let _ = writeln!(text, "{:.12},{count},{:.4}", 46_000.25 + t / 86_400.0, 1e3 * push);
+        text
+    });
+    let read = is_the_drawer("days", text, r#"{"task": "mechanism"}"#);
+    for said in ["counts days since 1900", "runs over the end of its counter"] {
+        assert!(read.warnings.iter().any(|w| w.text.contains(said)), "{:?}", read.warnings);
+    }
+}
