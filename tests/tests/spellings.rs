@@ -1,7 +1,7 @@
 //! Tables as other programs spell them: each leads to the same samples.
 
 use std::fmt::Write as _;
-use tests::drawer::{Sample, drawer, is_the_drawer};
+use tests::drawer::{File, Sample, drawer, is_the_drawer};
 
 const MAPPED: &str =
     r#"{"task": "mechanism", "columns": {"t_s": "Time (s)", "q_m": "Position (um)", "f_N": "Force (mN)"}}"#;
@@ -119,8 +119,23 @@ fn rows_between_the_units_and_the_numbers_are_remarks() {
     let rows = |head: &str| format!("{head}\n{}", table(",", str::to_owned).split_once('\n').expect("names").1);
     let mapped = r#"{"task": "mechanism", "columns": {"t_s": "Time", "q_m": "Position", "f_N": "Force"}}"#;
     is_the_drawer("remarks", rows("Time,Position,Force\ns,um,mN\nraw,raw,tared"), mapped);
-    let station = r#""TOA5","A","CR1000X""#;
-    is_the_drawer("TOA5", rows(&format!("{station}\nTime,Position,Force\n\"s\",\"um\",\"mN\"\n\"\",Smp,Smp")), mapped);
+    let head = "\"TOA5\",\"A\",\"CR1000X\"\nTime,Position,Force\n\"TS\",\"um\",\"mN\"\n\"\",Smp,Smp\n";
+    let text = drawer(1500, 100.0).iter().fold(head.to_owned(), |mut text, sample| {
+        let [_, place, push] = cells(sample);
+        let (minute, second) = (sample[0] as u32 / 60, sample[0] % 60.0);
+        let _ = writeln!(text, "\"2026-10-25 14:{minute:02}:{second:05.2}\",{place},{push}");
+        text
+    });
+    is_the_drawer("TOA5", text, mapped);
+}
+
+/// Files with other columns, one behind the other, are no table.
+#[test]
+fn other_names_between_the_rows_begin_a_second_table() {
+    let comma = table(",", str::to_owned);
+    let swapped = comma.replacen("Position (um),Force (mN)", "Force (mN),Position (um)", 1);
+    let error = File::new(comma + &swapped, MAPPED).load().expect_err("two tables");
+    assert!(error.contains("row 1501 (line 1502) holds other column names: a second table begins there"), "{error}");
 }
 
 /// Days of a spreadsheet, and counters of 16 bits.

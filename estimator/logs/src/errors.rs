@@ -259,6 +259,16 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// Other column names stand between the rows.
+    #[error("{at} holds other column names: a second table begins there; put it into a file of its own: {path}", at = place(*row, *line), path = path.display())]
+    SecondTable {
+        /// Row of data, from 1.
+        row: usize,
+        /// Line in the file, from 1.
+        line: u64,
+        /// The log.
+        path: PathBuf,
+    },
     /// Time does not increase.
     #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", how = if *goes_back { "goes backwards" } else { "stands still" }, at = place(*row, *line), column = plain(column), path = path.display())]
     Time {

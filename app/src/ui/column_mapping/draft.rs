@@ -78,9 +78,7 @@ impl Row {
     /// True if the file's unit is unknown, or of another dimension than the name: a factor is then required.
     pub fn needs_a_factor(&self) -> bool {
         let Some(wanted) = self.name().and_then(dimension) else { return false };
-        // A clock that counts rows is no clock before its period is known.
-        let is_asked_for = wanted == Dimension::Time || !self.facts.unit_text(wanted).is_empty();
-        let is_unknown = self.unit.is_none() && !self.unit_stated && is_asked_for;
+        let is_unknown = self.unit.is_none() && !self.unit_stated;
         is_unknown || self.own_unit().is_some_and(|own| own.dimension != wanted)
     }
 

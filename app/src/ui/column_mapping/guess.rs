@@ -4,7 +4,7 @@
 use crate::ui::column_mapping::facts::ColumnFacts;
 use crate::ui::column_mapping::file_units::{FileUnit, spelled, spelled_for, unit_in};
 use crate::ui::column_mapping::names::{Form, dimension, find};
-use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read};
+use crate::ui::column_mapping::words::{Axis, Joint, Kind, Reading, read, words};
 use estimator::log::units::{self, Dimension};
 use estimator::log::written_units::{self, Written};
 use estimator::log::{PAIRS, is_tick};
@@ -22,6 +22,8 @@ pub struct Guess {
     pub rival: Option<String>,
 }
 
+/// Whole numbers beyond this are counts rather than millimeters, degrees, or newtons.
+const COUNTS: f64 = 1_000.0;
 /// Points that a column loses if only the user can convert its unit.
 const UNCONVERTED: i32 = 4;
 /// Points of a column that has the program's own name.
@@ -91,6 +93,12 @@ fn by_range(facts: &ColumnFacts, dimension: Dimension) -> Option<&'static FileUn
     let symbol = match dimension {
         Dimension::Time if counts_rows(facts) => return None,
         Dimension::Time => return Some(clock_unit(facts, reach)),
+        // Whole numbers of no unit are counts.
+        Dimension::Length | Dimension::Angle | Dimension::Force | Dimension::Torque
+            if facts.whole && reach > COUNTS =>
+        {
+            return None;
+        }
         // A workspace is at most a metre; values above 5000 are micrometres.
         Dimension::Length if reach > 5_000.0 => "um",
         Dimension::Length if reach > 5.0 => "mm",
@@ -214,7 +222,11 @@ fn name_one_coordinate(candidates: &mut [Candidate], columns: &[ColumnFacts]) {
         return;
     }
     let is_one = |c: &Candidate| match c.name.as_str() {
-        "q_rad" => columns[c.column].header.eq_ignore_ascii_case("q"),
+        // These words stand for coordinates of either kind.
+        "q_rad" => {
+            let words = words(&columns[c.column].header);
+            words.iter().all(|word| ["q", "encoder", "position", "pos"].contains(&word.as_str()))
+        }
         "x_m" => !has("y_m") && c.points < OWN_NAME,
         _ => false,
     };

@@ -163,6 +163,35 @@ fn a_clock_that_stands_or_goes_back_is_not_the_time() {
 }
 
 #[test]
+fn one_coordinate_a_shared_unit_and_open_factors() {
+    for (headers, expected) in [
+        // Beside a force without a direction.
+        ("t|0|9;q;f", &["t_s = t s", "q_m = q m", "f_N = f N"][..]),
+        ("t|0|9;x;F", &["t_s = t s", "q_m = x m", "f_N = F N"]),
+        ("/encoder/position;/ft/force", &["q_m = /encoder/position m", "f_N = /ft/force N"]),
+        ("Encoder|0|65000|3;Force (N)", &["q_m = Encoder", "f_N = Force (N) N"]),
+        // Columns of one dimension have one unit, however far they reach.
+        ("X|-80|90;Y|119|121;Z|4.9|5", &["x_m = X mm", "y_m = Y mm", "z_m = Z mm"]),
+        // Only the user knows the period of a row and the factor of a volt.
+        (
+            "Time|0|2399|1;Load cell (V);Position (mm)|-9|9",
+            &["t_s = Time", "f_N = Load cell (V)", "q_m = Position (mm) mm"],
+        ),
+        ("Speed (rpm)|-90|90;Torque (kg-cm)|-9|9", &["dq_rad_s = Speed (rpm) rpm", "tau_Nm = Torque (kg-cm)"]),
+        (
+            "Shaft position (rev)|-2|2;Torque (Nm)|-9|9",
+            &["q_rad = Shaft position (rev) turns", "tau_Nm = Torque (Nm) N·m"],
+        ),
+    ] {
+        assert_eq!(guessed(&headers.split(';').collect::<Vec<_>>()), expected, "{headers}");
+    }
+    let facts: Vec<ColumnFacts> = ["Force filtered (N)", "Force raw (N)"].map(column).into();
+    let found = guess(&facts);
+    assert_eq!(found[0].name, None);
+    assert_eq!((found[1].name.as_deref(), found[1].rival.as_deref()), (Some("f_N"), Some("Force filtered (N)")));
+}
+
+#[test]
 fn a_row_of_units_tells_what_a_name_does_not() {
     let with = |name: &str, unit: &str| ColumnFacts { stated_unit: unit.to_owned(), ..column(name) };
     let columns = [with("Time|0|9", "(sec)"), with("Extension|-99|90", "(mm)"), with("Load|-7|7", "(N)")];

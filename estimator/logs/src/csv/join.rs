@@ -154,6 +154,7 @@ impl<'a> Join<'a> {
             Fault::Unequal(found) => {
                 LogError::UnequalRow { row, line, found, expected: self.dialect.headers.len(), path }
             }
+            Fault::Names => LogError::SecondTable { row, line, path },
             Fault::Cell(column, what) => {
                 LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, path }
             }

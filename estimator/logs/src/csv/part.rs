@@ -40,6 +40,8 @@ pub enum Fault {
     Unequal(usize),
     /// Column, and the text of the cell.
     Cell(usize, String),
+    /// The record holds names of columns, other than those of the header.
+    Names,
 }
 
 /// Rows one after the other that belong to one trial and follow each other line by line.
@@ -206,6 +208,12 @@ impl<'a, 'p> Reader<'a, 'p> {
         // Every page, and every file that was appended, may begin with the names.
         if !self.repeats_header(record, &cells) {
             if let Err(fault) = self.take(record, &cells) {
+                let is_text = |k: usize| {
+                    let cell = cells.get(record, k);
+                    !cell.is_empty() && number(cell, self.layout.notation).is_none()
+                };
+                let is_names = matches!(fault, Fault::Cell(..)) && cells.len() > 1 && (0..cells.len()).all(is_text);
+                let fault = if is_names { Fault::Names } else { fault };
                 self.part.fault = Some((self.part.rows, self.part.lines, fault));
             }
             self.part.rows += 1;

@@ -4,7 +4,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
-use super::{labview, layout};
+use super::{calendar, labview, layout};
 use crate::errors::LogError;
 use crate::format;
 use std::fs::File;
@@ -166,7 +166,7 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
         let mut dialect = Dialect {
             notation,
             headers: found.names,
-            units: found.units.map_or_else(Vec::new, |k| records[k].cells.clone()),
+            units: found.units.map_or_else(Vec::new, |k| units_of(&records[k], first)),
             first: first.cells.clone(),
             start: first.start as u64,
             line: first.line,
@@ -181,6 +181,13 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
         }
         Some(dialect)
     })
+}
+
+/// Texts of units; a time of the calendar has none, whatever stands there.
+fn units_of(units: &layout::Record, first: &layout::Record) -> Vec<String> {
+    let cells = first.cells.iter().map(|cell| calendar::parse(cell).is_some());
+    let of = |(unit, is_stamp): (&String, bool)| if is_stamp { String::new() } else { unit.clone() };
+    units.cells.iter().zip(cells.chain(std::iter::repeat(false))).map(of).collect()
 }
 
 fn names(header: &[u8], delimiter: u8) -> Vec<String> {
