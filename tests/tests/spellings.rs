@@ -138,6 +138,18 @@ fn other_names_between_the_rows_begin_a_second_table() {
     assert!(error.contains("row 1501 (line 1502) holds other column names: a second table begins there"), "{error}");
 }
 
+/// Blocks of one channel each, one below the other: no row has both.
+#[test]
+fn channels_one_below_the_other_are_refused() {
+    let rows = drawer(400, 100.0);
+    let places = rows.iter().map(|[t, place, _]| format!("{t:.2},{place:.6},\n"));
+    let forces = rows.iter().map(|[t, _, push]| format!("{t:.2},,{push:.6}\n"));
+    for blocks in [places.clone().chain(forces.clone()).collect::<Vec<_>>(), forces.chain(places).collect()] {
+        let error = File::new("t_s,q_m,f_N\n".to_owned() + &blocks.concat(), "{}").load().expect_err("no common row");
+        assert!(error.contains("has no value in this column"), "{error}");
+    }
+}
+
 /// Days of a spreadsheet, and counters of 16 bits.
 #[test]
 fn days_and_overrun_counters_are_told() {

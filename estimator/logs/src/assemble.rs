@@ -33,7 +33,7 @@ pub fn recordings(
     for (trial, mut group) in apart.runs {
         let doubts = second_clocks::doubts(&group, plan, headers);
         let mut resampled = second_clocks::on_the_logs_clock(&mut group, plan, headers, path)?;
-        resampled.extend(clock::on_one_clock(&mut group, plan, &table.sparse_columns, headers));
+        resampled.extend(clock::on_one_clock(&mut group, plan, &table.sparse_columns, (headers, path))?);
         let clock::Times { time_s, said: about_time, origin } = clock::times(&mut group, plan, meta, headers, path)?;
         let ends = time_s.as_ref().and_then(|time| Some((*time.first()?, *time.last()?)));
         span_s = ends.map(|(a, b)| span_s.map_or((a, b), |(c, d)| (f64::min(a, c), f64::max(b, d)))).or(span_s);

@@ -233,18 +233,30 @@ fn shown(rate_hz: f64) -> String {
     if rate_hz < 1e-3 { format!("{rate_hz:.1e}") } else { ((rate_hz * 1e4).round() / 1e4).to_string() }
 }
 
-/// Puts needed columns that have values in some rows only on the clock of the one with fewest.
-pub fn on_one_clock(group: &mut Group, plan: &Plan, sparse: &[usize], headers: &[String]) -> Vec<String> {
-    let Some(time) = plan.time.map(|column| group.columns[column].clone()) else { return Vec::new() };
+/// Puts needed columns that have values in some rows only on the clock of the one with fewest. An error for one without any.
+pub fn on_one_clock(
+    group: &mut Group,
+    plan: &Plan,
+    sparse: &[usize],
+    (headers, path): (&[String], &Path),
+) -> Result<Vec<String>, LogError> {
+    let Some(time) = plan.time.map(|column| group.columns[column].clone()) else { return Ok(Vec::new()) };
     let needed: Vec<usize> = plan.targets.iter().map(|t| t.column).filter(|c| !group.columns[*c].is_empty()).collect();
     let rows_of = |column: usize| -> Vec<usize> {
         (0..time.len()).filter(|&row| !is_missing(group.columns[column][row])).collect()
     };
     let is_sparse = |column: &usize| sparse.contains(column) && group.columns[*column].iter().any(|v| is_missing(*v));
     // Nothing is made up between the samples of the slowest channel.
-    let Some(base) = needed.iter().copied().min_by_key(|&column| rows_of(column).len()) else { return Vec::new() };
-    if !needed.iter().any(is_sparse) || time.windows(2).any(|w| w[1] <= w[0]) {
-        return Vec::new();
+    let Some(base) = needed.iter().copied().min_by_key(|&column| rows_of(column).len()) else { return Ok(Vec::new()) };
+    if !needed.iter().any(is_sparse) {
+        return Ok(Vec::new());
+    }
+    if rows_of(base).is_empty() {
+        let ((row, line), column) = (group.place(0), headers[base].clone());
+        return Err(LogError::NoValues { row, line, column, path: path.to_path_buf() });
+    }
+    if time.windows(2).any(|w| w[1] <= w[0]) {
+        return Ok(Vec::new());
     }
     let at = |rows: &[usize]| rows.iter().map(|&row| time[row]).collect::<Vec<f64>>();
     let clocks: Vec<(usize, Vec<usize>)> = needed.iter().map(|&column| (column, rows_of(column))).collect();
@@ -275,5 +287,5 @@ pub fn on_one_clock(group: &mut Group, plan: &Plan, sparse: &[usize], headers: &
     let labels: Labels =
         if group.labels.is_empty() { Labels::default() } else { group.labels.gathered(kept.iter().copied()) };
     *group = Group::new(columns, labels);
-    said
+    Ok(said)
 }

@@ -269,6 +269,18 @@ pub enum LogError {
         /// The log.
         path: PathBuf,
     },
+    /// A needed column is empty in one of several runs.
+    #[error("{at}, column `{column}`: the run that begins there has no value in this column; put the values of one instant into one row, or give the channel a file of its own and \"join\" it: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
+    NoValues {
+        /// First row of the run, from 1.
+        row: usize,
+        /// Its line in the file, from 1; 0 where the format has no lines.
+        line: u64,
+        /// The column.
+        column: String,
+        /// The log.
+        path: PathBuf,
+    },
     /// Time does not increase.
     #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); {advice}: {path}", how = if *goes_back { "goes backwards" } else { "stands still" }, at = place(*row, *line), column = plain(column), path = path.display())]
     Time {

@@ -62,6 +62,17 @@ fn counters_go_on_where_they_run_over() {
     }
 }
 
+/// Dry friction of 2 N that reverses in one row, in steps of 1 mN: 4 N are nearly 12 bits.
+#[test]
+fn friction_that_reverses_is_no_counter() {
+    let mut one = swing(4000);
+    let force = |i: usize| if (i / 450).is_multiple_of(2) { 2.03 } else { -2.03 };
+    let rough = |i: usize| 1e-3 * ((i * 7919) % 40) as f64;
+    one.channels[1] =
+        channel("f_N", "N", (0..4000).map(|i| ((force(i) - rough(i)) * 1e3_f64).round() * 1e-3).collect());
+    assert!(repair(&mut one).iter().all(|warning| warning.kind != "wrapped-counter"));
+}
+
 #[test]
 fn a_torque_that_switches_between_its_limits_is_no_counter() {
     let mut one = swing(4000);

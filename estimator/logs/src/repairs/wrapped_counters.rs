@@ -6,6 +6,8 @@ use haptics::recording::{Channel, Recording, Span, Warning};
 
 /// Bits of counters and converters. Signals of fewer bits fill their range by chance.
 const BITS: [i32; 5] = [12, 14, 16, 24, 32];
+/// Least bits of a force's: dry friction of 2 N that reverses fills 12 bits of 1 mN, and a converter of few bits stops at its ends.
+const BITS_OF_FORCE: i32 = 16;
 /// Least share of a counter's range that its values fill if it ran over.
 const FILLED: f64 = 0.9;
 /// Usual step of a force in one sample, as a share of the range. Dry friction that reverses makes larger ones.
@@ -80,7 +82,13 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
     }
     let unit = unit(values)?;
     let fits = |range: &f64| span < *range && span >= FILLED * range;
-    let range = BITS.into_iter().map(|bits| unit * 2_f64.powi(bits)).find(fits)?;
+    let least = if is_force { BITS_OF_FORCE } else { 0 };
+    let range = BITS.into_iter().filter(|bits| *bits >= least).map(|bits| unit * 2_f64.powi(bits)).find(fits)?;
+    // A force counts from an end of its range, or from the middle; the origin of a position may have been moved.
+    let begins_at = |start: f64| low >= start - 0.5 * unit && high < start + range + 0.5 * unit;
+    if is_force && ![0.0, -0.5 * range, -range].into_iter().any(begins_at) {
+        return None;
+    }
     let ends = values.iter().filter(|v| (*v - low).min(high - *v) <= AT_END * range).count();
     // Beside the range, the step is like those of its neighbours.
     let goes_on = |&&i: &&usize| {
@@ -89,8 +97,8 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
         let most = if is_force { STEP * range } else { 2.0 * usual + 2.0 * unit };
         (step(i) - range).abs() <= most
     };
-    let least = if is_force { USUAL } else { 1.0 } * leaps.len() as f64;
-    let is_smooth = leaps.iter().filter(|leap| goes_on(leap)).count() as f64 >= least;
+    let share = if is_force { USUAL } else { 1.0 };
+    let is_smooth = leaps.iter().filter(|leap| goes_on(leap)).count() as f64 >= share * leaps.len() as f64;
     let is_counter = is_smooth && ends as f64 <= MOST_AT_ENDS * values.len() as f64;
     is_counter.then_some((range, leaps))
 }
