@@ -144,7 +144,9 @@ fn channels_one_below_the_other_are_refused() {
     let rows = drawer(400, 100.0);
     let places = rows.iter().map(|[t, place, _]| format!("{t:.2},{place:.6},\n"));
     let forces = rows.iter().map(|[t, _, push]| format!("{t:.2},,{push:.6}\n"));
-    for blocks in [places.clone().chain(forces.clone()).collect::<Vec<_>>(), forces.chain(places).collect()] {
+    let later = rows.iter().map(|[t, _, push]| format!("{:.2},,{push:.6}\n", t + 10.0));
+    let at_once = [places.clone().chain(forces.clone()).collect::<Vec<_>>(), forces.chain(places.clone()).collect()];
+    for blocks in at_once.into_iter().chain([places.chain(later).collect()]) {
         let error = File::new("t_s,q_m,f_N\n".to_owned() + &blocks.concat(), "{}").load().expect_err("no common row");
         assert!(error.contains("has no value in this column"), "{error}");
     }

@@ -233,6 +233,14 @@ fn shown(rate_hz: f64) -> String {
     if rate_hz < 1e-3 { format!("{rate_hz:.1e}") } else { ((rate_hz * 1e4).round() / 1e4).to_string() }
 }
 
+/// First and last time that the rows of all columns span; none if they have no time in common.
+fn common_times(time: &[f64], clocks: &[(usize, Vec<usize>)]) -> Option<(f64, f64)> {
+    let ends = |(_, rows): &(usize, Vec<usize>)| Some((time[*rows.first()?], time[*rows.last()?]));
+    let narrowed = |(a, b): (f64, f64), (first, last): (f64, f64)| (a.max(first), b.min(last));
+    let common = clocks.iter().try_fold((f64::NEG_INFINITY, f64::INFINITY), |all, one| Some(narrowed(all, ends(one)?)));
+    common.filter(|(first, last)| first <= last)
+}
+
 /// Puts needed columns that have values in some rows only on the clock of the one with fewest. An error for one without any.
 pub fn on_one_clock(
     group: &mut Group,
@@ -248,20 +256,15 @@ pub fn on_one_clock(
     let is_sparse = |column: &usize| sparse.contains(column) && group.columns[*column].iter().any(|v| is_missing(*v));
     // Nothing is made up between the samples of the slowest channel.
     let Some(base) = needed.iter().copied().min_by_key(|&column| rows_of(column).len()) else { return Ok(Vec::new()) };
-    if !needed.iter().any(is_sparse) {
-        return Ok(Vec::new());
-    }
-    if rows_of(base).is_empty() {
-        let ((row, line), column) = (group.place(0), headers[base].clone());
-        return Err(LogError::NoValues { row, line, column, path: path.to_path_buf() });
-    }
-    if time.windows(2).any(|w| w[1] <= w[0]) {
+    if !needed.iter().any(is_sparse) || time.windows(2).any(|w| w[1] <= w[0]) {
         return Ok(Vec::new());
     }
     let at = |rows: &[usize]| rows.iter().map(|&row| time[row]).collect::<Vec<f64>>();
     let clocks: Vec<(usize, Vec<usize>)> = needed.iter().map(|&column| (column, rows_of(column))).collect();
-    let first = clocks.iter().map(|(_, rows)| time[rows[0]]).fold(f64::NEG_INFINITY, f64::max);
-    let last = clocks.iter().map(|(_, rows)| time[rows[rows.len() - 1]]).fold(f64::INFINITY, f64::min);
+    let Some((first, last)) = common_times(&time, &clocks) else {
+        let ((row, line), column) = (group.place(0), headers[base].clone());
+        return Err(LogError::NoValues { row, line, column, path: path.to_path_buf() });
+    };
     let kept: Vec<usize> = rows_of(base).into_iter().filter(|&row| (first..=last).contains(&time[row])).collect();
     let to = at(&kept);
     let mut said = Vec::new();

@@ -270,7 +270,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A needed column is empty in one of several runs.
-    #[error("{at}, column `{column}`: the run that begins there has no value in this column; put the values of one instant into one row, or give the channel a file of its own and \"join\" it: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
+    #[error("{at}, column `{column}`: the run that begins there has no value in this column while the others have some; put the values of one instant into one row, or give the channel a file of its own and \"join\" it: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
     NoValues {
         /// First row of the run, from 1.
         row: usize,
