@@ -77,6 +77,15 @@ fn whole_numbers_below_a_thousand_tell_thousands_from_decimals() {
     }
 }
 
+/// Commas in quotes before three digits, in too few rows to tell: they are thousands, and a note says so.
+#[test]
+fn few_commas_in_quotes_are_thousands_with_a_note() {
+    let rows = (0..20).map(|k| format!("{k},\"1,{:03}\"\n", 7 * k)).collect::<Vec<_>>().concat();
+    let read = File::new(format!("sample,q_um\n{rows}"), "{}").load().expect("a table");
+    assert!((read[0].channel("q_m").expect("a position")[0] - 1e-3).abs() < 1e-12);
+    assert!(read[0].warnings.iter().any(|w| w.text.contains("stand between thousands")), "{:?}", read[0].warnings);
+}
+
 #[test]
 fn layouts_of_other_programs_are_read() {
     let same = |cell: &str| cell.to_owned();

@@ -158,7 +158,13 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
         if text.len() + 3 >= SNIFF_BYTES && records.last().is_some_and(|r| r.end == text.len()) {
             records.pop();
         }
-        let (decimal, grouped) = Decimal::of(records.iter().map(|record| record.cells.as_slice()));
+        let (mut decimal, mut grouped) = Decimal::of(records.iter().map(|record| record.cells.as_slice()));
+        if delimiter == b',' && decimal == Decimal::Either {
+            // A comma in quotes stands for thousands, unless some cell shows decimals behind it.
+            decimal = Decimal::Point;
+            grouped =
+                records[records.len() / 2..].iter().any(|record| record.cells.iter().any(|cell| cell.contains(',')));
+        }
         let notation = Notation { delimiter, decimal };
         let found = layout::of(&records, notation).or_else(|| layout::below_comment(&records, above, notation));
         let found = found.filter(|found| found.width > 1 || stated.is_some())?;
