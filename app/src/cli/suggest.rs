@@ -96,7 +96,7 @@ impl Search<'_> {
                 let doubt = warnings.find(|w| w.suggested.is_some());
                 let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
                 let has_step = is_mute && self.guess()?
-                    || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&rate())
+                    || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"))
                     || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries));
                 (has_step, doubt.map(|w| w.text.clone()))
             }
@@ -111,13 +111,6 @@ impl Search<'_> {
     }
 }
 
-/// Entries that ask for the rate of a log without a clock.
-fn rate() -> Suggested {
-    let mut entries = Suggested::new();
-    entries.insert("rate_hz".to_owned(), Value::Null);
-    entries
-}
-
 /// True for a recording with a motion and a force.
 fn has_motion_and_force(recording: &Recording) -> bool {
     let names = || recording.channels.iter().filter(|channel| units::is_program_name(&channel.name));
@@ -129,11 +122,12 @@ fn has_motion_and_force(recording: &Recording) -> bool {
 
 /// Entries that ask for the factor of a column.
 fn factor_of(name: &str) -> Suggested {
-    let mut factor = Suggested::new();
-    factor.insert(name.to_owned(), Value::Null);
-    let mut entries = Suggested::new();
-    entries.insert("scale".to_owned(), Value::Object(factor));
-    entries
+    Suggested::from_iter([("scale".to_owned(), Value::Object(asked(name)))])
+}
+
+/// An entry whose value only the user knows.
+fn asked(key: &str) -> Suggested {
+    Suggested::from_iter([(key.to_owned(), Value::Null)])
 }
 
 /// True for entries with a value that only the user knows.

@@ -9,7 +9,7 @@ use serde_json::json;
 const LEAP: f64 = 10.0;
 /// Samples on each side that show the usual step.
 const AROUND: usize = 20;
-/// Share of steps that no leap is below, as a quantile of all.
+/// Level of the quantile of all steps that a leap exceeds by the same factor.
 const LEVEL: f64 = 0.99;
 /// More leaps than this are the motion.
 const MOST: usize = 3;

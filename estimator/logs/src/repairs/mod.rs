@@ -39,5 +39,19 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     found
 }
 
+/// Adds a cycle behind every sample at which a signal leaps back to the other end of its range.
+fn add_cycles(values: &mut [f64], cycle: f64, leaps: &[usize]) {
+    let (mut cycles, mut before) = (0.0, 0.0);
+    let mut leaps = leaps.iter().peekable();
+    for (i, value) in values.iter_mut().enumerate() {
+        let read = *value;
+        if leaps.next_if(|at| **at == i).is_some() {
+            cycles -= (read - before).signum();
+        }
+        before = read;
+        *value = read + cycle * cycles;
+    }
+}
+
 #[cfg(test)]
 mod tests;

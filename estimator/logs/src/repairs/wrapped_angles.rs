@@ -35,18 +35,7 @@ pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
     });
     let warnings: Vec<Warning> = warnings.collect();
     for (k, leaps) in leaps {
-        let values = &mut recording.channels[k].values;
-        let mut turns = 0.0;
-        let mut leaps = leaps.into_iter().peekable();
-        let mut before = values[0];
-        for (i, value) in values.iter_mut().enumerate() {
-            let read = *value;
-            if leaps.next_if_eq(&i).is_some() {
-                turns -= (read - before).signum();
-            }
-            before = read;
-            *value = read + TAU * turns;
-        }
+        super::add_cycles(&mut recording.channels[k].values, TAU, &leaps);
     }
     warnings
 }

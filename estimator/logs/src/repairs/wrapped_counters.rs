@@ -45,17 +45,7 @@ pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
 
 /// Adds the ranges of the counter that went by.
 fn go_on(channel: &mut Channel, range: f64, overruns: &[usize]) {
-    let mut ranges = 0.0;
-    let mut overruns = overruns.iter().peekable();
-    let mut before = channel.values.first().copied().unwrap_or(0.0);
-    for (i, value) in channel.values.iter_mut().enumerate() {
-        let read = *value;
-        if overruns.next_if(|at| **at == i).is_some() {
-            ranges -= (read - before).signum();
-        }
-        before = read;
-        *value = read + range * ranges;
-    }
+    super::add_cycles(&mut channel.values, range, overruns);
     // A counter of forces holds those about zero: the first of them may have been below it.
     if matches!(channel.unit.as_str(), "N" | "Nm") && !channel.values.is_empty() {
         let mut sorted = channel.values.clone();

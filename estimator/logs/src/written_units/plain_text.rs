@@ -48,9 +48,10 @@ pub(super) fn times(text: &str) -> (f64, String) {
 
 /// A number, a power of ten, or a part: `1000`, `1e-3`, `10^-3`, `1/10`.
 fn number(text: &str) -> Option<f64> {
-    let plain = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
+    let is_factor = |value: &f64| value.is_finite() && *value > 0.0;
+    let plain = |text: &str| text.parse().ok().filter(is_factor);
     if let Some(power) = text.strip_prefix("10^") {
-        return Some(10_f64.powi(power.parse().ok()?));
+        return Some(10_f64.powi(power.parse().ok()?)).filter(is_factor);
     }
     match text.split_once('/') {
         Some((above, below)) => Some(plain(above)? / plain(below)?),

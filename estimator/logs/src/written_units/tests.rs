@@ -100,7 +100,7 @@ fn the_wanted_quantity_decides_between_two_meanings() {
     assert!(close(parse("1/min", &[AngularVelocity]), AngularVelocity, TURN_RAD / 60.0));
     assert_eq!(parse("counts", &[Force]), Written::Counts);
     assert_eq!(
-        (parse("stone", &[]), parse("10", &[]), parse("", &[])),
+        (parse("stone", &[]), parse("10", &[]), parse("10^999 N", &[])),
         (Written::Unknown, Written::Unknown, Written::Unknown)
     );
 }
