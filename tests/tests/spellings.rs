@@ -122,6 +122,24 @@ fn layouts_of_other_programs_are_read() {
     }
 }
 
+#[test]
+fn lines_of_serial_monitors_are_read() {
+    let samples = drawer(1500, 100.0);
+    let lines = |line: &dyn Fn(&Sample) -> String| samples.iter().map(|s| line(s) + "\n").collect::<Vec<_>>().concat();
+    let clock = |t: f64| format!("14:{:02}:{:06.3}", t as u32 / 60, t % 60.0);
+    let labelled = lines(&|[t, place, push]| format!("t_s:{t:.2}\tq_um:{:.3}\tf_mN:{:.4}", 1e6 * place, 1e3 * push));
+    is_the_drawer("labels", format!("boot ok\n{labelled}"), r#"{"task": "mechanism"}"#);
+    let row = |[_, place, push]: &Sample| format!("{:.3},{:.4}", 1e6 * place, 1e3 * push);
+    let arrows = lines(&|s| format!("{} -> {}", clock(s[0]), row(s)));
+    let brackets = lines(&|s| format!("[2026-10-25 {}] {}", clock(s[0]), row(s)));
+    for (name, text) in [
+        ("arrows", format!("14:00:00.000 -> Position (um),Force (mN)\n{arrows}")),
+        ("brackets", format!("[2026-10-25 14:00:00.000] Position (um),Force (mN)\n{brackets}")),
+    ] {
+        is_the_drawer(name, text, &MAPPED.replace("Time (s)", "Time"));
+    }
+}
+
 /// Campbell Scientific's loggers: station, names, units, kind of each value; Origin: names, units, remarks.
 #[test]
 fn rows_between_the_units_and_the_numbers_are_remarks() {

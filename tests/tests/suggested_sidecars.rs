@@ -137,3 +137,30 @@ fn words_for_missing_values_do_not_hide_a_force() {
     let said = suggest(&file);
     assert!(said.contains(r#""f_N": "Force (N)""#) && said.contains("`#N/A` is not a number"), "{said}");
 }
+
+/// Set points have no unit, and no measured channel stands back behind them.
+#[test]
+fn set_points_are_no_units() {
+    let file = table("time_s,q_mm,q_ref,f_cmd,f_N", |_, [t, place, push]| {
+        format!("{t:.3},{place:.5},{:.5},{:.6},{push:.6}", 1.02 * place, 1.1 * push)
+    });
+    mended("set points", &file);
+}
+
+/// A velocity that contradicts its position by a factor of no unit is left to the user.
+#[test]
+fn a_contradiction_is_left_to_the_user() {
+    let rates = drawer(1501, 100.0);
+    let file = table("time_s,q_mm,dq_mm_s,f_N", |at, [t, place, push]| {
+        format!("{t:.3},{place:.5},{:.5},{push:.6}", 1e3 * (rates[at + 1][1] - rates[at][1]) / 0.01 / 7.3)
+    });
+    let said = suggest(&file);
+    assert!(said.contains("nothing to add") && said.contains("still open: q_m changes at 7.3"), "{said}");
+}
+
+/// The clock of an Arduino has the name of its unit.
+#[test]
+fn milliseconds_of_a_board_are_a_clock() {
+    let file = table("millis,pos_mm,force_N", |_, [t, place, push]| format!("{:.0},{place:.5},{push:.6}", 1e3 * t));
+    mended("millis", &file);
+}

@@ -6,7 +6,7 @@ use crate::ui::column_mapping::facts::look;
 use crate::ui::column_mapping::names::dimension;
 use crate::ui::column_mapping::state::mends;
 use estimator::log::units;
-use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, load, parse_sidecar, put_suggested, sidecar_path};
+use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, UNIT, load, parse_sidecar, put_suggested, sidecar_path};
 use haptics::recording::{Recording, Suggested};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -98,7 +98,8 @@ impl Search<'_> {
                 let has_step = is_mute && self.guess()?
                     || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"))
                     || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries));
-                (has_step, doubt.map(|w| w.text.clone()))
+                let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(|w| w.kind == UNIT));
+                (has_step, open.map(|w| w.text.clone()))
             }
             Err(error) => {
                 let has_step = match error.suggested() {

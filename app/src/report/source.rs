@@ -1,5 +1,6 @@
 //! The input files, with their SHA-256.
 
+use estimator::log::{parse_sidecar, sidecar_path};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -25,6 +26,8 @@ pub struct Source {
     pub log: Hashed,
     /// Its sidecar, if it has one.
     pub sidecar: Option<Hashed>,
+    /// Other files of the same run, which the sidecar joins, and their sidecars.
+    pub joined: Vec<Hashed>,
     /// Content of the sidecar, if it is text of a readable length.
     pub stated: Option<String>,
 }
@@ -32,10 +35,11 @@ pub struct Source {
 impl Source {
     /// Reads a log's bytes, and those of its sidecar: `meta`, or the one beside the log.
     pub fn of(log: &Path, meta: Option<&Path>) -> Self {
-        let beside = estimator::log::sidecar_path(log);
+        let beside = sidecar_path(log);
         let path = meta.map_or_else(|| Some(beside).filter(|p| p.is_file()), |p| Some(p.to_path_buf()));
         let stated = path.as_deref().and_then(text);
-        Self { log: Hashed::of(log), sidecar: path.as_deref().map(Hashed::of), stated }
+        let joined = path.as_deref().map_or_else(Vec::new, |sidecar| joined(log, sidecar));
+        Self { log: Hashed::of(log), sidecar: path.as_deref().map(Hashed::of), joined, stated }
     }
 
     /// The log's name without its folders.
@@ -54,6 +58,18 @@ impl Hashed {
     pub fn name(&self) -> String {
         self.path.file_name().map_or_else(|| self.path.display().to_string(), |n| n.to_string_lossy().into_owned())
     }
+}
+
+/// Files that a sidecar joins to a log, each with its own sidecar.
+fn joined(log: &Path, sidecar: &Path) -> Vec<Hashed> {
+    let read = || parse_sidecar(&haptics::text_file::read(sidecar).ok()?, sidecar).ok();
+    let folder = log.parent().unwrap_or(Path::new(""));
+    let files = read().into_iter().flat_map(|meta| meta.join).map(|joined| folder.join(joined.file));
+    let with_sidecar = files.flat_map(|path| {
+        let beside = Some(sidecar_path(&path)).filter(|beside| beside.is_file());
+        std::iter::once(path).chain(beside)
+    });
+    with_sidecar.map(|path| Hashed::of(&path)).collect()
 }
 
 fn digest(path: &Path) -> io::Result<(u64, String)> {
@@ -108,6 +124,20 @@ mod tests {
         assert_eq!(source.log.digest, Ok((3, known.to_owned())));
         assert_eq!((source.name().as_str(), source.stated.as_deref()), ("a.csv", Some("{}")));
         assert!(source.sidecar.is_some());
+    }
+
+    #[test]
+    fn joined_files_are_listed_with_their_sidecars() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+        write("a.csv", "abc");
+        write("a.meta.json", r#"{"join": [{"file": "force.csv"}, {"file": "none.csv"}], "columns": {"t_s": null}}"#);
+        write("force.csv", "abc");
+        write("force.meta.json", "{}");
+        let source = Source::of(&folder.path().join("a.csv"), None);
+        let names: Vec<String> = source.joined.iter().map(Hashed::name).collect();
+        assert_eq!(names, ["force.csv", "force.meta.json", "none.csv"]);
+        assert!(source.joined[0].digest == source.log.digest && source.joined[2].digest.is_err());
     }
 
     #[test]

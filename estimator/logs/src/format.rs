@@ -87,9 +87,21 @@ fn markup(start: &[u8]) -> Option<&'static str> {
     let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(start).trim_ascii_start();
     match text.first()? {
         b'<' => Some("a web page or XML; save the table itself as CSV"),
+        b'[' if !is_list(text) => None,
         b'{' | b'[' => Some("JSON; write it as CSV, with pandas for example, or as MCAP"),
         _ => None,
     }
+}
+
+/// False for a first line such as `[12:00:05] 0.5,2.1` or `[Header]`.
+fn is_list(text: &[u8]) -> bool {
+    let line = text.split(|b| *b == b'\n').next().unwrap_or_default();
+    let mut parts = line.splitn(2, |b| *b == b']');
+    let inside = parts.next().unwrap_or_default()[1..].trim_ascii();
+    let behind = parts.next().unwrap_or_default().trim_ascii();
+    let is_item = inside.first().is_none_or(|b| b.is_ascii_digit() || b"[{\"-".contains(b));
+    let is_word = [&b"true"[..], b"false", b"null"].iter().any(|word| inside.starts_with(word));
+    (is_item || is_word) && behind.first().is_none_or(|b| b",]".contains(b))
 }
 
 #[cfg(test)]
@@ -115,6 +127,8 @@ mod tests {
         }
         assert!(foreign(b"t_s,q_m\n").is_none() && foreign(b"").is_none());
         assert!(foreign(b"<!DOCTYPE html>\n<html>").is_some_and(|what| what.contains("web page")));
+        assert!(foreign(b"[Header]\nRate=200\n").is_none() && foreign(b"[\n  1.5,\n").is_some());
+        assert!(foreign(b"[12:00:05] 0.5,2.1\n").is_none() && foreign(b"[[1, 2], [3, 4]]").is_some());
         assert!(foreign(b"\n { \"t_s\": [0, 1] }").is_some_and(|what| what.starts_with("JSON")));
     }
 }

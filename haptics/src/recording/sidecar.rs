@@ -72,7 +72,7 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "one file"), example = json!([{ "file": "force.csv", "offset_s": 0.012 }]))]
     pub join: Vec<JoinedFile>,
-    /// Factor of a column, after the conversion of its unit.
+    /// Factor of a column, in place of the conversion of its unit. Behind a unit of the log format (`_mm`) it is a further factor.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "f_N": 35.15 }))]
     pub scale: BTreeMap<String, f64>,
@@ -97,7 +97,7 @@ pub struct Meta {
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
     /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`,
-    /// `wrapped-counter`, `spikes`, `tare-step`, `clock-offset`.
+    /// `wrapped-counter`, `stuck-channel`, `spikes`, `tare-step`, `clock-offset`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
     pub as_recorded: Vec<String>,
@@ -245,12 +245,13 @@ pub struct Prior {
 }
 
 /// Kinds of repairs, by their names in `as_recorded`: those on loading, and those of a fit.
-pub const REPAIRS: [&str; 8] = [
+pub const REPAIRS: [&str; 9] = [
     "sentinels",
     "burst-stamps",
     "held-samples",
     "wrapped-angle",
     "wrapped-counter",
+    "stuck-channel",
     "spikes",
     TARE_STEP,
     CLOCK_OFFSET,

@@ -108,6 +108,7 @@ fn repeat(sheets: &[Sheet], provenance: &Provenance) -> Markup {
                         @for sheet in sheets {
                             (file(&sheet.source.log))
                             @if let Some(sidecar) = &sheet.source.sidecar { (file(sidecar)) }
+                            @for joined in &sheet.source.joined { (file(joined)) }
                         }
                     }
                 }

@@ -94,10 +94,8 @@ impl Row {
     /// True if the reader would reject the header as it is, or read it as a quantity of the program.
     fn has_a_meaning(&self) -> bool {
         let header = &self.facts.header;
-        let known = |part: &str| units::quantity_dimensions(part).is_some();
-        self.read_as().is_some()
-            || units::split(header).is_none()
-                && (known(header) || header.match_indices('_').any(|(at, _)| known(&header[..at])))
+        matches!(header.as_str(), "trial" | "label")
+            || !matches!(log::program_name(header, &self.facts.stated_unit), Ok(None))
     }
 
     /// Factor of the unit that the file states, for a quantity of this dimension.

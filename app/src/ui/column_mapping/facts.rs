@@ -182,10 +182,7 @@ fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogE
 
 /// True for a name that the reader would read as a quantity, or reject because of its unit.
 fn has_a_meaning(header: &str) -> bool {
-    let known = |part: &str| units::quantity_dimensions(part).is_some();
-    known(header)
-        || header.match_indices('_').any(|(at, _)| known(&header[..at]))
-        || ["time", "timestamp", "force", "torque", "angle", "position"].iter().any(|w| header.starts_with(w))
+    !matches!(log::program_name(header, ""), Ok(None)) || header.starts_with("time")
 }
 
 #[cfg(test)]

@@ -166,7 +166,7 @@ const QUANTITIES: [(Kind, &str); 7] = [
     (
         Kind::Time,
         "t time zeit stamp timestamp zeitstempel clock uhrzeit elapsed \
-         ts tick ticks datenum время 时间 tiempo temps 时刻",
+         ts tick ticks millis micros ms us datenum время 时间 tiempo temps 时刻",
     ),
     (
         Kind::Position,

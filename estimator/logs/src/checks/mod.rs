@@ -15,14 +15,14 @@ mod scale;
 mod spikes;
 
 pub(crate) use findings::{is_position, limited, place};
-pub(crate) use profile::extremes;
+pub(crate) use held::{saturated, stuck};
+pub(crate) use profile::{Profile, extremes};
 pub use repeats::copied;
 pub use scale::UNIT;
 pub use spikes::repaired;
 
 use super::units;
 use haptics::recording::{Channel, Recording, Warning};
-use profile::Profile;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -60,14 +60,14 @@ fn of_channel(recording: &Recording, channel: &Channel, with_spikes: bool) -> (P
     let profile = Profile::of(&channel.values);
     let known = units::is_program_name(&channel.name);
     let mut found = Vec::new();
-    let limit = held::saturated(recording, channel, &profile);
+    let limit = saturated(recording, channel, &profile);
     if known {
         let impossible = spikes::impossible(channel, &profile);
         if with_spikes {
             found.extend(spikes::warning(recording, channel, &profile, impossible.as_ref()));
         }
         found.extend(impossible);
-        found.extend(held::stuck(recording, channel, &profile, limit.as_ref()));
+        found.extend(stuck(recording, channel, &profile, limit.as_ref()));
     }
     found.extend(limit);
     (profile, found)

@@ -86,11 +86,11 @@ fn speed(recording: &Recording) -> Option<Warning> {
     })
 }
 
-/// `scale`: factors by channel that would settle the doubt.
+/// `scale`: factors by channel that would settle the doubt; none if only the user knows them.
 fn doubt(recording: &Recording, column: &str, text: String, scale: &[(&str, f64)]) -> Warning {
     let scale: serde_json::Map<_, _> =
         scale.iter().map(|(name, factor)| ((*name).to_owned(), (*factor).into())).collect();
-    let suggested = Some(serde_json::Map::from_iter([("scale".to_owned(), scale.into())]));
+    let suggested = (!scale.is_empty()).then(|| serde_json::Map::from_iter([("scale".to_owned(), scale.into())]));
     let all = Span { first: 0, end: recording.len() };
     Warning { kind: UNIT.to_owned(), column: Some(column.to_owned()), spans: vec![all], text, suggested }
 }
@@ -111,14 +111,16 @@ fn rates(recording: &Recording) -> Vec<Warning> {
         });
         let ratio = (least * most).sqrt();
         let (factor, how, wrong) = named.into_iter().find(|(factor, ..)| is_near(factor)).map_or_else(
-            || (ratio, format!("{} times", short(ratio)), format!("a factor of {}", short(ratio.max(ratio.recip())))),
-            |(factor, how, name)| (factor, how, name.to_owned()),
+            || (None, format!("{} times", short(ratio)), format!("a factor of {}", short(ratio.max(ratio.recip())))),
+            |(factor, how, name)| (Some(factor), how, name.to_owned()),
         );
         let text = format!(
             "{} changes at {how} the rate that {} states: the unit of one of the two, or of the time, is wrong by {wrong}; correct it in the column's name, or give \"scale\" in the sidecar",
             position.name, velocity.name
         );
-        found.push(doubt(recording, &velocity.name, text, &[(&velocity.name, factor)]));
+        // No unit has such a factor: another channel, or the clock, may be the wrong one.
+        let scale: Vec<(&str, f64)> = factor.map(|factor| (velocity.name.as_str(), factor)).into_iter().collect();
+        found.push(doubt(recording, &velocity.name, text, &scale));
     }
     found
 }

@@ -17,6 +17,7 @@ mod labview;
 mod layout;
 mod part;
 mod plain;
+mod serial_log;
 #[cfg(target_arch = "x86_64")]
 mod simd;
 mod sniff;

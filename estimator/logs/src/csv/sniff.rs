@@ -4,7 +4,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
-use super::{calendar, labview, layout};
+use super::{calendar, labview, layout, serial_log};
 use crate::errors::LogError;
 use crate::format;
 use std::fs::File;
@@ -46,6 +46,9 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         let made = labview::table(&all, path)?;
         (text, clocks) = (Some(made.text), made.clocks);
+    } else if let Some(kind) = serial_log::kind(&start, !is_short) {
+        let all = text.map_or_else(|| whole(&start), Ok)?;
+        text = Some(serial_log::tabbed(&all, kind));
     } else if let Some(width) = encoding::blank_width(&start, !is_short) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         text = Some(encoding::tabbed(&all, width));

@@ -67,9 +67,9 @@ impl Planner<'_> {
         if self.stated(column).is_empty() && units::split(header).is_some() {
             return Ok(None);
         }
-        // A number behind the name is the place in a list, no unit: `q_1`.
+        // A number behind the name is the place in a list, no unit: `q_1`. A word for its part in a control loop is none either.
         let parts = header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..]));
-        let parts = parts.filter(|(_, text)| !is_place(text));
+        let parts = parts.filter(|(_, text)| !is_place(text) && !is_role(text));
         let alone = std::iter::once(match self.stated(column) {
             "" => written_units::in_header(header, &[]),
             stated => (header, stated),
@@ -109,6 +109,38 @@ impl Planner<'_> {
         (is_apart && !forms(name).is_empty())
             .then(|| format!("\"columns\" in the sidecar asks for another motion, `{first}`"))
     }
+}
+
+/// True for a word that says which of several signals a column holds: `q_des`, `f_cmd`, `x_ref`, `tau_J[0]`.
+fn is_role(text: &str) -> bool {
+    const ROLES: [&str; 24] = [
+        "ref",
+        "reference",
+        "des",
+        "desired",
+        "d",
+        "cmd",
+        "command",
+        "commanded",
+        "set",
+        "setpoint",
+        "target",
+        "goal",
+        "act",
+        "actual",
+        "meas",
+        "measured",
+        "est",
+        "estimated",
+        "ext",
+        "start",
+        "end",
+        "current",
+        "j",
+        "hat",
+    ];
+    let word = text.split(['[', '(', ' ', '_', '.']).next().unwrap_or_default().to_ascii_lowercase();
+    ROLES.contains(&word.as_str())
 }
 
 fn is_place(text: &str) -> bool {

@@ -5,11 +5,12 @@ mod bursts;
 mod held_samples;
 mod integrated;
 mod sentinels;
+mod stuck_channels;
 mod wrapped_angles;
 mod wrapped_counters;
 
 use super::checks;
-use haptics::recording::{REPAIRS, Recording, Warning};
+use haptics::recording::{REPAIRS, Recording, Span, Warning};
 
 /// A repair, with the warnings about it.
 type Step = fn(&mut Recording) -> Vec<Warning>;
@@ -17,19 +18,20 @@ type Step = fn(&mut Recording) -> Vec<Warning>;
 /// Repairs a recording; the warnings tell what was done.
 pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
-    let steps: [(&str, Step); 5] = [
+    let steps: [(&str, Step); 6] = [
         (REPAIRS[0], sentinels::take_out),
         (REPAIRS[1], |recording| bursts::spread(recording).into_iter().collect()),
         (REPAIRS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
         (REPAIRS[3], wrapped_angles::unwrap),
         (REPAIRS[4], wrapped_counters::unwrap),
+        (REPAIRS[5], stuck_channels::take_out),
     ];
     for (kind, step) in steps {
         if recording.meta.repairs(kind) {
             found.extend(step(recording));
         }
     }
-    if recording.meta.repairs(REPAIRS[5])
+    if recording.meta.repairs(REPAIRS[6])
         && let Some((other, said)) = checks::repaired(recording)
     {
         recording.channels = other.channels;
@@ -51,6 +53,17 @@ fn add_cycles(values: &mut [f64], cycle: f64, leaps: &[usize]) {
         before = read;
         *value = read + cycle * cycles;
     }
+}
+
+/// Leaves rows out; the spans of the warnings become the samples on both sides of them.
+fn leave_out(recording: &mut Recording, is_out: &[bool], warnings: &mut [Warning]) {
+    let kept: Vec<usize> = (0..is_out.len()).filter(|&row| !is_out[row]).collect();
+    let before = |row: usize| kept.partition_point(|kept| *kept < row);
+    for span in warnings.iter_mut().flat_map(|warning| &mut warning.spans) {
+        let (first, end) = (before(span.first).saturating_sub(1), before(span.end) + 1);
+        *span = Span { first, end: end.min(kept.len()) };
+    }
+    recording.keep(&kept);
 }
 
 #[cfg(test)]

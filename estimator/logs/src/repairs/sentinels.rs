@@ -24,6 +24,9 @@ const CODES: [f64; 13] = [
 /// Least step to and from a number that stands for no value, in multiples of the step quantile. Half of it also occurs in
 /// fast motion.
 const LEAP: f64 = 10.0;
+/// The same for a number in [`HELD_ROWS`] rows or more: a motion that leaps does not also rest there.
+const LEAP_TO_HELD: f64 = 3.0;
+const HELD_ROWS: usize = 3;
 /// Level of the step quantile: one step in a hundred may be a spike or a gap.
 const STEP_LEVEL: f64 = 0.99;
 /// Largest share of rows that a number may replace. Beyond it, the number is the signal.
@@ -48,8 +51,7 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
         found.push(Warning { kind, column, spans, text, ..Warning::default() });
     }
     if !found.is_empty() {
-        let kept: Vec<usize> = (0..is_out.len()).filter(|&row| !is_out[row]).collect();
-        recording.keep(&kept);
+        super::leave_out(recording, &is_out, &mut found);
         // Another number may stand for no value beside the first.
         found.extend(take_out(recording));
     }
@@ -68,14 +70,17 @@ fn sentinel(channel: &Channel) -> Option<(f64, Vec<Span>)> {
         if count as f64 > MOST * values.len() as f64 {
             return None;
         }
-        let leap = LEAP * step_quantile(values, value);
-        let is_far = |row: Option<usize>| row.and_then(|row| values.get(row)).map(|v| (v - value).abs() > leap);
+        let step = step_quantile(values, value);
         let fits = |span: &Span| {
+            let leap = step * if span.end - span.first >= HELD_ROWS { LEAP_TO_HELD } else { LEAP };
+            let is_far = |row: Option<usize>| row.and_then(|row| values.get(row)).map(|v| (v - value).abs() > leap);
             let (before, after) = (is_far(span.first.checked_sub(1)), is_far(Some(span.end)));
             // A zero at an end may be the start of a motion.
             before.unwrap_or(value != 0.0) && after.unwrap_or(value != 0.0)
         };
-        spans.iter().all(fits).then_some((value, spans))
+        // A motion may also pass zero; another number is the signal's own where it is not entered by a leap.
+        let (far, near): (Vec<Span>, Vec<Span>) = spans.into_iter().partition(fits);
+        (!far.is_empty() && (value == 0.0 || near.is_empty())).then_some((value, far))
     })
 }
 

@@ -45,6 +45,30 @@ fn wrapped_angles_are_put_together() {
 }
 
 #[test]
+fn rows_of_a_stuck_sensor_are_left_out() {
+    for k in 0..2 {
+        let (mut stuck, whole) = (swing(4000), swing(4000));
+        let held = stuck.channels[k].values[1000];
+        stuck.channels[k].values[1000..1160].fill(held);
+        let found = repair(&mut stuck);
+        assert_eq!(kinds(&found), ["stuck-channel"], "{k}");
+        let left: Vec<f64> = [&whole.channels[k].values[..1001], &whole.channels[k].values[1160..]].concat();
+        assert_eq!(stuck.channels[k].values, left);
+    }
+}
+
+#[test]
+fn a_position_that_drops_to_zero_for_some_rows_is_left_out_there() {
+    let (mut dropped, whole) = (swing(4000), swing(4000));
+    dropped.channels[0].values[2000..2020].fill(0.0);
+    // A motion passes zero, too.
+    let passes = (1..3999).find(|&i| whole.channels[0].values[i - 1] * whole.channels[0].values[i + 1] < 0.0);
+    dropped.channels[0].values[passes.expect("a passage")] = 0.0;
+    let found = repair(&mut dropped);
+    assert_eq!((kinds(&found), dropped.len()), (vec!["sentinel"], 3980));
+}
+
+#[test]
 fn counters_go_on_where_they_run_over() {
     // A position in steps of 0.5 µm, and a force in mN, with a sign and without one.
     for (name, unit, least, low) in [("q_m", "m", 5e-7, 0.0), ("f_N", "N", 1e-3, -32_768.0), ("f_N", "N", 1e-3, 0.0)] {
@@ -166,7 +190,7 @@ fn numbers_that_stand_for_no_value_are_left_out_with_their_rows() {
     (0..4000).step_by(20).for_each(|row| often.channels[1].values[row] = -999.0);
     assert_eq!((kinds(&repair(&mut often)), often.len()), (vec!["sentinel"], 3800));
     let mut kept = put(0, -999.0, &runs);
-    kept.meta.as_recorded = vec!["sentinels".to_owned(), "spikes".to_owned()];
+    kept.meta.as_recorded = ["sentinels", "stuck-channel", "spikes"].map(str::to_owned).into();
     assert!(repair(&mut kept).is_empty() && kept.len() == 4000);
 }
 

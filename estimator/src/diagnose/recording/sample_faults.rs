@@ -36,16 +36,20 @@ const USABLE_GAPS: usize = 3;
 /// Looks at the raw samples.
 pub fn faults(recording: &Recording) -> Faults {
     let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
-    // Spikes were repaired: only the warning is left of them. Few are no fault of the channel.
-    let is_spiky = |w: &&Warning| w.kind == logs::SPIKES && 100 * w.spans.len() >= recording.len();
-    let repaired = recording.warnings.iter().filter(is_spiky).cloned();
-    for warning in logs::check(recording).into_iter().chain(repaired) {
+    // Spikes and stuck channels were repaired: only the warning is left of them. Few spikes are no fault of the channel.
+    let is_fault = |w: &&Warning| match w.kind.as_str() {
+        logs::SPIKES => 100 * w.spans.len() >= recording.len(),
+        kind => kind == "stuck-channel",
+    };
+    let repaired = recording.warnings.iter().filter(is_fault).cloned();
+    let now = logs::check(recording).into_iter().map(|warning| (warning, true));
+    for (warning, has_rows) in now.chain(repaired.map(|warning| (warning, false))) {
         let id = match warning.kind.as_str() {
             "saturation" => force_saturation::ID,
             kind if CHANNEL.contains(&kind) && is_sensed(&warning) => channel_fault::ID,
             _ => continue,
         };
-        if !WHOLE.contains(&warning.kind.as_str()) {
+        if has_rows && !WHOLE.contains(&warning.kind.as_str()) {
             for span in &warning.spans {
                 let end = span.end.min(found.bad.len());
                 found.bad[span.first.min(end)..end].fill(true);

@@ -1,0 +1,38 @@
+//! Rows in which a channel stands still although it should move: its sensor or its bus had stopped.
+
+use crate::checks::{Profile, extremes, saturated, stuck};
+use crate::units;
+use haptics::recording::{Recording, Warning};
+
+/// Share of the rows above which a channel that stands still is one that rests.
+const MOST: f64 = 0.5;
+
+/// Leaves the rows out in which a channel of the program is stuck. The first of equal values was measured.
+pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
+    let mut is_out = vec![false; recording.len()];
+    let mut found = Vec::new();
+    for channel in recording.channels.iter().filter(|channel| units::is_program_name(&channel.name)) {
+        let (low, high, unchanged) = extremes(&channel.values);
+        if low >= high || unchanged == 0 {
+            continue;
+        }
+        let profile = Profile::of(&channel.values);
+        let limit = saturated(recording, channel, &profile);
+        let Some(mut warning) = stuck(recording, channel, &profile, limit.as_ref()) else { continue };
+        let held: usize = warning.spans.iter().map(|span| span.end - span.first).sum();
+        if held as f64 > MOST * is_out.len() as f64 {
+            continue;
+        }
+        for span in &warning.spans {
+            is_out[span.first + 1..span.end].fill(true);
+        }
+        if let Some(seen) = warning.text.strip_suffix("leave these out") {
+            warning.text = format!("{seen}these rows are left out");
+        }
+        found.push(warning);
+    }
+    if !found.is_empty() {
+        super::leave_out(recording, &is_out, &mut found);
+    }
+    found
+}
