@@ -3,6 +3,7 @@
 //! The drawer is 1.5 kg with 4 N s/m and 2 N of dry friction. A hand moves it along a sum of waves, whose derivatives are
 //! exact; no formula is the estimator's.
 
+use estimator::pipeline::{Options, analyse};
 use haptics::recording::Recording;
 use rand::rngs::StdRng;
 use rand::seq::IndexedRandom as _;
@@ -332,4 +333,27 @@ fn units_may_stand_above_the_names() {
     let sidecar = r#"{"task":"mechanism","columns":{"t_s":"Time","q_m":"Position","f_N":"Force"}}"#;
     let read = is_the_drawer("units above", table("s,mm,kN\nTime,Position,Force", &samples, row), sidecar);
     assert!(read.warnings.iter().all(|w| !w.text.contains("not read")), "{:?}", read.warnings);
+}
+
+/// Runs of one object have one mass. Runs of two objects have a common one that says how far they lie apart.
+#[test]
+fn runs_of_two_objects_disagree() {
+    let run = |number: usize, load: f64| {
+        drawer(1500, 100.0)[100 * number..].iter().fold(String::new(), |mut text, [t, place, push]| {
+            let _ = writeln!(text, "{number},{t:.2},{place:.6},{:.5}", load * push);
+            text
+        })
+    };
+    let fitted = |load: f64| {
+        let text = format!("run,t_s,q_m,f_N\n{}{}{}", run(0, 1.0), run(1, 1.0), run(2, load));
+        let recordings = File::new(text, r#"{"task":"mechanism"}"#).load().expect("read");
+        analyse(&recordings, &Options::default()).expect("a fit").fit
+    };
+    let disagree = |fit: &estimator::estimate::Fit| {
+        fit.warnings.iter().any(|said| said.contains("disagree about mechanism mass_kg"))
+    };
+    assert!(!disagree(&fitted(1.0)));
+    let two = fitted(2.0);
+    let mass = two.parameter("mechanism", "mass_kg").expect("a mass");
+    assert!(disagree(&two) && mass.std_error.expect("an error") > 0.2, "{mass:?}");
 }

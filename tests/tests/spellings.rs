@@ -192,3 +192,64 @@ fn days_and_overrun_counters_are_told() {
         assert!(read.warnings.iter().any(|w| w.text.contains(said)), "{:?}", read.warnings);
     }
 }
+
+/// A table below `header`: `time` writes the cells of a time, and `q_m` and `f_N` follow.
+fn below(header: &str, time: impl Fn(f64) -> String) -> String {
+    drawer(1500, 100.0).iter().fold(format!("{header},q_m,f_N\n"), |mut text, [t, place, push]| {
+        let _ = writeln!(text, "{},{place:.6},{push:.5}", time(*t));
+        text
+    })
+}
+
+/// Whole seconds and their fraction in two columns are one clock.
+#[test]
+fn seconds_and_their_fraction_are_one_clock() {
+    let pairs = [("header.stamp.sec,header.stamp.nanosec", 1e-9), ("tv_sec,tv_usec", 1e-6), ("secs,msecs", 1e-3)];
+    for (names, unit_s) in pairs {
+        let now = |t: f64| (1_744_900_000.0 + t.floor(), (t.fract() / unit_s).round());
+        let text = below(names, |t| format!("{:.0},{:.0}", now(t + 0.001).0, now(t + 0.001).1));
+        is_the_drawer(names, text, r#"{"task":"mechanism"}"#);
+    }
+}
+
+/// A column without a name has one by its place, and stamps in it are a clock.
+#[test]
+fn the_index_of_a_data_frame_is_a_clock() {
+    let stamps = below("", |t| format!("2025-04-17 17:00:{t:06.3}+02:00"));
+    is_the_drawer("stamps", stamps, r#"{"task":"mechanism"}"#);
+    let levels = below(",stage,cell\n,position,force\ntime_s", |t| format!("{t:.3}")).replacen(",q_m,f_N", ",,", 1);
+    let mapped = r#"{"task":"mechanism","columns":{"q_m":"stage.position","f_N":"cell.force"}}"#;
+    is_the_drawer("two levels", levels, mapped);
+    let numbers = below("", |t| format!("{t:.3}"));
+    is_the_drawer("numbers", numbers, r#"{"task":"mechanism","columns":{"t_s":"column 1"}}"#);
+}
+
+/// A long table has a row for each number; the signals stand one after the other, or in turns.
+#[test]
+fn long_tables_are_read() {
+    let names = ["q_m", "f_N"];
+    let row = |t: f64, signal: usize, value: f64| format!("2026-04-17T15:00:{t:06.3}Z,{value:.6},{}\n", names[signal]);
+    let (mut turns, mut stacked) = ("_time,_value,_field\n".to_owned(), [String::new(), String::new()]);
+    for [t, place, push] in drawer(1500, 100.0) {
+        for (signal, value) in [place, push].into_iter().enumerate() {
+            turns += &row(t, signal, value);
+            stacked[signal] += &row(t, signal, value);
+        }
+    }
+    is_the_drawer("in turns", turns, r#"{"task":"mechanism"}"#);
+    is_the_drawer("stacked", format!("_time,_value,_field\n{}", stacked.concat()), r#"{"task":"mechanism"}"#);
+}
+
+/// A second clock of the same name is doubted, and each can be mapped by its place.
+#[test]
+fn clocks_of_one_name_are_told_apart() {
+    let rows = drawer(3000, 200.0);
+    let text = rows.windows(2).step_by(2).fold("Time (s),q_m,Time (s),f_N\n".to_owned(), |mut text, pair| {
+        let _ = writeln!(text, "{:.3},{:.6},{:.3},{:.5}", pair[0][0], pair[0][1], pair[1][0], pair[1][2]);
+        text
+    });
+    let doubted = File::new(&text, r#"{"task":"mechanism"}"#).load().expect("read");
+    let warnings = &doubted[0].warnings;
+    assert!(warnings.iter().any(|w| w.text.contains("`column 3` is a second clock")), "{warnings:?}");
+    is_the_drawer("two clocks", text, r#"{"task":"mechanism","clocks":{"f_N":"column 3"}}"#);
+}

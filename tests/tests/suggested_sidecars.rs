@@ -164,3 +164,13 @@ fn milliseconds_of_a_board_are_a_clock() {
     let file = table("millis,pos_mm,force_N", |_, [t, place, push]| format!("{:.0},{place:.5},{push:.6}", 1e3 * t));
     mended("millis", &file);
 }
+
+/// The index of a data frame is a clock if its numbers are times.
+#[test]
+fn the_index_of_a_data_frame_is_suggested_as_a_clock() {
+    for header in ["", "index", "Unnamed: 0"] {
+        let file =
+            table(&format!("{header},pos_mm,force_N"), |_, [t, place, push]| format!("{t:.3},{place:.5},{push:.6}"));
+        mended(header, &file);
+    }
+}

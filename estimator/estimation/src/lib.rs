@@ -4,6 +4,7 @@
 //! runs the measured motion through it, `online` estimates beside the servo. Every stage is a plain function between
 //! plain types.
 
+mod agreement;
 pub mod calibrate;
 pub mod constraint;
 pub mod hmm;

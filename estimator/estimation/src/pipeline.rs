@@ -1,5 +1,6 @@
 //! The whole way from recordings to a calibrated world, for the command line, the app and the tests alike.
 
+use crate::agreement::{self, disagreement_about};
 use crate::calibrate;
 use crate::identify::{barrel, block, crank, mechanism, needle, payload, priors, switch};
 use crate::plausible;
@@ -94,10 +95,7 @@ fn analyse_as_recorded(
         Task::BlockStack if recordings.len() > 1 => blocks(recordings, options)?,
         Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
         Task::Crank => cranks(recordings, prepared, options)?,
-        Task::Mechanism => {
-            let fit = mechanism::fit(recordings)?;
-            (fit, states(recordings, task, options))
-        }
+        Task::Mechanism => (mechanisms(recordings)?, states(recordings, task, options)),
         Task::Needle => {
             let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
             (combine(fits), states(recordings, task, options))
@@ -191,6 +189,18 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
     Ok((fit, together.segmentations.into_iter().map(Some).collect()))
 }
 
+/// One or several recordings of a mechanism: one fit of all of them. Each alone says if they are of the same object.
+fn mechanisms(recordings: &[Recording]) -> Result<Fit, EstimateError> {
+    let mut fit = mechanism::fit(recordings)?;
+    if recordings.len() > 1 {
+        // One that shows nothing alone adds to the others.
+        let alone: Vec<Fit> =
+            recordings.iter().filter_map(|one| mechanism::fit(std::slice::from_ref(one)).ok()).collect();
+        agreement::check(&mut fit, &alone);
+    }
+    Ok(fit)
+}
+
 /// Several recordings of the same blocks: heights and friction from each, weights, widths and pads from all of them at once.
 fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
     let together = block::fit_jointly(options.method, recordings, options.thresholds)?;
@@ -245,11 +255,6 @@ fn combine(fits: Vec<Fit>) -> Fit {
         total.correlated.clear();
     }
     total
-}
-
-/// Beginning of the warning about a parameter on which recordings disagree.
-fn disagreement_about(full_name: &str) -> String {
-    format!("the recordings disagree about {}:", full_name.replacen('.', " ", 1))
 }
 
 /// Takes a second measurement into a first one. A lower bound is not averaged: the larger one holds for both.

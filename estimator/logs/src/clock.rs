@@ -56,13 +56,21 @@ pub fn times(group: &mut Group, plan: &Plan, meta: &Meta, headers: &[String], pa
     };
     let mut time = std::mem::take(&mut group.columns[column]);
     let mut said = Vec::new();
+    let mut stamped = None;
+    if let Some((fraction, unit_s)) = plan.fraction
+        && let Some(first) = add_fraction(&mut time, &group.columns[fraction], unit_s)
+    {
+        let (whole, fraction) = (&headers[column], &headers[fraction]);
+        said.push(format!("the time is the sum of the columns `{whole}` and `{fraction}`"));
+        stamped = (first != 0.0).then_some(Origin { ns: (1e9 * first) as i64, is_dated: true });
+    }
     let (factor, passed) = match plan.uses[column] {
         Use::Number { factor, .. } => (factor, unwrapped(&mut time, &COUNTERS.map(|count| count * factor))),
         Use::Stamp { form, .. } if !form.is_dated => (1.0, on_the_next_day(&mut time)),
         _ => (1.0, None),
     };
     said.extend(passed.map(|what| format!("the column `{}` {what}", headers[column])));
-    let origin = origin(&time, plan.uses[column]).or(plan.origin);
+    let origin = stamped.or_else(|| origin(&time, plan.uses[column])).or(plan.origin);
     said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
         let (row, line) = group.place(i + 1);
@@ -80,6 +88,20 @@ pub fn times(group: &mut Group, plan: &Plan, meta: &Meta, headers: &[String], pa
         });
     }
     Ok(Times { time_s: Some(time), said, origin })
+}
+
+/// Adds the fraction of a second to whole seconds. Returns the second from which the times then count: one since 1970, or 0;
+/// none for columns that are no such pair.
+fn add_fraction(time: &mut [f64], fraction: &[f64], unit_s: f64) -> Option<f64> {
+    let is_fraction = fraction.len() == time.len() && fraction.iter().all(|part| (0.0..1.0).contains(&(part * unit_s)));
+    if !is_fraction || time.iter().any(|t| t.fract() != 0.0) {
+        return None;
+    }
+    let first = time.first().copied().filter(|first| EPOCHS.contains(first)).unwrap_or(0.0);
+    for (t, part) in time.iter_mut().zip(fraction) {
+        *t = *t - first + part * unit_s;
+    }
+    Some(first)
 }
 
 /// Zero of a clock, as its column states it: of numbers, the start of 1970 if they can be seconds since then.

@@ -178,7 +178,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The same name twice.
-    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, header.as_deref()), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
+    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, choice.as_deref()), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
     DuplicateColumn {
         /// The name.
         column: String,
@@ -186,8 +186,8 @@ pub enum LogError {
         first: String,
         /// The second's.
         second: String,
-        /// Header of the first column, if the second has another one.
-        header: Option<Box<str>>,
+        /// Name by which a sidecar can choose the first one.
+        choice: Option<Box<str>>,
         /// The file.
         path: PathBuf,
     },
@@ -334,9 +334,9 @@ pub enum LogError {
 }
 
 /// Choice among two columns, as an entry of the sidecar.
-fn chosen(column: &str, header: Option<&str>) -> String {
-    let entry = |header: &str| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(header));
-    header.map_or(String::new(), entry)
+fn chosen(column: &str, choice: Option<&str>) -> String {
+    let entry = |choice: &str| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(choice));
+    choice.map_or(String::new(), entry)
 }
 
 /// Entries of `columns`, at the end of a sentence.

@@ -48,7 +48,7 @@ pub use self::mcap::write::Encoding;
 pub use checks::{UNIT, repaired, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
-pub use plan::{PAIRS, counts_runs};
+pub use plan::{PAIRS, counts_runs, sources};
 pub use rows::Attachment;
 pub use sidecar::{
     parse as parse_sidecar, path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar,

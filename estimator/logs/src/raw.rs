@@ -10,6 +10,11 @@ pub fn is_missing(value: f64) -> bool {
     value.to_bits() == MISSING.to_bits()
 }
 
+/// Name of a column that no name of its own tells from the others.
+pub fn name_by_place(column: usize) -> String {
+    format!("column {}", column + 1)
+}
+
 /// One column.
 #[derive(Clone, Debug)]
 pub enum Cells {

@@ -3,7 +3,7 @@
 
 use super::errors::LogError;
 use super::mcap::resample;
-use super::plan::{Plan, SecondClock, TIMES, Use, words};
+use super::plan::{self, Plan, SecondClock, TIMES, Use, words};
 use super::raw::{Cells, is_missing};
 use super::sidecar;
 use super::table::{Group, Table};
@@ -143,10 +143,11 @@ pub fn doubts(group: &Group, plan: &Plan, headers: &[String]) -> Vec<Warning> {
 
 fn doubt(clock: usize, plan: &Plan, headers: &[String]) -> Option<Warning> {
     let columns = columns_of(clock, plan, headers);
-    let name = &headers[clock];
+    let sources = plan::sources(headers);
+    let name = &sources[clock];
     let entries: serde_json::Map<String, Value> =
-        columns.iter().map(|&column| (headers[column].clone(), name.as_str().into())).collect();
-    let first = headers[*columns.first()?].clone();
+        columns.iter().map(|&column| (sources[column].clone(), name.as_str().into())).collect();
+    let first = sources[*columns.first()?].clone();
     let text = format!(
         "`{name}` is a second clock, and each row is taken as one instant: if it belongs to `{first}`, state \"clocks\": \
          {{\"{first}\": \"{name}\"}} in the sidecar"

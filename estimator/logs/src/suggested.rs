@@ -13,7 +13,7 @@ impl LogError {
             Self::UnknownUnit { unit, .. } if unit.is_empty() => return None,
             Self::UnknownUnit { name, column, .. } => json!({ "columns": { name: column }, "scale": { name: null } }),
             Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
-            Self::DuplicateColumn { column, header: Some(header), .. } => json!({ "columns": { column: header } }),
+            Self::DuplicateColumn { column, choice: Some(choice), .. } => json!({ "columns": { column: choice } }),
             Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),
             // Another order of the rows would go with them.
             Self::Time { goes_back: true, .. } => return None,

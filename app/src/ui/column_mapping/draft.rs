@@ -6,6 +6,7 @@ use crate::ui::column_mapping::file_units::FileUnit;
 use crate::ui::column_mapping::guess::{guess, unit_of};
 use crate::ui::column_mapping::names;
 use crate::ui::column_mapping::names::{Form, dimension};
+use crate::ui::column_mapping::words::words;
 use estimator::log;
 use estimator::log::units::{self, Dimension};
 use estimator::log::written_units::{self, Written};
@@ -163,7 +164,7 @@ impl Draft {
         let mut entries: Vec<(&String, &String)> = self.meta.columns.iter().collect();
         entries.sort_by_key(|(name, _)| stranger(name));
         for (name, source) in entries {
-            let Some(row) = self.rows.iter_mut().find(|r| r.facts.header == *source && r.key.is_none()) else {
+            let Some(row) = self.rows.iter_mut().find(|r| r.facts.source == *source && r.key.is_none()) else {
                 continue;
             };
             let split = units::split(name);
@@ -223,18 +224,19 @@ impl Draft {
     /// In a table of several objects, the first is selected until the user chooses another.
     fn select_one_object(&mut self) {
         // Runs are recordings of one object.
-        let words = |r: &Row| !r.facts.numeric && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
+        let is_object = |facts: &ColumnFacts| !facts.numeric || facts.whole && names_objects(&facts.header);
+        let words = |r: &Row| is_object(&r.facts) && r.role == Role::Extra && !log::counts_runs(&r.facts.header);
         if self.meta.select.is_empty()
             && let Some(row) = self.rows.iter().find(|r| words(r) && several(&r.facts))
             && let Some(first) = row.facts.distinct.as_ref().and_then(|d| d.first())
         {
-            self.meta.select.insert(row.facts.header.clone(), Value::String(first.clone()));
+            self.meta.select.insert(row.facts.source.clone(), Value::String(first.clone()));
         }
     }
 
     /// Entries of `columns` whose column is missing in the file.
     pub fn strays(&self) -> Vec<(String, String)> {
-        let there = |source: &str| self.rows.iter().any(|r| r.facts.header == source);
+        let there = |source: &str| self.rows.iter().any(|r| r.facts.source == source);
         self.meta.columns.iter().filter(|(_, s)| !there(s)).map(|(n, s)| (n.clone(), s.clone())).collect()
     }
 
@@ -299,6 +301,12 @@ fn form_of(row: &Row) -> Option<Form> {
 /// Prefix of an extra channel whose header would otherwise have a meaning.
 const EXTRA: &str = "extra_";
 
+/// True for a name of a column that numbers objects: `Specimen No`, `part_id`.
+fn names_objects(header: &str) -> bool {
+    const OBJECTS: [&str; 6] = ["specimen", "part", "object", "probe", "device", "piece"];
+    words(header).iter().any(|word| OBJECTS.contains(&word.as_str()))
+}
+
 /// True for a column with a few distinct values, each in a block of rows.
 fn several(facts: &ColumnFacts) -> bool {
     facts.distinct.as_ref().is_some_and(|d| d.len() > 1 && facts.changes < 4 * d.len())
@@ -340,26 +348,26 @@ impl Row {
         let mine = |key: &str| keys.contains(&key) || canonical.iter().any(|c| c == key);
         // The factor of an extra channel is not shown, so it stays.
         let header = |key: &str| key == self.facts.header && self.name().is_some();
-        let foreign = |key: &str| before.columns.get(key).is_some_and(|source| *source != self.facts.header);
+        let foreign = |key: &str| before.columns.get(key).is_some_and(|source| *source != self.facts.source);
         meta.scale.retain(|key, _| !(mine(key) || header(key)) || foreign(key));
         meta.sign.retain(|key, _| !(mine(key) || header(key)) || foreign(key));
     }
 
     /// Writes the entries of this row into `meta`.
     fn put(&self, meta: &mut Meta) {
-        let header = &self.facts.header;
+        let (header, source) = (&self.facts.header, &self.facts.source);
         if header.is_empty() {
             return;
         }
         let Some(name) = self.name() else {
             if self.has_a_meaning() && self.facts.numeric {
-                meta.columns.insert(format!("{EXTRA}{header}"), header.clone());
+                meta.columns.insert(format!("{EXTRA}{header}"), source.clone());
             }
             return;
         };
         let (key, scale) = self.stated(name);
         if self.read_as().as_deref() != Some(name) || self.key.is_some() {
-            meta.columns.insert(key, header.clone());
+            meta.columns.insert(key, source.clone());
         }
         if let Some(scale) = scale {
             meta.scale.insert(name.to_owned(), scale);

@@ -26,6 +26,8 @@ const MOST_DISTINCT: usize = 60;
 pub struct ColumnFacts {
     /// Its name in the file.
     pub header: String,
+    /// Name by which a sidecar calls it.
+    pub source: String,
     /// Text of its unit outside the name; empty for none.
     pub stated_unit: String,
     /// First values, as written in the file.
@@ -72,10 +74,15 @@ pub struct FileFacts {
 
 /// Inspects a file.
 pub fn look(path: &Path) -> Result<FileFacts, LogError> {
-    match log::text_table(path, LOOK_BYTES)? {
-        Some(table) => Ok(from_cells(&table)),
-        None => through_the_reader(path, &log::headers(path)?),
+    let mut facts = match log::text_table(path, LOOK_BYTES)? {
+        Some(table) => from_cells(&table),
+        None => through_the_reader(path, &log::headers(path)?)?,
+    };
+    let headers: Vec<String> = facts.columns.iter().map(|column| column.header.clone()).collect();
+    for (column, source) in facts.columns.iter_mut().zip(log::sources(&headers)) {
+        column.source = source;
     }
+    Ok(facts)
 }
 
 fn from_cells(table: &TextTable) -> FileFacts {

@@ -160,6 +160,9 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     if !facts.numeric {
         return None;
     }
+    if reading.kind.is_none() && is_index(facts) && !counts_rows(facts) {
+        return facts.increasing.then(|| made("t_s".to_owned(), 0)).flatten();
+    }
     let kind = reading.kind?;
     if kind == Kind::Time {
         return facts.increasing.then(|| made("t_s".to_owned(), reading.points)).flatten();
@@ -172,6 +175,12 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
         Some(Dimension::Other) if kind == Kind::Force => made(name, reading.points - UNCONVERTED),
         Some(_) => None,
     }
+}
+
+/// True for a name that stands for the index of a data frame: `index`, `Unnamed: 0`, `column 1`.
+fn is_index(facts: &ColumnFacts) -> bool {
+    let is_place = |word: &String| word.bytes().all(|b| b.is_ascii_digit());
+    words(&facts.header).iter().all(|word| is_place(word) || ["index", "unnamed", "column"].contains(&word.as_str()))
 }
 
 /// Dimension of the unit in the header if it measures something else.

@@ -97,8 +97,10 @@ pub fn read(header: &str) -> Reading {
     let words = words(name);
     let mut reading = Reading::default();
     let (mut kinds, mut doubt, mut bonus, mut processed) = (Vec::new(), 0, 0, 0);
-    for word in &words {
+    for (at, word) in words.iter().enumerate() {
+        let is_input = at > 0 && ["ch", "channel", "ai", "input", "kanal"].contains(&words[at - 1].as_str());
         match meaning(word) {
+            Meaning::Finger(_) if is_input => {}
             Meaning::Kind(kind) => kinds.push(kind),
             Meaning::Along(kind, axis) => {
                 kinds.extend(kind);
@@ -303,6 +305,7 @@ mod tests {
             ("F/T Sequence", None),
             ("Messwert [mm]", Some(Kind::Position)),
             ("Load [kip]", Some(Kind::Force)),
+            ("CH1 [mm]", Some(Kind::Position)),
         ] {
             assert_eq!(read(header).kind, kind, "{header}");
         }

@@ -114,14 +114,14 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
 fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share: f64) -> Option<Vec<Span>> {
     let values = &channel.values;
     let own: [(&[f64], f64); 1] = [(values, side)];
-    let at_top = count(&own, top);
+    let at_top = values.iter().filter(|&&v| side * v == top).count();
     // A channel whose extreme is zero has an end, not a rail; most of the record at one value is stuck or switched.
     if top == 0.0 || at_top == 0 || at_top as f64 > share * values.len() as f64 {
         return None;
     }
-    if !piles_up(&own, top) {
+    if !piles_up(&own) {
         let all = stopping_at(recording, channel, top);
-        if all.len() < 2 || !piles_up(&all, top) {
+        if all.len() < 2 || !piles_up(&all) {
             return None;
         }
     }
@@ -135,11 +135,6 @@ fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share
     Some(spans)
 }
 
-/// Samples at exactly a level on these sides of these channels.
-fn count(sides: &[(&[f64], f64)], level: f64) -> usize {
-    sides.iter().map(|(values, side)| values.iter().filter(|&&v| side * v == level).count()).sum()
-}
-
 /// Sides of the channels in the same unit that reach exactly as far as `top`: sensors of one kind have the same limit to both sides.
 fn stopping_at<'a>(recording: &'a Recording, channel: &Channel, top: f64) -> Vec<(&'a [f64], f64)> {
     let same = recording.channels.iter().filter(|c| c.unit == channel.unit);
@@ -147,28 +142,41 @@ fn stopping_at<'a>(recording: &'a Recording, channel: &Channel, top: f64) -> Vec
     sides.filter(|(values, side)| values.iter().map(|v| side * v).fold(f64::NEG_INFINITY, f64::max) == top).collect()
 }
 
-/// True if more samples stand at exactly `top`, the largest on these sides, than chance puts there.
-fn piles_up(sides: &[(&[f64], f64)], top: f64) -> bool {
-    let at_top = count(sides, top);
+/// The largest values on these sides of these channels, from the top, with the number of samples at each.
+fn top_levels(sides: &[(&[f64], f64)]) -> [(f64, usize); 1 + NEXT_VALUES] {
+    let mut levels = [(f64::NEG_INFINITY, 0); 1 + NEXT_VALUES];
+    for (values, side) in sides {
+        for value in values.iter().map(|v| side * v) {
+            // Few values reach so far.
+            if value < levels[NEXT_VALUES].0 {
+                continue;
+            }
+            match levels.iter().position(|(level, _)| value >= *level) {
+                Some(at) if levels[at].0 == value => levels[at].1 += 1,
+                Some(at) => {
+                    levels[at..].rotate_right(1);
+                    levels[at] = (value, 1);
+                }
+                None => {}
+            }
+        }
+    }
+    levels
+}
+
+/// True if more samples stand at exactly the largest value on these sides than chance puts there.
+fn piles_up(sides: &[(&[f64], f64)]) -> bool {
+    let [(_, at_top), next @ ..] = top_levels(sides);
     if at_top < PLATEAU_SAMPLES {
         return false;
     }
-    let below = |level: f64| {
-        let all = sides.iter().flat_map(|(values, side)| values.iter().map(move |v| side * v));
-        all.filter(|&v| v < level).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let mut levels = vec![top];
-    for _ in 0..NEXT_VALUES {
-        levels.push(below(levels[levels.len() - 1]));
-    }
-    let next: Vec<f64> = levels[1..].iter().map(|level| count(sides, *level) as f64).collect();
-    let most = next.iter().copied().fold(0.0, f64::max);
-    let mean = next.iter().sum::<f64>() / next.len() as f64;
-    let step = (levels[1] - levels[NEXT_VALUES]) / (NEXT_VALUES - 1) as f64;
-    let noisy = sides.iter().all(|(values, _)| white_noise(values) > NOISY_STEPS * step);
+    let counts = next.map(|(_, count)| count as f64);
+    let (most, mean) = (counts.into_iter().fold(0.0, f64::max), counts.iter().sum::<f64>() / counts.len() as f64);
     let many = at_top as f64;
-    let stands_out = noisy && many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt();
-    many >= PLATEAU_EXCESS * most || stands_out
+    let step = (next[0].0 - next[NEXT_VALUES - 1].0) / (NEXT_VALUES - 1) as f64;
+    let is_noisy = || sides.iter().all(|(values, _)| white_noise(values) > NOISY_STEPS * step);
+    many >= PLATEAU_EXCESS * most
+        || many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt() && is_noisy()
 }
 
 /// Channels whose quantum is large against the usual range of all channels in their unit.

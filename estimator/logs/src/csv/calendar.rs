@@ -1,5 +1,8 @@
 //! Times of the calendar and of the day, as loggers write them.
 
+use crate::units::Dimension;
+use crate::written_units::{self, Written};
+
 /// Nanoseconds of a second, and seconds of a day.
 const NS: i64 = 1_000_000_000;
 pub const DAY_S: i64 = 86_400;
@@ -64,17 +67,39 @@ pub fn parse(text: &str) -> Option<i64> {
 }
 
 fn with_date(text: &str, order: Order) -> Option<i64> {
-    let (rest, noon) = half_day(text.trim());
+    let (rest, noon) = half_day(without_zone_name(text));
     let (rest, offset_s) = zone(rest);
     let (date, time) = rest.split_once(['T', ' '])?;
     let day_ns = day(date, order)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
     day_ns.checked_add(time_of_day(time.trim(), noon)?)
 }
 
-/// Nanoseconds since midnight of a time of the day without a date.
+/// Nanoseconds since midnight of a time of the day without a date, or of a duration.
 pub fn of_day(text: &str) -> Option<i64> {
-    let (rest, noon) = half_day(text.trim());
-    time_of_day(zone(rest).0, noon)
+    let (rest, noon) = half_day(without_zone_name(text));
+    time_of_day(zone(rest).0, noon).or_else(|| duration(text.trim()))
+}
+
+/// Nanoseconds of a duration as MATLAB writes it, `0.005 sec`, or pandas, `0 days 00:00:00.005`.
+fn duration(text: &str) -> Option<i64> {
+    if let Some((days, time)) = text.split_once(" days ") {
+        return (days.parse::<i64>().ok()?.checked_mul(DAY_S * NS)?).checked_add(time_of_day(time, None)?);
+    }
+    let (number, unit) = text.split_once(' ')?;
+    match written_units::parse(unit, &[Dimension::Time]) {
+        Written::Known(Dimension::Time, factor) => {
+            let ns = number.parse::<f64>().ok()? * factor * NS as f64;
+            (ns.abs() < i64::MAX as f64).then(|| ns.round() as i64)
+        }
+        _ => None,
+    }
+}
+
+/// The text without the name of a zone behind a blank: `UTC`, `CEST`.
+fn without_zone_name(text: &str) -> &str {
+    let text = text.trim();
+    let is_name = |word: &str| (3..=5).contains(&word.len()) && word.bytes().all(|b| b.is_ascii_uppercase());
+    text.rsplit_once(' ').filter(|(_, word)| is_name(word)).map_or(text, |(rest, _)| rest.trim_end())
 }
 
 /// True for a date without a time.
@@ -230,6 +255,10 @@ mod tests {
             ("17-Apr-2025 17:00:08.12", base + 120_000_000),
             ("12:30 AM", 30 * 60 * NS),
             ("12:30:08.5 p.m.", (12 * 3600 + 30 * 60 + 8) * NS + NS / 2),
+            ("2025-04-17 17:00:08.12 UTC", base + 120_000_000),
+            ("4/17/25 5:00:08 PM CEST", base),
+            ("0.005 sec", 5_000_000),
+            ("1 days 00:00:00.005000", DAY_S * NS + 5_000_000),
             ("17:00:08:120", (17 * 3600 + 8) * NS + 120_000_000),
             ("1970-01-01T00:00:00", 0),
         ] {
@@ -244,6 +273,8 @@ mod tests {
             "2025-13-01T00:00",
             "a:b",
             "12:00:00.x",
+            "5 mm",
+            "sec",
             "-1:00",
             "1:2:3:4",
             "1:2:3.5:400",

@@ -3,6 +3,7 @@
 use super::cells::Notation;
 use super::decimal::Decimal;
 use super::layout::{self, Body};
+use crate::raw::name_by_place;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
@@ -37,6 +38,15 @@ pub struct Dialect {
 }
 
 impl Dialect {
+    /// Names the columns that stand below no name.
+    pub(super) fn name_columns(&mut self) {
+        for (column, name) in self.headers.iter_mut().enumerate() {
+            if name.is_empty() && self.first.get(column).is_some_and(|cell| !cell.is_empty()) {
+                *name = name_by_place(column);
+            }
+        }
+    }
+
     /// Says how the decimal marks were understood, where it is not obvious.
     pub(super) fn note_decimals(&mut self, grouped: bool) {
         let note = match self.notation.decimal {

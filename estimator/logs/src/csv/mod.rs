@@ -15,6 +15,7 @@ mod encoding;
 mod join;
 mod labview;
 mod layout;
+mod long_table;
 mod part;
 mod plain;
 mod serial_log;

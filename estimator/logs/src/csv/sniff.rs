@@ -4,7 +4,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
-use super::{calendar, labview, layout, serial_log};
+use super::{calendar, labview, layout, long_table, serial_log};
 use crate::errors::LogError;
 use crate::format;
 use std::fs::File;
@@ -52,9 +52,15 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     } else if let Some(width) = encoding::blank_width(&start, !is_short) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         text = Some(encoding::tabbed(&all, width));
+    } else if let Some(columns) = long_table::columns(&start) {
+        let all = text.map_or_else(|| whole(&start), Ok)?;
+        let made = long_table::wide(&all, columns);
+        notes.extend(made.iter().map(|_| long_table::NOTE.to_owned()));
+        text = Some(made.unwrap_or(all));
     }
     start = text.as_deref().map_or(start, beginning);
     let mut found = dialect(&start, path)?;
+    found.name_columns();
     found.notes.splice(0..0, notes);
     if end.is_some() && text.is_none() {
         found.end = end;
@@ -183,6 +189,7 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
             ..Dialect::default()
         };
         dialect.note_decimals(grouped);
+        take_upper_names(&mut dialect.headers, &records[..found.header.unwrap_or(0)]);
         let header = found.header.map_or(0, |k| records[k].line);
         let unread = header.saturating_sub(u64::from(found.units.is_some_and(|k| Some(k) < found.header)));
         if unread > 0 {
@@ -192,6 +199,16 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
     })
 }
 
+/// Gives a column without a name the names that stand above it, as in a table of several levels: `stage.position`.
+fn take_upper_names(headers: &mut [String], above: &[layout::Record]) {
+    let width = headers.len();
+    for (column, name) in headers.iter_mut().enumerate().filter(|(_, name)| name.is_empty()) {
+        let levels =
+            above.iter().filter(|record| record.cells.len() == width).map(|record| record.cells[column].as_str());
+        *name = levels.filter(|level| !level.is_empty()).collect::<Vec<_>>().join(".");
+    }
+}
+
 /// Texts of units; a time of the calendar has none, whatever stands there.
 fn units_of(units: &layout::Record, first: &layout::Record) -> Vec<String> {
     let cells = first.cells.iter().map(|cell| calendar::parse(cell).is_some());
@@ -199,14 +216,14 @@ fn units_of(units: &layout::Record, first: &layout::Record) -> Vec<String> {
     units.cells.iter().zip(cells.chain(std::iter::repeat(false))).map(of).collect()
 }
 
-fn names(header: &[u8], delimiter: u8) -> Vec<String> {
+pub(super) fn names(header: &[u8], delimiter: u8) -> Vec<String> {
     let mut cells = Cells::default();
     cells.split(header, delimiter);
     (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(header, i)).into_owned()).collect()
 }
 
 /// The most frequent of tab, semicolon, comma and bar outside quotes.
-fn delimiter_of(header: &[u8]) -> u8 {
+pub(super) fn delimiter_of(header: &[u8]) -> u8 {
     let mut quoted = false;
     let mut counts = [(b'|', 0), (b'\t', 0), (b';', 0), (b',', 0)];
     for &byte in header {

@@ -32,7 +32,7 @@ pub(super) fn one_line(error: &impl std::fmt::Display) -> String {
     text.lines().next().unwrap_or("malformed").chars().take(160).collect()
 }
 
-/// pandas keeps an index without a name.
-pub(super) fn is_index(column: &str) -> bool {
-    column.starts_with("__index_level_")
+/// Name of the index of a data frame: pandas keeps one without a name as `__index_level_0__`.
+pub(super) fn index(column: &str) -> Option<&'static str> {
+    column.starts_with("__index_level_").then_some("index")
 }

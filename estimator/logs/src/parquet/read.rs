@@ -2,7 +2,7 @@
 
 use super::column::{self, Flat, Meaning};
 use super::list::{self, Items, List};
-use super::metadata::{self, SIDECAR, is_index, one_line};
+use super::metadata::{self, SIDECAR, one_line};
 use super::shape::{self, Shape};
 use super::sums::Sums;
 use super::{footer, guard};
@@ -105,9 +105,6 @@ fn fields(schema: &SchemaDescriptor) -> (Vec<Field>, Vec<Warning>) {
     let (mut fields, mut said) = (Vec::new(), Vec::new());
     for (index, column) in schema.columns().iter().enumerate() {
         let name = column.path().string();
-        if is_index(&name) {
-            continue;
-        }
         match column::meaning(column).and_then(|meaning| Ok((meaning, shape::of(schema, column)?))) {
             Ok((meaning, shape)) => {
                 let text = meaning == Meaning::Text;
@@ -170,6 +167,7 @@ fn table(fields: Vec<Field>, said: &mut Vec<Warning>) -> Raw {
 
 /// A point in time without a unit in its name becomes one in seconds.
 fn header(name: &str, meaning: Meaning) -> String {
+    let name = metadata::index(name).unwrap_or(name);
     match meaning {
         Meaning::Time(_) if units::split(name).is_none() => format!("{name}_s"),
         _ => name.to_owned(),

@@ -2,6 +2,7 @@
 
 use super::{Plan, Planner, Use};
 use crate::csv::calendar::{self, Days, Form, Order};
+use crate::raw::name_by_place;
 use crate::units::Dimension;
 use crate::written_units::{self, Written};
 use haptics::recording::Meta;
@@ -15,8 +16,9 @@ impl Plan {
         let date = date_column(headers, &cell, meta);
         let is_off = meta.columns.get("t_s").is_some_and(String::is_empty) || meta.rate_hz.is_some();
         let is_named = |column: &usize| {
-            let is_clock = CLOCKS.iter().any(|word| headers[*column].eq_ignore_ascii_case(word));
-            is_clock && calendar::parse(cell(*column)).is_some()
+            let name = headers[*column].trim_matches('_');
+            let is_clock = CLOCKS.iter().any(|word| name.eq_ignore_ascii_case(word));
+            (is_clock || name == name_by_place(*column)) && calendar::parse(cell(*column)).is_some()
         };
         let beside_date = || {
             let mut times = (0..headers.len()).filter(|&column| calendar::of_day(cell(column)).is_some());
@@ -72,7 +74,7 @@ impl Plan {
 }
 
 /// Names of columns of times of the calendar or the day.
-const CLOCKS: [&str; 7] = ["time", "timestamp", "datetime", "date_time", "date", "zeit", "uhrzeit"];
+const CLOCKS: [&str; 8] = ["time", "timestamp", "datetime", "date_time", "date", "zeit", "uhrzeit", "index"];
 
 /// Text of a stamp in the first row: its date, if that stands apart, and its time.
 fn stamp_text<'a>(form: Form, column: usize, cell: &impl Fn(usize) -> &'a str) -> String {

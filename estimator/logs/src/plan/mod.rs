@@ -4,15 +4,17 @@ mod clock_column;
 mod own_names;
 mod second_clocks;
 mod selection;
+mod time_parts;
 
 pub use selection::{Wanted, counts_runs};
 
 pub use clock_column::is_clock;
-pub use second_clocks::{SecondClock, TIMES, words};
+pub use second_clocks::{SecondClock, TIMES, is_like_a_clock, words};
 
 use super::csv::calendar::Form;
 use super::errors::LogError;
 use super::origin::Origin;
+use super::raw::name_by_place;
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
 use haptics::recording::Meta;
@@ -76,6 +78,8 @@ pub struct Plan {
     pub targets: Vec<Target>,
     /// The time column.
     pub time: Option<usize>,
+    /// Column of the fraction of a second beside whole seconds in the time column, with seconds over its numbers.
+    pub fraction: Option<(usize, f64)>,
     /// Clocks of some columns only.
     pub clocks: Vec<SecondClock>,
     /// Columns that read as clocks and that nobody calls one, with their seconds over numbers.
@@ -126,16 +130,18 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
     let repeated = planner.repeated();
     for column in (0..headers.len()).filter(|c| !mapped.contains(c)) {
         if repeated.contains(&column) && !planner.is_program_column(column) {
-            let name = &headers[column];
+            let (name, place) = (&headers[column], name_by_place(column));
             planner
                 .plan
                 .notes
-                .push(format!("the name `{name}` stands above several columns; column {} is not used", column + 1));
+                .push(format!("the name `{name}` stands above several columns: `{place}` is one of them"));
+            planner.add(place, planner.shown_unit(column), column, 1.0, false)?;
         } else {
             planner.take_own_name(column)?;
         }
     }
     planner.guess_time();
+    planner.take_fraction();
     planner.take_clocks()?;
     planner.suspect_clocks();
     planner.guess_runs();
@@ -145,6 +151,19 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
     planner.complete()?;
     planner.watch();
     Ok(planner.plan)
+}
+
+/// Names by which a sidecar calls the columns: by their places where several have one name.
+pub fn sources(headers: &[String]) -> Vec<String> {
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    for header in headers {
+        *counts.entry(header).or_default() += 1;
+    }
+    let source = |(column, header): (usize, &String)| match counts.get(header.as_str()) {
+        Some(1) => header.clone(),
+        _ => name_by_place(column),
+    };
+    headers.iter().enumerate().map(source).collect()
 }
 
 /// Name of the program and factor of a column by its own name, as it is read without a sidecar.
@@ -181,17 +200,21 @@ impl Planner<'_> {
 
     fn duplicate(&self, name: &str, first: usize, second: usize) -> LogError {
         let place = |column: usize| format!("column {}, `{}`", column + 1, self.headers[column]);
+        let is_named_apart = self.headers[first] != self.headers[second];
+        let choice = if is_named_apart { self.headers[first].clone() } else { name_by_place(first) };
         LogError::DuplicateColumn {
             column: name.to_owned(),
             first: place(first),
             second: place(second),
-            header: Some(self.headers[first].as_str()).filter(|header| *header != self.headers[second]).map(Box::from),
+            choice: (first != second).then(|| choice.into()),
             path: self.path.to_path_buf(),
         }
     }
 
+    /// Column that a sidecar calls so: by its name, or as `column 3` by its place.
     fn position(&self, name: &str) -> Option<usize> {
-        self.headers.iter().position(|h| h == name)
+        let by_place = || (0..self.headers.len()).find(|&column| name == name_by_place(column));
+        self.headers.iter().position(|h| h == name).or_else(by_place)
     }
 
     /// Puts the sidecar's `columns` in; returns the columns it used.
@@ -202,7 +225,7 @@ impl Planner<'_> {
                 .position(source)
                 .ok_or_else(|| self.missing(source, format!("\"columns\" in the sidecar maps it to `{name}`")))?;
             if let Some(other) = (column + 1..self.headers.len()).find(|&c| self.headers[c] == *source) {
-                return Err(self.duplicate(source, column, other));
+                return Err(self.duplicate(name, column, other));
             }
             used.push(column);
             match name.as_str() {

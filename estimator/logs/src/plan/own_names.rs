@@ -47,7 +47,7 @@ impl Planner<'_> {
     }
 
     /// Unit of an extra channel, as the file has it.
-    fn shown_unit(&self, column: usize) -> String {
+    pub(super) fn shown_unit(&self, column: usize) -> String {
         let text = self.unit_text(column, &[]);
         let suffix = self.headers[column].rsplit_once('_').map_or("", |(_, suffix)| suffix);
         let is_word = suffix.chars().all(|c| c.is_alphanumeric() || c == '%') && !is_place(suffix);

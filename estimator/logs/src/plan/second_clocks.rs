@@ -26,7 +26,7 @@ pub fn words(name: &str) -> Vec<String> {
 }
 
 /// True for a name that begins or ends with a word for a time.
-fn is_like_a_clock(name: &str) -> bool {
+pub fn is_like_a_clock(name: &str) -> bool {
     let words = words(name);
     let is_time = |word: Option<&String>| word.is_some_and(|word| TIMES.contains(&word.as_str()));
     is_time(words.first()) || is_time(words.last())

@@ -10,6 +10,9 @@ use foundation::words::amount;
 use haptics::law::Coordinate;
 use haptics::recording::{CLOCK_OFFSET, Recording, TARE_STEP};
 
+/// Lag above which one clock has none, s. Choice: filters and buses delay a force by less than a tenth of a second.
+const MOST_LAG_S: f64 = 0.1;
+
 /// Notes the defects of a recording's force channel in its segments, unless the sidecar forbids it; a sentence about each.
 pub fn take_defects_out(
     pieces: &mut [Piece],
@@ -39,21 +42,36 @@ pub fn take_defects_out(
             zero_jumps::fate(of, TARE_STEP, "step")
         ));
     }
-    if of.has_several_clocks()
-        && let Some((prompt, delay_s)) = without_delay(pieces, &terms, known)
-    {
-        if of.meta.repairs(CLOCK_OFFSET) {
+    let has_clocks = of.has_several_clocks();
+    // On one clock, less than a period is sampling.
+    let least_s = of.rate_hz().map_or(0.0, f64::recip);
+    let is_told = |delay_s: f64| has_clocks || (least_s..MOST_LAG_S).contains(&delay_s.abs());
+    if let Some((prompt, delay_s)) = without_delay(pieces, &terms, known).filter(|(_, delay_s)| is_told(*delay_s)) {
+        if has_clocks && of.meta.repairs(CLOCK_OFFSET) {
             pieces.clone_from_slice(&prompt);
         }
+        let order = if delay_s < 0.0 { "earlier" } else { "later" };
         said.push(format!(
-            "the force of {} is {} {} than the motion, and they have clocks of their own; {}",
+            "the force of {} {}",
             of.name,
-            amount(delay_s.abs(), "s"),
-            if delay_s < 0.0 { "earlier" } else { "later" },
-            zero_jumps::fate(of, CLOCK_OFFSET, "lag")
+            lag(&amount(delay_s.abs(), "s"), order, has_clocks.then_some(of))
         ));
     }
     said
+}
+
+/// Words for a lag. On one clock, only the diagnosis tells it from other causes. `clocks`: the recording, if it has several.
+fn lag(size: &str, order: &str, clocks: Option<&Recording>) -> String {
+    match clocks {
+        Some(of) => {
+            let fate = zero_jumps::fate(of, CLOCK_OFFSET, "lag");
+            format!("is {size} {order} than the motion, and they have clocks of their own; {fate}")
+        }
+        None => format!(
+            "seems {size} {order} than the motion; if it is, inertia and friction are off by more than their errors: run the \
+             diagnosis, which tells a delay from other causes"
+        ),
+    }
 }
 
 /// The segments without the lag of the force behind the motion, and this lag, s. `None` if it takes less than half of the
