@@ -123,7 +123,7 @@ fn a_fit_tells_the_lag_of_a_force_on_one_clock() {
             continue;
         }
         assert!(said.is_empty(), "{}: {said:?}", job.seed);
-        let lag_s = (OVER_NOISE * truth.noise_n / rate(recording)).min(0.5 * MOST_S);
+        let lag_s = (OVER_NOISE * truth.noise_n / rate(recording)).min(0.4 * MOST_S);
         let rows = (lag_s * recording.rate_hz().expect("a rate")).ceil().max(2.0);
         let (_, said) = fitted(folder.path(), &late_force(recording, rows as usize), r#"{"task":"mechanism"}"#);
         report.push(format!("  {lag_s:.4} s: {said:?}"));

@@ -270,7 +270,11 @@ fn spoilt(folder: &Path) -> PathBuf {
     let text: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
     let log = folder.join("spoilt.csv");
     std::fs::write(&log, format!("{}\n{}\n", header.join(","), text.join("\n"))).expect("written");
-    std::fs::copy(asset("crank.meta.json"), folder.join("spoilt.meta.json")).expect("its sidecar");
+    // The rows in which a channel is stuck stay in, to be marked.
+    let sidecar = std::fs::read_to_string(asset("crank.meta.json")).expect("its sidecar");
+    let mut sidecar: Value = serde_json::from_str(&sidecar).expect("JSON");
+    sidecar["as_recorded"] = serde_json::json!(["stuck-channel"]);
+    std::fs::write(folder.join("spoilt.meta.json"), sidecar.to_string()).expect("written");
     log
 }
 

@@ -210,6 +210,8 @@ fn seconds_and_their_fraction_are_one_clock() {
         let text = below(names, |t| format!("{:.0},{:.0}", now(t + 0.001).0, now(t + 0.001).1));
         is_the_drawer(names, text, r#"{"task":"mechanism"}"#);
     }
+    let stamps = below("Date,Time,ms", |t| format!("2026-04-17,15:00:{:02.0},{:.0}", t.floor(), (1e3 * t) % 1e3));
+    is_the_drawer("stamps and milliseconds", stamps, r#"{"task":"mechanism"}"#);
 }
 
 /// A column without a name has one by its place, and stamps in it are a clock.
@@ -237,6 +239,14 @@ fn long_tables_are_read() {
         }
     }
     is_the_drawer("in turns", turns, r#"{"task":"mechanism"}"#);
+    let device = |row: &String| row.replace("Z,", "Z,stage,");
+    let tagged = stacked.iter().map(device).collect::<String>() + &stacked.concat().replace("Z,", "Z,other,");
+    let mapped = r#"{"task":"mechanism","columns":{"q_m":"stage.q_m","f_N":"stage.f_N"}}"#;
+    is_the_drawer("two devices", format!("_time,host,_value,_field\n{tagged}"), mapped);
+    let kept = stacked[1].split_inclusive('\n').enumerate().filter(|(at, _)| at % 500 != 7);
+    let gappy: String = kept.map(|(_, line)| line).collect();
+    let gappy = format!("_time,_value,_field\n{}{gappy}", stacked[0]);
+    is_the_drawer("without some values", gappy, r#"{"task":"mechanism"}"#);
     is_the_drawer("stacked", format!("_time,_value,_field\n{}", stacked.concat()), r#"{"task":"mechanism"}"#);
 }
 

@@ -128,6 +128,26 @@ fn unknown_factors_and_rates_are_asked_for() {
     }
 }
 
+/// A rate or a period above the rows is suggested for a log without a clock.
+#[test]
+fn a_stated_rate_is_suggested() {
+    for above in ["Sampling interval,10ms", "# Sample rate: 100 Hz", "wf_increment,0.01"] {
+        let file =
+            table(&format!("{above}\nPosition (mm),Force (N)"), |_, [_, place, push]| format!("{place:.5},{push:.6}"));
+        mended(above, &file);
+    }
+}
+
+/// The nanoseconds beside whole seconds are no clock of their own.
+#[test]
+fn a_fraction_of_a_second_is_no_clock() {
+    let file = table("header.stamp.sec,header.stamp.nanosec,pos_mm,force_N", |_, [t, place, push]| {
+        let (whole, part) = (1_744_902_008.0 + (t + 0.001).floor(), (t + 0.001).fract());
+        format!("{whole:.0},{:.0},{place:.5},{push:.6}", 1e9 * part)
+    });
+    mended("seconds and nanoseconds", &file);
+}
+
 /// A few words among the numbers do not hide a column: its first one is named.
 #[test]
 fn words_for_missing_values_do_not_hide_a_force() {

@@ -96,8 +96,8 @@ impl Search<'_> {
                 let doubt = warnings.find(|w| w.suggested.is_some());
                 let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
                 let has_step = is_mute && self.guess()?
-                    || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"))
-                    || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries));
+                    || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries))
+                    || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"));
                 let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(|w| w.kind == UNIT));
                 (has_step, open.map(|w| w.text.clone()))
             }

@@ -23,7 +23,7 @@ pub fn check(fit: &mut Fit, alone: &[Fit]) {
         let Some((ratio, error)) = scatter(values(), tests) else { continue };
         let ends = |fold: fn(f64, f64) -> f64| values().map(|(value, _)| value).reduce(fold).unwrap_or_default();
         fit.warnings.push(format!(
-            "{} {:.4} to {:.4}, {ratio:.1} times as far apart as their errors say: the objects differ, or the model misses something",
+            "{} {:.4} to {:.4}, {ratio:.1} times as far apart as their errors say: the objects differ, the zero of the sensor moved, or the model misses something",
             disagreement_about(&parameter.full_name()),
             ends(f64::min),
             ends(f64::max)

@@ -5,6 +5,7 @@ use super::fingerprint::{Fingerprints, Shared};
 use super::origin::Dated;
 use super::plan::{Plan, Use};
 use super::runs::Apart;
+use super::stated_rate::STATED_RATE;
 use super::table::{Group, Table};
 use super::{checks, clock, facts, repairs, runs, second_clocks, sidecar, units};
 use foundation::signal::chain::is_chain;
@@ -52,7 +53,10 @@ pub fn recordings(
             let mut made = about.recording(group, (trial, name), time_s)?;
             let worded = |kind: &'static str| move |text: &String| note(kind, Some("t_s"), text.clone());
             let clock = resampled.iter().map(worded(RESAMPLED)).chain(about_time.iter().map(worded("clock")));
-            made.warnings.splice(0..0, said.iter().cloned().chain(clock).chain(doubts.clone()));
+            // A log with a clock needs no rate.
+            let said = said.iter().filter(|w| w.kind != STATED_RATE || made.time_s.is_none());
+            let all: Vec<Warning> = said.cloned().chain(clock).chain(doubts.clone()).collect();
+            made.warnings.splice(0..0, all);
             recordings.push(Dated { recording: made, origin });
         }
     }
@@ -108,8 +112,7 @@ impl About<'_> {
             warnings: Vec::new(),
         };
         if recording.channels.is_empty() {
-            let why = "no column holds numbers beside the time".to_owned();
-            return Err(LogError::NotATable { why, path: self.path.to_path_buf() });
+            return Err(LogError::NoChannels { path: self.path.to_path_buf() });
         }
         if let Some(why) = facts::up_not_honoured(&recording) {
             return Err(LogError::Sidecar { why, path: sidecar::path_for(self.path) });

@@ -21,6 +21,8 @@ const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 
 /// Ranges of stamps in ticks of 100 ns, 2000 to 2100, with the epochs that they count from: of Windows since 1601, of .NET since
 /// the year 1.
 const TICKS: [(&str, std::ops::Range<f64>); 2] = [("1601", 1.25e17..1.58e17), ("year 1", 6.3e17..6.63e17)];
+/// With more rows a second than these, one of them lies in the second half of some second.
+const ROWS_A_SECOND: usize = 4;
 /// Length of a tick, s.
 const TICK_S: f64 = 1e-7;
 /// Ranges of days that stamps count, 1954 to 2119, with the epochs that they count from: of spreadsheets, and of MATLAB.
@@ -95,6 +97,12 @@ pub fn times(group: &mut Group, plan: &Plan, meta: &Meta, headers: &[String], pa
 fn add_fraction(time: &mut [f64], fraction: &[f64], unit_s: f64) -> Option<f64> {
     let is_fraction = fraction.len() == time.len() && fraction.iter().all(|part| (0.0..1.0).contains(&(part * unit_s)));
     if !is_fraction || time.iter().any(|t| t.fract() != 0.0) {
+        return None;
+    }
+    // A fraction passes through all of the second; counts of samples or of another unit end early.
+    let seconds = time.windows(2).filter(|w| w[1] != w[0]).count();
+    let largest = fraction.iter().fold(0.0, |largest: f64, part| largest.max(part * unit_s));
+    if seconds > 1 && time.len() > ROWS_A_SECOND * seconds && largest < 0.5 {
         return None;
     }
     let first = time.first().copied().filter(|first| EPOCHS.contains(first)).unwrap_or(0.0);

@@ -177,6 +177,12 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// No column is read.
+    #[error("no column holds numbers beside the time, or numbers in every row; map the columns that are meant with \"columns\" in the sidecar: {path}", path = path.display())]
+    NoChannels {
+        /// The file.
+        path: PathBuf,
+    },
     /// The same name twice.
     #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar{chosen}: {path}", chosen = chosen(column, choice.as_deref()), column = plain(column), first = plain(first), second = plain(second), path = path.display())]
     DuplicateColumn {

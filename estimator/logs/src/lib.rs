@@ -31,6 +31,7 @@ mod rows;
 mod runs;
 mod second_clocks;
 mod sidecar;
+mod stated_rate;
 mod suggested;
 mod table;
 mod text_clock;
@@ -161,7 +162,7 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     let size = admissible_size(path)?;
     let nothing = Meta::default();
     match format::of(path)? {
-        Format::Csv => Ok(csv::sniff(path)?.headers),
+        Format::Csv => Ok(csv::sniff(path, None)?.headers),
         Format::Mat => Ok(mat::read(path, size, &Watch::none())?.0.headers),
         Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
         Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
@@ -245,9 +246,10 @@ fn read(path: &Path, format: Format, size: u64, facts: Facts<'_>, watch: &Watch<
 }
 
 fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Dated>, LogError> {
-    let dialect = csv::sniff(path)?;
+    let dialect = csv::sniff(path, Some(meta))?;
     let mut plan = plan::plan(&dialect.headers, &dialect.units, meta, path)?;
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
+    plan.take_fraction_of_stamps(&dialect.headers);
     plan.give_clocks(&dialect.clocks);
     let mut read = csv::read(path, &dialect, &plan, size, watch);
     // A day above 12 anywhere in the file settles the order of day and month.
@@ -256,7 +258,8 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     }
     let mut table = read?;
     second_clocks::take_time(&mut table, &mut plan, meta, &dialect.headers);
-    let said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    let mut said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
+    said.extend(dialect.rate.iter().map(|(line, rate_hz)| stated_rate::doubt(line, *rate_hz)));
     plan.notes.extend(plan::Plan::doubt_about_dates(table.days));
     assemble::recordings(table, &plan, meta, path, &dialect.headers, &said)
 }

@@ -38,6 +38,8 @@ pub struct ColumnFacts {
     pub range: Option<(f64, f64)>,
     /// True if the numbers increase from row to row, apart from a few restarts.
     pub increasing: bool,
+    /// Number of rows whose number is smaller than the one before.
+    pub falls: usize,
     /// True if every number is whole.
     pub whole: bool,
     /// Median step from row to row.
@@ -126,6 +128,7 @@ fn distinct<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Vec<String>> {
 
 fn of_numbers(values: &[f64]) -> ColumnFacts {
     let mut steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let falls = steps.iter().filter(|s| **s < 0.0).count();
     let starts = steps.iter().filter(|s| **s <= 0.0).count();
     let increasing = !steps.is_empty() && starts * ROWS_A_START <= steps.len();
     let middle = steps.len() / 2;
@@ -138,6 +141,7 @@ fn of_numbers(values: &[f64]) -> ColumnFacts {
         numeric: !values.is_empty(),
         range,
         increasing,
+        falls,
         whole: values.iter().all(|v| v.fract() == 0.0),
         step,
         ..ColumnFacts::default()

@@ -24,6 +24,8 @@ pub struct Guess {
 
 /// Whole numbers beyond this are counts rather than millimeters, degrees, or newtons.
 const COUNTS: f64 = 1_000.0;
+/// Whole numbers from which an index holds stamps since 1970, and no count of rows.
+const EPOCHS: f64 = 1e9;
 /// Points that a column loses if only the user can convert its unit.
 const UNCONVERTED: i32 = 4;
 /// Points of a column that has the program's own name.
@@ -160,12 +162,14 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     if !facts.numeric {
         return None;
     }
-    if reading.kind.is_none() && is_index(facts) && !counts_rows(facts) {
+    // Whole numbers may count rows, but for stamps.
+    let counts = facts.whole && facts.range.is_some_and(|(_, high)| high < EPOCHS);
+    if reading.kind.is_none() && is_index(facts) && !counts {
         return facts.increasing.then(|| made("t_s".to_owned(), 0)).flatten();
     }
     let kind = reading.kind?;
     if kind == Kind::Time {
-        return facts.increasing.then(|| made("t_s".to_owned(), reading.points)).flatten();
+        return (facts.increasing && !is_fraction(facts)).then(|| made("t_s".to_owned(), reading.points)).flatten();
     }
     let name = name_of(kind, reading)?;
     find(&name)?;
@@ -175,6 +179,17 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
         Some(Dimension::Other) if kind == Kind::Force => made(name, reading.points - UNCONVERTED),
         Some(_) => None,
     }
+}
+
+/// True for the fraction of a second beside whole seconds: `nanosec`, `ms`.
+fn is_fraction(facts: &ColumnFacts) -> bool {
+    let text = facts.unit_text(Dimension::Time);
+    let text = if text.is_empty() { &facts.header } else { text };
+    let unit_s = match written_units::parse(text, &[Dimension::Time]) {
+        Written::Known(Dimension::Time, unit_s) => unit_s,
+        _ => 1.0,
+    };
+    facts.falls > 0 && facts.range.is_some_and(|(low, high)| low >= 0.0 && high * unit_s < 1.0)
 }
 
 /// True for a name that stands for the index of a data frame: `index`, `Unnamed: 0`, `column 1`.

@@ -90,5 +90,6 @@ pub fn mends(error: &LogError) -> bool {
             | LogError::WrongDimension { .. }
             | LogError::DuplicateColumn { .. }
             | LogError::NothingSelected { .. }
+            | LogError::NoChannels { .. }
     )
 }

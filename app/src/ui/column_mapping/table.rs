@@ -59,7 +59,11 @@ fn name(ui: &mut Ui, row: &Row) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.add_space(3.0);
-        let shown = if row.facts.header.is_empty() { "(no name)" } else { &row.facts.header };
+        let shown = match &row.facts {
+            facts if facts.header.is_empty() => "(no name)".to_owned(),
+            facts if facts.source != facts.header => format!("{} ({})", facts.header, facts.source),
+            facts => facts.header.clone(),
+        };
         let color = if row.role == Role::Extra { p.secondary } else { p.text };
         ui.add(Label::new(theme::strong(shown).color(color)).truncate());
         let values = row.facts.first.join(", ") + ", …";

@@ -33,8 +33,12 @@ pub struct Dialect {
     pub(super) text: Option<Vec<u8>>,
     /// Columns with a clock of their own, and the columns of those clocks.
     pub clocks: Vec<(usize, usize)>,
+    /// True if it was a long table: any signal may lack a value at some times.
+    pub(super) is_long: bool,
     /// Sentences for the reader.
     pub notes: Vec<String>,
+    /// Line before the rows that states their rate, and the rate, Hz.
+    pub rate: Option<(String, f64)>,
 }
 
 impl Dialect {

@@ -190,7 +190,8 @@ impl<'a> Join<'a> {
                 // Pairs of time and value side by side have lengths of their own.
                 let trails = || group.columns[column].iter().rev().take(blanks).all(|v| is_missing(*v));
                 let is_shorter = self.plan.has_pairs() && all - blanks >= LEAST_VALUES && trails();
-                blanks == 0 || is_shorter || all - blanks >= LEAST_VALUES && 3 * blanks >= all
+                let is_slower = self.dialect.is_long || 3 * blanks >= all;
+                blanks == 0 || is_shorter || all - blanks >= LEAST_VALUES && is_slower
             };
             let groups = self.table.groups.iter().map(|(_, group)| group);
             for group in groups.filter(|group| is_time(column) || !is_sparse(group)) {

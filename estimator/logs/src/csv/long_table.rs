@@ -5,7 +5,8 @@ use super::cells::{Notation, number};
 use super::sniff::{delimiter_of, names};
 use super::{calendar, decimal::Decimal};
 use crate::plan::is_like_a_clock;
-use std::collections::HashMap;
+use haptics::recording::Meta;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
 /// Sentence about a table that was long.
@@ -27,27 +28,50 @@ const SIGNALS: [&str; 12] = [
     "tag",
     "key",
 ];
+/// Names of the column with the signals' units.
+const UNITS: [&str; 4] = ["unit", "units", "uom", "einheit"];
 /// More signals than these are no columns. Choice: a plot or a data logger has tens.
 const MOST_SIGNALS: usize = 200;
 
 /// Places of a long table's columns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Columns {
     time: usize,
     signal: usize,
     value: usize,
-    width: usize,
+    unit: Option<usize>,
+    /// Columns that may tell signals of one name apart.
+    others: Vec<usize>,
+    names: Vec<String>,
     delimiter: u8,
 }
 
-/// Columns of a long table, as the names in its first line show them; none for other texts.
-pub fn columns(start: &[u8]) -> Option<Columns> {
+/// Columns of a long table, as the names in its first line show them; none for other texts, and if the sidecar names columns of the
+/// table as it stands.
+pub fn columns(start: &[u8], meta: Option<&Meta>) -> Option<Columns> {
     let header = rows(start).next()?;
     let delimiter = delimiter_of(header);
-    let names: Vec<String> = names(header, delimiter).iter().map(|name| name.to_lowercase()).collect();
-    let place = |known: &[&str]| names.iter().position(|name| known.contains(&name.trim_matches('_')));
-    let time = names.iter().position(|name| is_like_a_clock(name))?;
-    Some(Columns { time, signal: place(&SIGNALS)?, value: place(&VALUES)?, width: names.len(), delimiter })
+    let names = names(header.trim_ascii_end(), delimiter);
+    let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+    let place = |known: &[&str]| lower.iter().position(|name| known.contains(&name.trim_matches('_')));
+    let is_clock = |column: usize| is_like_a_clock(&lower[column]);
+    let time = (0..names.len()).find(|column| is_clock(*column))?;
+    let (signal, value, unit) = (place(&SIGNALS)?, place(&VALUES)?, place(&UNITS));
+    let is_other = |column: &usize| ![signal, value].contains(column) && Some(*column) != unit && !is_clock(*column);
+    let is_named = |meta: &Meta| {
+        let mut named = meta.columns.values().chain(meta.select.keys());
+        named.any(|name| names.iter().enumerate().any(|(column, known)| known == name && !is_clock(column)))
+    };
+    let others = (0..names.len()).filter(is_other).collect();
+    (!meta.is_some_and(is_named)).then(|| Columns {
+        time,
+        signal,
+        value,
+        unit,
+        others,
+        names: names.clone(),
+        delimiter,
+    })
 }
 
 /// Lines that are no comments.
@@ -55,54 +79,83 @@ fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(|b| *b == b'\n').filter(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))
 }
 
-/// One row of the wide table.
-#[derive(Debug)]
-struct Moment {
-    time_s: f64,
-    /// The time as the file has it.
-    time: String,
-    /// Numbers by signal; empty where there is none.
-    values: Vec<String>,
-}
-
-/// The table with tabs, in the order of its times; none if a time has two numbers of one signal
-/// or a row does not fit.
-pub fn wide(text: &[u8], columns: Columns) -> Option<Vec<u8>> {
-    let (mut signals, mut places) = (Vec::new(), HashMap::new());
-    let mut moments: Vec<Moment> = Vec::new();
-    let mut cells = rows(text).map(|line| columns.of(line));
-    let header = cells.next()??[0].clone();
-    for row in cells {
-        let [time, signal, value] = row?;
-        let at = *places.entry(time.clone()).or_insert(moments.len());
+/// The table with tabs, in the order of its times. None if it is none: a time has two numbers of one signal, a row does not fit,
+/// signals have numbers for names, or another column holds measurements.
+pub fn wide(text: &[u8], columns: &Columns) -> Option<Vec<u8>> {
+    let rows: Vec<Vec<String>> = rows(text)
+        .skip(1)
+        .map(|line| Some(names(line.trim_ascii_end(), columns.delimiter)).filter(|c| c.len() == columns.names.len()))
+        .collect::<Option<_>>()?;
+    if rows.iter().all(|row| is_number(&row[columns.signal])) {
+        return None;
+    }
+    let tags = tags(&rows, columns)?;
+    let (mut signals, mut units): (Vec<String>, Vec<&str>) = (Vec::new(), Vec::new());
+    let mut places = HashMap::new();
+    let mut moments: Vec<(f64, &str, Vec<&str>)> = Vec::new();
+    for row in &rows {
+        let (time, value) = (row[columns.time].as_str(), row[columns.value].as_str());
+        if is_missing(value) {
+            continue;
+        }
+        let at = *places.entry(time).or_insert(moments.len());
         if at == moments.len() {
-            moments.push(Moment { time_s: seconds(&time)?, time, values: Vec::new() });
+            moments.push((seconds(time)?, time, Vec::new()));
         }
-        let column = signals.iter().position(|known| *known == signal).unwrap_or(signals.len());
+        let name: Vec<&str> = tags.iter().chain([&columns.signal]).map(|tag| row[*tag].as_str()).collect();
+        let (name, unit) = (name.join("."), columns.unit.map_or("", |unit| row[unit].as_str()));
+        let column = signals.iter().position(|known| *known == name).unwrap_or(signals.len());
         if column == signals.len() {
-            signals.push(signal);
+            signals.push(name);
+            units.push(unit);
         }
-        let values = &mut moments[at].values;
-        values.resize(values.len().max(column + 1), String::new());
-        if column >= MOST_SIGNALS || !std::mem::replace(&mut values[column], value).is_empty() {
+        let values = &mut moments[at].2;
+        values.resize(values.len().max(column + 1), "");
+        let before = std::mem::replace(&mut values[column], value);
+        if column >= MOST_SIGNALS || units[column] != unit || !before.is_empty() && before != value {
             return None;
         }
     }
-    moments.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
-    let mut wide = format!("{header}\t{}\n", signals.join("\t"));
-    for Moment { time, mut values, .. } in moments {
-        values.resize(signals.len(), String::new());
+    moments.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let header = signals.iter().zip(&units).map(|(name, unit)| match *unit {
+        "" => name.clone(),
+        unit => format!("{name} [{unit}]"),
+    });
+    let mut wide = format!("{}\t{}\n", columns.names[columns.time], header.collect::<Vec<_>>().join("\t"));
+    for (_, time, mut values) in moments {
+        values.resize(signals.len(), "");
         let _ = writeln!(wide, "{time}\t{}", values.join("\t"));
     }
     (signals.len() > 1).then(|| wide.into_bytes())
 }
 
-impl Columns {
-    /// Time, signal and number of a row; none for a row of another width.
-    fn of(self, line: &[u8]) -> Option<[String; 3]> {
-        let cells = names(line.trim_ascii_end(), self.delimiter);
-        (cells.len() == self.width).then(|| [self.time, self.signal, self.value].map(|column| cells[column].clone()))
+/// Columns of texts that tell signals of one name apart. None if another column holds measurements: numbers that change, with
+/// decimals. Whole numbers count rows, or grade them.
+fn tags(rows: &[Vec<String>], columns: &Columns) -> Option<Vec<usize>> {
+    let mut tags = Vec::new();
+    for &column in &columns.others {
+        let pairs: HashSet<(&str, &str)> =
+            rows.iter().map(|row| (row[columns.signal].as_str(), row[column].as_str())).collect();
+        let signals: HashSet<&str> = pairs.iter().map(|(signal, _)| *signal).collect();
+        if pairs.len() == signals.len() {
+            continue;
+        }
+        if !rows.iter().all(|row| is_number(&row[column]) || row[column].is_empty()) {
+            tags.push(column);
+        } else if rows.iter().any(|row| row[column].contains(['.', ',', 'e', 'E'])) {
+            return None;
+        }
     }
+    Some(tags)
+}
+
+/// True for a cell that says that there is no number.
+fn is_missing(cell: &str) -> bool {
+    cell.is_empty() || ["nan", "null", "na", "none"].iter().any(|word| cell.eq_ignore_ascii_case(word))
+}
+
+fn is_number(cell: &str) -> bool {
+    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() }).is_some()
 }
 
 /// A time for the order of rows, s.
@@ -115,18 +168,35 @@ fn seconds(time: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn signals_stand_beside_each_other_in_the_order_of_their_times() {
-        let text = b"time_s,variable,value\n0.0,a,1\n0.1,a,2\n0.1,b,4\n0.0,b,3\n0.2,b,5\n";
-        let columns = columns(text).expect("a long table");
-        let wide = wide(text, columns).expect("a table");
-        assert_eq!(String::from_utf8_lossy(&wide), "time_s\ta\tb\n0.0\t1\t3\n0.1\t2\t4\n0.2\t\t5\n");
+    fn table(text: &str) -> Option<String> {
+        let columns = columns(text.as_bytes(), None).expect("such names");
+        wide(text.as_bytes(), &columns).map(|wide| String::from_utf8_lossy(&wide).into_owned())
     }
 
     #[test]
-    fn two_numbers_of_one_signal_at_one_time_are_no_table() {
-        let text = b"time,signal,value\n0,a,1\n0,b,2\n0,a,3\n";
-        assert!(wide(text, columns(text).expect("such names")).is_none());
-        assert!(columns(b"time,force,value\n0,1,2\n").is_none());
+    fn signals_stand_beside_each_other_in_the_order_of_their_times() {
+        let wide = table("time_s,variable,value\n0.0,a,1\n0.1,a,2\n0.1,b,4\n0.0,b,3\n0.2,b,5\n0.2,a,nan\n");
+        assert_eq!(wide.expect("a table"), "time_s\ta\tb\n0.0\t1\t3\n0.1\t2\t4\n0.2\t\t5\n");
+    }
+
+    #[test]
+    fn tags_and_units_belong_to_the_name() {
+        let wide = table("time,device,signal,unit,value,id\n0,l,f,N,1,1\n0,r,f,N,2,2\n1,l,f,N,3,3\n");
+        assert_eq!(wide.expect("a table"), "time\tl.f [N]\tr.f [N]\n0\t1\t2\n1\t3\t\n");
+    }
+
+    #[test]
+    fn other_tables_are_left_as_they_are() {
+        for text in [
+            "time,signal,value\n0,a,1\n0,b,2\n0,a,3\n",
+            "time,channel,position,value\n0,A,1.5,1\n1,B,1.6,2\n2,A,1.7,3\n",
+            "time,signal,value\n0,0.1,1\n1,0.2,2\n",
+            "time,signal,unit,value\n0,a,m,1\n1,a,mm,1000\n1,b,N,1\n",
+        ] {
+            assert!(table(text).is_none(), "{text}");
+        }
+        assert!(columns(b"time,force,value\n0,1,2\n", None).is_none());
+        let meta = Meta { columns: [("f_N".to_owned(), "value".to_owned())].into(), ..Meta::default() };
+        assert!(columns(b"time,signal,value\n0,a,1\n", Some(&meta)).is_none());
     }
 }

@@ -6,15 +6,16 @@ use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
 use super::{calendar, labview, layout, long_table, serial_log};
 use crate::errors::LogError;
-use crate::format;
+use crate::{format, stated_rate};
+use haptics::recording::Meta;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
 /// Number of bytes that are looked at to tell a table from something else.
 const SNIFF_BYTES: usize = 1 << 16;
-/// Looks at the beginning and the end of a file; an error when it cannot be a table.
-pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
+/// Looks at the beginning and the end of a file; an error when it cannot be a table. `meta`: the sidecar, if it is known.
+pub fn sniff(path: &Path, meta: Option<&Meta>) -> Result<Dialect, LogError> {
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
     let mut start = Vec::with_capacity(SNIFF_BYTES);
     File::open(path).map_err(io)?.take(SNIFF_BYTES as u64).read_to_end(&mut start).map_err(io)?;
@@ -35,7 +36,7 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     };
     let mut notes = Vec::new();
     notes.extend(end.map(|_| "the zeros behind the text, which a logger reserves, are not read".to_owned()));
-    let (mut text, mut clocks) = (None, Vec::new());
+    let (mut text, mut clocks, mut is_long) = (None, Vec::new(), false);
     if encoding != Encoding::Utf8 && !is_binary(&start, encoding) {
         text = Some(encoding::decoded(whole(&start)?, encoding));
         notes.extend((encoding == Encoding::Latin1).then(|| "the text is not UTF-8: it is read as Latin-1".to_owned()));
@@ -52,22 +53,25 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     } else if let Some(width) = encoding::blank_width(&start, !is_short) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
         text = Some(encoding::tabbed(&all, width));
-    } else if let Some(columns) = long_table::columns(&start) {
+    } else if let Some(columns) = long_table::columns(&start, meta) {
         let all = text.map_or_else(|| whole(&start), Ok)?;
-        let made = long_table::wide(&all, columns);
-        notes.extend(made.iter().map(|_| long_table::NOTE.to_owned()));
+        let made = long_table::wide(&all, &columns);
+        is_long = made.is_some();
+        notes.extend(is_long.then(|| long_table::NOTE.to_owned()));
         text = Some(made.unwrap_or(all));
     }
     start = text.as_deref().map_or(start, beginning);
     let mut found = dialect(&start, path)?;
     found.name_columns();
+    let above = String::from_utf8_lossy(&start[..(found.start as usize).min(start.len())]);
+    found.rate = above.lines().find_map(|line| Some((line.to_owned(), stated_rate::of_line(line)?)));
     found.notes.splice(0..0, notes);
     if end.is_some() && text.is_none() {
         found.end = end;
     } else {
         found.leave_summary_out(path, text.as_deref()).map_err(io)?;
     }
-    (found.text, found.clocks) = (text, clocks);
+    (found.text, found.clocks, found.is_long) = (text, clocks, is_long);
     Ok(found)
 }
 

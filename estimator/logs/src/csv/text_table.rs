@@ -23,7 +23,7 @@ pub struct TextTable {
 /// Reads at most so many bytes of a table.
 pub fn read(path: &Path, most_bytes: u64) -> Result<TextTable, LogError> {
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
-    let found = sniff(path)?;
+    let found = sniff(path, None)?;
     let length = found.end.map_or(u64::MAX, |end| end.saturating_sub(found.start));
     let mut bytes = Vec::new();
     if let Some(text) = &found.text {

@@ -1,8 +1,8 @@
 //! Choice of the columns that make the table, and the sentences about all others.
 
 use super::gather::{Column, Gathered, Run};
-use crate::plan;
 use crate::raw::{Cells, Raw};
+use crate::{plan, stated_rate};
 use haptics::recording::Warning;
 use std::collections::HashMap;
 
@@ -61,7 +61,16 @@ pub fn of(gathered: Gathered) -> Result<(Raw, Vec<Warning>), String> {
     let more = said.len().saturating_sub(MOST_SENTENCES);
     said.truncate(MOST_SENTENCES);
     said.extend((more > 0).then(|| format!("{more} more reasons for which variables are not read are not listed")));
-    Ok((raw(table), said.into_iter().map(note).collect()))
+    let rate = groups.iter().flat_map(|group| &group.columns).find_map(rate_of);
+    Ok((raw(table), said.into_iter().map(note).chain(rate).collect()))
+}
+
+/// Doubt about the rate that a variable of one number states: `Fs`, `dt`.
+fn rate_of(column: &Column) -> Option<Warning> {
+    let Cells::Numbers(values) = &column.cells else { return None };
+    let [value] = values[..] else { return None };
+    let text = format!("{} = {value}", column.short);
+    Some(stated_rate::doubt(&text, stated_rate::of_line(&text)?))
 }
 
 /// Sentence about the columns of other lengths.

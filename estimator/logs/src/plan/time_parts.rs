@@ -1,11 +1,28 @@
 //! Clocks in two columns: whole seconds, and the fraction of a second beside them.
 
-use super::{Planner, TIMES, Use, words};
+use super::{Plan, Planner, TIMES, Use, words};
 use crate::units::Dimension;
 use crate::written_units::{Written, parse};
 
 /// Words for a clock in front of `sec` and `nsec`, beside those for a time.
 const STAMPS: [&str; 5] = ["stamp", "tv", "epoch", "unix", "clock"];
+
+impl Plan {
+    /// Takes the fraction beside times of the calendar: a column whose whole name is a unit below a second, `ms`.
+    pub fn take_fraction_of_stamps(&mut self, headers: &[String]) {
+        let is_stamp = self.time.is_some_and(|column| matches!(self.uses[column], Use::Stamp { .. }));
+        let unit_s = |column: usize| match parse(&headers[column], &[Dimension::Time]) {
+            Written::Known(Dimension::Time, unit_s) if unit_s < 1.0 => Some(unit_s),
+            _ => None,
+        };
+        let found = (0..headers.len()).find_map(|column| Some((column, unit_s(column)?)));
+        if let Some((column, unit_s)) = found.filter(|_| is_stamp)
+            && let Use::Number { factor, .. } = self.uses[column]
+        {
+            self.fraction = Some((column, unit_s / factor));
+        }
+    }
+}
 
 impl Planner<'_> {
     /// Takes the fraction beside a clock of whole seconds: `sec` and `nanosec`, `tv_sec` and `tv_usec`. Such a pair becomes the

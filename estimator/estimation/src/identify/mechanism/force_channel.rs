@@ -10,9 +10,6 @@ use foundation::words::amount;
 use haptics::law::Coordinate;
 use haptics::recording::{CLOCK_OFFSET, Recording, TARE_STEP};
 
-/// Lag above which one clock has none, s. Choice: filters and buses delay a force by less than a tenth of a second.
-const MOST_LAG_S: f64 = 0.1;
-
 /// Notes the defects of a recording's force channel in its segments, unless the sidecar forbids it; a sentence about each.
 pub fn take_defects_out(
     pieces: &mut [Piece],
@@ -43,9 +40,10 @@ pub fn take_defects_out(
         ));
     }
     let has_clocks = of.has_several_clocks();
-    // On one clock, less than a period is sampling.
+    // On one clock, less than a sample is sampling; more than a period of the filter is no lag that its band shows.
     let least_s = of.rate_hz().map_or(0.0, f64::recip);
-    let is_told = |delay_s: f64| has_clocks || (least_s..MOST_LAG_S).contains(&delay_s.abs());
+    let most_s = pieces.first().map_or(0.0, |piece| piece.cutoff_hz.recip());
+    let is_told = |delay_s: f64| has_clocks || (least_s..most_s).contains(&delay_s.abs());
     if let Some((prompt, delay_s)) = without_delay(pieces, &terms, known).filter(|(_, delay_s)| is_told(*delay_s)) {
         if has_clocks && of.meta.repairs(CLOCK_OFFSET) {
             pieces.clone_from_slice(&prompt);
