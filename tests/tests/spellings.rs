@@ -210,6 +210,12 @@ fn seconds_and_their_fraction_are_one_clock() {
         let text = below(names, |t| format!("{:.0},{:.0}", now(t + 0.001).0, now(t + 0.001).1));
         is_the_drawer(names, text, r#"{"task":"mechanism"}"#);
     }
+    // Numbers that never pass through the second are of another unit, or count samples.
+    for of in [|t: f64| (1e3 * t.fract()).round(), |t: f64| (100.0 * t.fract()).round()] {
+        let text = below("sec,usec", |t| format!("{:.0},{:.0}", (t + 0.001).floor(), of(t + 0.001)));
+        let refused = File::new(text, r#"{"task":"mechanism"}"#).load().expect_err("no such fraction");
+        assert!(refused.contains("time stands still"), "{refused}");
+    }
     let stamps = below("Date,Time,ms", |t| format!("2026-04-17,15:00:{:02.0},{:.0}", t.floor(), (1e3 * t) % 1e3));
     is_the_drawer("stamps and milliseconds", stamps, r#"{"task":"mechanism"}"#);
 }

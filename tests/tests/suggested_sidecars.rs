@@ -193,4 +193,7 @@ fn the_index_of_a_data_frame_is_suggested_as_a_clock() {
             table(&format!("{header},pos_mm,force_N"), |_, [t, place, push]| format!("{t:.3},{place:.5},{push:.6}"));
         mended(header, &file);
     }
+    // Numbers of rows are no times, from wherever they count.
+    let counted = table(",pos_mm,force_N", |at, [_, place, push]| format!("{},{place:.5},{push:.6}", 100 + at));
+    assert!(suggest(&counted).contains(r#""rate_hz": null"#));
 }

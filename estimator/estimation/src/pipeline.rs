@@ -1,6 +1,6 @@
 //! The whole way from recordings to a calibrated world, for the command line, the app and the tests alike.
 
-use crate::agreement::{self, disagreement_about};
+use crate::agreement::{self, average, disagreement_about};
 use crate::calibrate;
 use crate::identify::{barrel, block, crank, mechanism, needle, payload, priors, switch};
 use crate::plausible;
@@ -8,7 +8,7 @@ use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, segment_by, task_of};
 use crate::zero_jumps;
 use foundation::cancellation;
-use foundation::estimate::{EstimateError, Fit, Parameter};
+use foundation::estimate::{EstimateError, Fit};
 use foundation::tasks::Thresholds;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -98,15 +98,15 @@ fn analyse_as_recorded(
         Task::Mechanism => (mechanisms(recordings)?, states(recordings, task, options)),
         Task::Needle => {
             let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), states(recordings, task, options))
+            (average(&fits), states(recordings, task, options))
         }
         Task::Switch => {
             let fits = recordings.iter().map(switch::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), states(recordings, task, options))
+            (average(&fits), states(recordings, task, options))
         }
         Task::Payload => {
             let fits = recordings.iter().map(payload::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), states(recordings, task, options))
+            (average(&fits), states(recordings, task, options))
         }
         Task::Barrel => each(recordings, |r| barrel::fit_by(options.method, r, options.thresholds))?,
     };
@@ -162,7 +162,7 @@ fn each(
         fits.push(one);
         segmentations.push(Some(segmentation));
     }
-    Ok((combine(fits), segmentations))
+    Ok((average(&fits), segmentations))
 }
 
 /// One or several recordings of a crank: geometry from each, the laws from all of them at once.
@@ -176,7 +176,7 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
         prepared.cranks.get_or_init(|| made)
     };
     let together = crank::refit_jointly(options.method, recordings, prepared, options.thresholds)?;
-    let mut fit = combine(together.fits);
+    let mut fit = average(&together.fits);
     if recordings.len() > 1 {
         for shared in together.shared {
             match fit.parameters.iter_mut().find(|p| p.object == shared.object && p.name == shared.name) {
@@ -204,7 +204,7 @@ fn mechanisms(recordings: &[Recording]) -> Result<Fit, EstimateError> {
 /// Several recordings of the same blocks: heights and friction from each, weights, widths and pads from all of them at once.
 fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
     let together = block::fit_jointly(options.method, recordings, options.thresholds)?;
-    let mut fit = combine(together.fits);
+    let mut fit = average(&together.fits);
     for shared in together.shared {
         // Blocks that are not the same have no common value; the average says how far they lie apart.
         let said = disagreement_about(&shared.full_name());
@@ -223,94 +223,9 @@ fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, Estimat
     Ok((fit, together.segmentations.into_iter().map(Some).collect()))
 }
 
-/// Recordings that disagree by more than this many standard errors are said to.
-const DISAGREEMENT: f64 = 3.0;
-
-/// Averages equal parameters of several fits by their errors; the rest is listed one after the other.
-fn combine(fits: Vec<Fit>) -> Fit {
-    let several = fits.len() > 1;
-    let mut all = fits.into_iter();
-    let Some(mut total) = all.next() else { return Fit::default() };
-    for fit in all {
-        total.constraints.extend(fit.constraints);
-        for warning in fit.warnings {
-            if !total.warnings.contains(&warning) {
-                total.warnings.push(warning);
-            }
-        }
-        for parameter in fit.parameters {
-            match total.parameters.iter_mut().find(|p| p.object == parameter.object && p.name == parameter.name) {
-                Some(mean) => {
-                    if let Some(warning) = merge(mean, &parameter) {
-                        total.warnings.push(warning);
-                    }
-                }
-                None => total.parameters.push(parameter),
-            }
-        }
-    }
-    if several {
-        // They belonged to the first recording only.
-        total.quality = None;
-        total.correlated.clear();
-    }
-    total
-}
-
-/// Takes a second measurement into a first one. A lower bound is not averaged: the larger one holds for both.
-fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
-    let (Some(b), Some(eb)) = (other.value, other.std_error) else { return None };
-    let (Some(a), Some(ea)) = (mean.value, mean.std_error) else {
-        *mean = other.clone();
-        return None;
-    };
-    if mean.name == "friction_lower_bound" {
-        if b > a {
-            *mean = other.clone();
-        }
-        return None;
-    }
-    let apart = (a - b).abs() / ea.hypot(eb).max(f64::MIN_POSITIVE);
-    let (wa, wb) = (ea.max(1e-300).powi(-2), eb.max(1e-300).powi(-2));
-    mean.value = Some((a * wa + b * wb) / (wa + wb));
-    // Recordings that disagree: the spread between them is the better error.
-    let error = (wa + wb).powf(-0.5) * (apart / std::f64::consts::SQRT_2).max(1.0);
-    mean.std_error = Some(error);
-    let parts = mean.bootstrap_error.zip(other.bootstrap_error);
-    mean.bootstrap_error =
-        parts.map(|(a, b)| (1.0 / (a.powi(-2) + b.powi(-2)).sqrt()).max(error * (a / ea).min(b / eb)));
-    mean.samples += other.samples;
-    (apart > DISAGREEMENT).then(|| {
-        format!(
-            "{} {a:.4} and {b:.4}, {apart:.1} standard errors apart; were they of the same object?",
-            disagreement_about(&mean.full_name())
-        )
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn fit(value: f64, error: f64) -> Fit {
-        Fit { parameters: vec![Parameter::identified("crank", "radius_m", value, error, 10, "")], ..Fit::default() }
-    }
-
-    #[test]
-    fn equal_errors_average_and_shrink() {
-        let total = combine(vec![fit(1.0, 0.1), fit(1.1, 0.1)]);
-        let p = total.parameter("crank", "radius_m").expect("combined");
-        assert!((p.value.expect("a value") - 1.05).abs() < 1e-12);
-        assert!((p.std_error.expect("an error") - 0.1 / 2.0_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(p.samples, 20);
-    }
-
-    #[test]
-    fn a_disagreement_is_said_and_widens_the_error() {
-        let total = combine(vec![fit(1.0, 0.01), fit(1.2, 0.01)]);
-        assert!(total.warnings.iter().any(|w| w.contains("disagree")));
-        assert!(total.parameters[0].std_error.expect("an error") > 0.05);
-    }
 
     #[test]
     fn nothing_to_fit_is_a_sentence() {

@@ -15,6 +15,11 @@ pub fn name_by_place(column: usize) -> String {
     format!("column {}", column + 1)
 }
 
+/// Column that a name by place means.
+pub fn place_of(name: &str) -> Option<usize> {
+    name.strip_prefix("column ")?.parse::<usize>().ok()?.checked_sub(1)
+}
+
 /// One column.
 #[derive(Clone, Debug)]
 pub enum Cells {

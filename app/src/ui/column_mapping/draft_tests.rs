@@ -130,3 +130,15 @@ fn no_factor_of_a_stated_unit_is_guessed() {
     let log = table.load(&draft.sidecar()).expect("loads").remove(0);
     assert!((log.channel("q_m").expect("a place")[0] - 0.01).abs() < 1e-12);
 }
+
+/// Numbered objects are chosen from, and numbers of other things are not.
+#[test]
+fn the_first_of_several_objects_is_selected() {
+    let table = |name: &str| {
+        let rows = (0..90).fold(String::new(), |rows, k| rows + &format!("{},{k},{},1\n", 1 + k / 30, 2 * k));
+        Table::new(&format!("{name},t_s,q_m,f_N\n{rows}"))
+    };
+    let selected = |name: &str| table(name).draft("{}").meta.select;
+    assert_eq!(selected("Specimen No").get("Specimen No"), Some(&serde_json::json!("1")));
+    assert!(selected("gear").is_empty());
+}

@@ -35,6 +35,11 @@ const COARSE_LEVELS: f64 = 30.0;
 /// Fewer samples do not show a quantum.
 const COARSE_SAMPLES: usize = 200;
 
+/// True if a channel holds a value for as long as a stuck one.
+pub fn has_holds(values: &[f64]) -> bool {
+    !holds(values, STUCK_SAMPLES).is_empty()
+}
+
 /// A channel of the program that is constant, or that stops changing for a while other than at its `limit`.
 pub fn stuck(recording: &Recording, channel: &Channel, profile: &Profile, limit: Option<&Warning>) -> Option<Warning> {
     let values = &channel.values;

@@ -15,7 +15,7 @@ mod scale;
 mod spikes;
 
 pub(crate) use findings::{is_position, limited, place};
-pub(crate) use held::{saturated, stuck};
+pub(crate) use held::{has_holds, saturated, stuck};
 pub(crate) use profile::{Profile, extremes};
 pub use repeats::copied;
 pub use scale::UNIT;

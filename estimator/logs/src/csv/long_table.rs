@@ -6,6 +6,7 @@ use super::sniff::{delimiter_of, names};
 use super::{calendar, decimal::Decimal};
 use crate::plan::is_like_a_clock;
 use haptics::recording::Meta;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
@@ -74,6 +75,17 @@ pub fn columns(start: &[u8], meta: Option<&Meta>) -> Option<Columns> {
     })
 }
 
+/// Cells of a row; those without quotes are not copied.
+type Row<'a> = Vec<Cow<'a, str>>;
+
+fn cells(line: &[u8], delimiter: u8) -> Row<'_> {
+    let line = line.trim_ascii_end();
+    if line.contains(&b'"') {
+        return names(line, delimiter).into_iter().map(Cow::Owned).collect();
+    }
+    line.split(|b| *b == delimiter).map(|cell| String::from_utf8_lossy(cell.trim_ascii())).collect()
+}
+
 /// Lines that are no comments.
 fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(|b| *b == b'\n').filter(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))
@@ -82,10 +94,8 @@ fn rows(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// The table with tabs, in the order of its times. None if it is none: a time has two numbers of one signal, a row does not fit,
 /// signals have numbers for names, or another column holds measurements.
 pub fn wide(text: &[u8], columns: &Columns) -> Option<Vec<u8>> {
-    let rows: Vec<Vec<String>> = rows(text)
-        .skip(1)
-        .map(|line| Some(names(line.trim_ascii_end(), columns.delimiter)).filter(|c| c.len() == columns.names.len()))
-        .collect::<Option<_>>()?;
+    let of = |line| Some(cells(line, columns.delimiter)).filter(|cells| cells.len() == columns.names.len());
+    let rows: Vec<Row<'_>> = rows(text).skip(1).map(of).collect::<Option<_>>()?;
     if rows.iter().all(|row| is_number(&row[columns.signal])) {
         return None;
     }
@@ -94,7 +104,7 @@ pub fn wide(text: &[u8], columns: &Columns) -> Option<Vec<u8>> {
     let mut places = HashMap::new();
     let mut moments: Vec<(f64, &str, Vec<&str>)> = Vec::new();
     for row in &rows {
-        let (time, value) = (row[columns.time].as_str(), row[columns.value].as_str());
+        let (time, value) = (row[columns.time].as_ref(), row[columns.value].as_ref());
         if is_missing(value) {
             continue;
         }
@@ -102,8 +112,8 @@ pub fn wide(text: &[u8], columns: &Columns) -> Option<Vec<u8>> {
         if at == moments.len() {
             moments.push((seconds(time)?, time, Vec::new()));
         }
-        let name: Vec<&str> = tags.iter().chain([&columns.signal]).map(|tag| row[*tag].as_str()).collect();
-        let (name, unit) = (name.join("."), columns.unit.map_or("", |unit| row[unit].as_str()));
+        let name: Vec<&str> = tags.iter().chain([&columns.signal]).map(|tag| row[*tag].as_ref()).collect();
+        let (name, unit) = (name.join("."), columns.unit.map_or("", |unit| row[unit].as_ref()));
         let column = signals.iter().position(|known| *known == name).unwrap_or(signals.len());
         if column == signals.len() {
             signals.push(name);
@@ -131,11 +141,11 @@ pub fn wide(text: &[u8], columns: &Columns) -> Option<Vec<u8>> {
 
 /// Columns of texts that tell signals of one name apart. None if another column holds measurements: numbers that change, with
 /// decimals. Whole numbers count rows, or grade them.
-fn tags(rows: &[Vec<String>], columns: &Columns) -> Option<Vec<usize>> {
+fn tags(rows: &[Row<'_>], columns: &Columns) -> Option<Vec<usize>> {
     let mut tags = Vec::new();
     for &column in &columns.others {
         let pairs: HashSet<(&str, &str)> =
-            rows.iter().map(|row| (row[columns.signal].as_str(), row[column].as_str())).collect();
+            rows.iter().map(|row| (row[columns.signal].as_ref(), row[column].as_ref())).collect();
         let signals: HashSet<&str> = pairs.iter().map(|(signal, _)| *signal).collect();
         if pairs.len() == signals.len() {
             continue;
@@ -155,13 +165,16 @@ fn is_missing(cell: &str) -> bool {
 }
 
 fn is_number(cell: &str) -> bool {
-    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() }).is_some()
+    value(cell).is_some()
+}
+
+fn value(cell: &str) -> Option<f64> {
+    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() })
 }
 
 /// A time for the order of rows, s.
 fn seconds(time: &str) -> Option<f64> {
-    let notation = Notation { decimal: Decimal::Either, ..Notation::default() };
-    number(time.as_bytes(), notation).or_else(|| calendar::parse(time).map(|ns| 1e-9 * ns as f64))
+    value(time).or_else(|| calendar::parse(time).map(|ns| 1e-9 * ns as f64))
 }
 
 #[cfg(test)]

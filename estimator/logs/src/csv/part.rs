@@ -5,7 +5,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::plain::{self, Plain};
 use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::plan::{Plan, Use};
-use crate::raw::{MISSING, name_by_place};
+use crate::raw::{MISSING, place_of};
 use haptics::recording::Labels;
 use memchr::memchr;
 
@@ -226,7 +226,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         let is_name = |k: usize| {
             let cell = cells.get(record, k);
             let cell = cell.strip_prefix("\u{feff}".as_bytes()).unwrap_or(cell);
-            cell == headers[k].as_bytes() || cell.is_empty() && headers[k] == name_by_place(k)
+            cell == headers[k].as_bytes() || cell.is_empty() && place_of(&headers[k]) == Some(k)
         };
         let has_names = || (0..cells.len()).any(|k| !cells.get(record, k).is_empty());
         cells.len() == headers.len() && (0..headers.len()).all(is_name) && has_names()

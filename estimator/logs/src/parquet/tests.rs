@@ -194,3 +194,19 @@ fn units_in_the_metadata_are_those_of_the_columns() {
         assert_eq!((read.channel("q_m").expect("q")[1], read.channel("f_N").expect("f")[1]), (0.006, 2000.0), "{key}");
     }
 }
+
+/// pandas keeps an index without a name as `__index_level_0__`.
+#[test]
+fn the_index_of_a_data_frame_is_a_clock() {
+    let schema = "message m {
+        required double q_m;
+        required int64 __index_level_0__ (TIMESTAMP_MICROS);
+    }";
+    let mut out = Out::new(schema, Compression::SNAPPY);
+    let stamps = [1_744_902_008_000_000_i64, 1_744_902_008_005_000, 1_744_902_008_010_000];
+    let stamps = put::<parquet::data_type::Int64Type>((&stamps, None, None));
+    out.block(&[&put::<DoubleType>((&[1.0, 2.0, 4.0], None, None)), &stamps]);
+    let log = out.load(r#"{"columns": {"t_s": "index_s"}}"#).expect("loads");
+    let time = log.time_s.as_ref().expect("a clock");
+    assert!((time[2] - time[0] - 0.01).abs() < 1e-9 && log.channel("q_m") == Some(&[1.0, 2.0, 4.0]));
+}

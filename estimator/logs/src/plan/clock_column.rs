@@ -2,7 +2,7 @@
 
 use super::{Plan, Planner, Use};
 use crate::csv::calendar::{self, Days, Form, Order};
-use crate::raw::name_by_place;
+use crate::raw::place_of;
 use crate::units::Dimension;
 use crate::written_units::{self, Written};
 use haptics::recording::Meta;
@@ -18,7 +18,7 @@ impl Plan {
         let is_named = |column: &usize| {
             let name = headers[*column].trim_matches('_');
             let is_clock = CLOCKS.iter().any(|word| name.eq_ignore_ascii_case(word));
-            (is_clock || name == name_by_place(*column)) && calendar::parse(cell(*column)).is_some()
+            (is_clock || place_of(name) == Some(*column)) && calendar::parse(cell(*column)).is_some()
         };
         let beside_date = || {
             let mut times = (0..headers.len()).filter(|&column| calendar::of_day(cell(column)).is_some());

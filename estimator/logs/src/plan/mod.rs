@@ -14,7 +14,7 @@ pub use second_clocks::{SecondClock, TIMES, is_like_a_clock, words};
 use super::csv::calendar::Form;
 use super::errors::LogError;
 use super::origin::Origin;
-use super::raw::name_by_place;
+use super::raw::{name_by_place, place_of};
 use super::units::{self, Dimension, Unit};
 use super::written_units::{self, Written};
 use haptics::recording::Meta;
@@ -213,7 +213,7 @@ impl Planner<'_> {
 
     /// Column that a sidecar calls so: by its name, or as `column 3` by its place.
     fn position(&self, name: &str) -> Option<usize> {
-        let by_place = || (0..self.headers.len()).find(|&column| name == name_by_place(column));
+        let by_place = || place_of(name).filter(|column| *column < self.headers.len());
         self.headers.iter().position(|h| h == name).or_else(by_place)
     }
 

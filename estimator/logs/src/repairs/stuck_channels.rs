@@ -1,6 +1,6 @@
 //! Rows in which a channel stands still although it should move: its sensor or its bus had stopped.
 
-use crate::checks::{Profile, extremes, saturated, stuck};
+use crate::checks::{Profile, has_holds, saturated, stuck};
 use crate::units;
 use haptics::recording::{Recording, Warning};
 
@@ -12,11 +12,14 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
     let mut is_out = vec![false; recording.len()];
     let mut found = Vec::new();
     for channel in recording.channels.iter().filter(|channel| units::is_program_name(&channel.name)) {
-        let (low, high, unchanged) = extremes(&channel.values);
-        if low >= high || unchanged == 0 {
+        // The checks come behind the repairs: a profile is made here only where it is needed.
+        if !has_holds(&channel.values) {
             continue;
         }
         let profile = Profile::of(&channel.values);
+        if profile.is_constant() {
+            continue;
+        }
         let limit = saturated(recording, channel, &profile);
         let Some(mut warning) = stuck(recording, channel, &profile, limit.as_ref()) else { continue };
         let held: usize = warning.spans.iter().map(|span| span.end - span.first).sum();

@@ -190,3 +190,15 @@ fn of_several_tables_the_one_with_a_clock_and_most_columns_is_read() {
     let twice = [("t_s", column(&clock())), ("q_m", column(&F)), ("q_m", column(&Q))];
     assert_eq!(log(&twice, "{}").channel("q_m"), Some(Q.as_slice()));
 }
+
+#[test]
+fn a_rate_in_a_variable_of_its_own_is_suggested() {
+    let table = [("q_m", column(&Q)), ("f_N", column(&F))];
+    let with = |name: &'static str, value: f64| log(&[&table[..], &[(name, column(&[value]))]].concat(), "{}");
+    for (name, value) in [("Fs", 200.0), ("dt", 0.005), ("isi_ms", 5.0)] {
+        let read = with(name, value);
+        let suggested = read.warnings.iter().find_map(|w| w.suggested.as_ref()?.get("rate_hz")?.as_f64());
+        assert!(suggested.is_some_and(|rate_hz| (rate_hz - 200.0).abs() < 1e-9), "{name}: {:?}", read.warnings);
+    }
+    assert!(with("mass", 200.0).warnings.iter().all(|w| w.suggested.is_none()));
+}
