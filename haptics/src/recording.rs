@@ -5,8 +5,8 @@ mod sidecar;
 
 pub use labels::Labels;
 pub use sidecar::{
-    CLOCK_OFFSET, HandMeta, JoinedFile, Meta, OwnClock, Prior, REPAIRS, Segment, SharedChannel, ShiftedClock,
-    TARE_STEP, TimeWindow, VideoMeta,
+    CLOCK_OFFSET, FOREIGN_FORCE, HandMeta, JoinedFile, Meta, OwnClock, Prior, REPAIRS, Segment, SharedChannel,
+    ShiftedClock, TARE_STEP, TimeWindow, VideoMeta,
 };
 
 use schemars::JsonSchema;

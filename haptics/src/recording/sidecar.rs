@@ -97,7 +97,7 @@ pub struct Meta {
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
     /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`,
-    /// `wrapped-counter`, `stuck-channel`, `spikes`, `tare-step`, `clock-offset`.
+    /// `wrapped-counter`, `stuck-channel`, `spikes`, `tare-step`, `foreign-force`, `clock-offset`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "all repairs"), example = json!(["spikes"]))]
     pub as_recorded: Vec<String>,
@@ -245,7 +245,7 @@ pub struct Prior {
 }
 
 /// Kinds of repairs, by their names in `as_recorded`: those on loading, and those of a fit.
-pub const REPAIRS: [&str; 9] = [
+pub const REPAIRS: [&str; 10] = [
     "sentinels",
     "burst-stamps",
     "held-samples",
@@ -254,10 +254,13 @@ pub const REPAIRS: [&str; 9] = [
     "stuck-channel",
     "spikes",
     TARE_STEP,
+    FOREIGN_FORCE,
     CLOCK_OFFSET,
 ];
 /// The repair of a step in the zero of a force sensor.
 pub const TARE_STEP: &str = "tare-step";
+/// The repair of a stretch of time in which the force does not belong to the motion.
+pub const FOREIGN_FORCE: &str = "foreign-force";
 /// The repair of a lag between channels with clocks of their own.
 pub const CLOCK_OFFSET: &str = "clock-offset";
 

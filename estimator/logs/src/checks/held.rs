@@ -25,10 +25,8 @@ const NEXT_VALUES: usize = 4;
 const STUCK_SAMPLES: usize = 25;
 /// Share of unchanged steps above which a channel is taken as coarsely quantised, and holding is normal.
 const QUIET_SHARE: f64 = 0.2;
-/// Share of a force channel that may stand at its limit; more is a channel that does not work.
-const SATURATED_SHARE: f64 = 0.9;
-/// The same share of a voltage or current, which may be switched.
-const SWITCHED_SHARE: f64 = 0.5;
+/// Share of a channel that may stand at its limits. More may be a voltage that is switched, or the dry friction of a slow motion.
+const SATURATED_SHARE: f64 = 0.5;
 /// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
 /// (quantum/√12) is then above 1 % of that range.
 const COARSE_LEVELS: f64 = 30.0;
@@ -58,7 +56,7 @@ pub fn stuck(recording: &Recording, channel: &Channel, profile: &Profile, limit:
     let held: usize = holds.iter().map(|s| s.end - s.first - 1).sum();
     let moving = values.len() - 1 - held;
     // Besides its holds the channel must change at nearly every sample, and a zero is a tool that touches nothing.
-    let quiet = (profile.unchanged - held) as f64 > QUIET_SHARE * moving as f64 || moving < STUCK_SAMPLES;
+    let quiet = (profile.unchanged - held) as f64 > QUIET_SHARE * moving as f64 || moving < STUCK_SAMPLES * holds.len();
     let at_limit =
         |hold: &Span| limit.is_some_and(|l| l.spans.iter().any(|s| s.first < hold.end && hold.first < s.end));
     let holds: Vec<Span> = holds.into_iter().filter(|s| values[s.first] != 0.0 && !at_limit(s)).collect();
@@ -90,38 +88,43 @@ fn moves_around(values: &[f64], holds: &[Span]) -> bool {
     })
 }
 
-/// Pile-up at exactly the extreme value of a force, torque, voltage or current. Every span is listed: fits leave them out.
+/// Pile-up at exactly the extreme value of a force, torque, voltage or current. Every span that fits leave out is listed.
 pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) -> Option<Warning> {
     let sensed = units::find(&channel.unit)
         .is_some_and(|u| matches!(u.dimension, Dimension::Force | Dimension::Torque) || matches!(u.symbol, "V" | "A"));
     if !sensed || channel.values.len() < 2 * PLATEAU_SAMPLES || profile.is_constant() {
         return None;
     }
-    let share = if matches!(channel.unit.as_str(), "V" | "A") { SWITCHED_SHARE } else { SATURATED_SHARE };
-    let both =
-        [(1.0, profile.high), (-1.0, -profile.low)].map(|(side, top)| rail(recording, channel, (side, top), share));
+    let both = [(1.0, profile.high), (-1.0, -profile.low)].map(|side| rail(recording, channel, side));
     let mut spans: Vec<Span> = both.into_iter().flatten().flatten().collect();
     let first = *spans.iter().min_by_key(|s| s.first)?;
     spans.sort_by_key(|s| s.first);
     let samples: usize = spans.iter().map(|s| s.end - s.first).sum();
     let text = format!(
-        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: the sensor was at its limit; they are left out of fits",
+        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: ",
         channel.name,
         channel.values[first.first].abs(),
         channel.unit,
         place(recording, first.first)
     );
-    Some(about("saturation", channel, spans, text))
+    if samples as f64 <= SATURATED_SHARE * channel.values.len() as f64 {
+        let text = text + "the sensor was at its limit; they are left out of fits";
+        return Some(about("saturation", channel, spans, text));
+    }
+    let is_switched = matches!(channel.unit.as_str(), "V" | "A");
+    let text = text
+        + "the sensor was at its limit, or it shows the dry friction of a slow motion in coarse steps; they are kept";
+    (!is_switched).then(|| about("saturation", channel, Vec::new(), text))
 }
 
 /// Spans in which `side`·value is exactly `top`, the largest, if they are too many for chance: in this channel on this
 /// side, or in all that stop at the very same value.
-fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share: f64) -> Option<Vec<Span>> {
+fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64)) -> Option<Vec<Span>> {
     let values = &channel.values;
     let own: [(&[f64], f64); 1] = [(values, side)];
     let at_top = values.iter().filter(|&&v| side * v == top).count();
-    // A channel whose extreme is zero has an end, not a rail; most of the record at one value is stuck or switched.
-    if top == 0.0 || at_top == 0 || at_top as f64 > share * values.len() as f64 {
+    // A channel whose extreme is zero has an end, not a rail.
+    if top == 0.0 || at_top == 0 {
         return None;
     }
     if !piles_up(&own) {

@@ -4,9 +4,6 @@ use crate::checks::{Profile, has_holds, saturated, stuck};
 use crate::units;
 use haptics::recording::{Recording, Warning};
 
-/// Share of the rows above which a channel that stands still is one that rests.
-const MOST: f64 = 0.5;
-
 /// Leaves the rows out in which a channel of the program is stuck. The first of equal values was measured.
 pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
     let mut is_out = vec![false; recording.len()];
@@ -22,10 +19,6 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
         }
         let limit = saturated(recording, channel, &profile);
         let Some(mut warning) = stuck(recording, channel, &profile, limit.as_ref()) else { continue };
-        let held: usize = warning.spans.iter().map(|span| span.end - span.first).sum();
-        if held as f64 > MOST * is_out.len() as f64 {
-            continue;
-        }
         for span in &warning.spans {
             is_out[span.first + 1..span.end].fill(true);
         }

@@ -1,5 +1,7 @@
-//! Defects of a force channel that the fit takes out: a step of its zero, and the offset of a clock of its own.
+//! Defects of a force channel that the fit takes out: a step of its zero, a stretch that does not belong
+//! to the motion, and the offset of a clock of its own.
 
+use super::foreign_force;
 use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
@@ -8,7 +10,7 @@ use crate::identify::limits::{LEAST_SEGMENT_ROWS, SIGNIFICANT};
 use crate::zero_jumps;
 use foundation::words::amount;
 use haptics::law::Coordinate;
-use haptics::recording::{CLOCK_OFFSET, Recording, TARE_STEP};
+use haptics::recording::{CLOCK_OFFSET, FOREIGN_FORCE, Recording, TARE_STEP};
 
 /// Notes the defects of a recording's force channel in its segments, unless the sidecar forbids it; a sentence about each.
 pub fn take_defects_out(
@@ -39,6 +41,7 @@ pub fn take_defects_out(
             zero_jumps::fate(of, TARE_STEP, "step")
         ));
     }
+    said.extend(leave_foreign_force_out(pieces, of, (&terms, known), is_linear));
     let has_clocks = of.has_several_clocks();
     // On one clock, less than a sample is sampling; more than a period of the filter is no lag that its band shows.
     let least_s = of.rate_hz().map_or(0.0, f64::recip);
@@ -56,6 +59,29 @@ pub fn take_defects_out(
         ));
     }
     said
+}
+
+/// Leaves the stretch out in which the force does not belong to the motion, unless the sidecar forbids it; a sentence about it.
+fn leave_foreign_force_out(
+    pieces: &mut [Piece],
+    of: &Recording,
+    (terms, known): (&[Term], &Known),
+    is_linear: bool,
+) -> Option<String> {
+    let stretch = foreign_force::stretch(pieces, terms, known)?;
+    if of.meta.repairs(FOREIGN_FORCE) {
+        foreign_force::leave_out(pieces, &stretch);
+    }
+    let unit = if is_linear { "N" } else { "N m" };
+    let [from_s, to_s] = stretch.time_s;
+    Some(format!(
+        "from {from_s:.2} s to {to_s:.2} s, the residual of {} is {} RMS, and elsewhere {}: a hand or a stop acted there beside the \
+         recorded force, or the sensor failed; {}",
+        of.name,
+        amount(stretch.inside, unit),
+        amount(stretch.outside, unit),
+        zero_jumps::fate(of, FOREIGN_FORCE, "stretch")
+    ))
 }
 
 /// Words for a lag. On one clock, only the diagnosis tells it from other causes. `clocks`: the recording, if it has several.

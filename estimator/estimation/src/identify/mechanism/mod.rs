@@ -8,6 +8,7 @@
 mod chain;
 mod driven;
 mod force_channel;
+mod foreign_force;
 mod free;
 mod gravity;
 mod motion_segments;

@@ -159,7 +159,8 @@ impl System {
         if 10 * kept.iter().filter(|k| **k).count() < kept.len() { self.clone() } else { self.filtered(&kept) }
     }
 
-    fn filtered(&self, kept: &[bool]) -> Self {
+    /// The samples that are `kept`.
+    pub fn filtered(&self, kept: &[bool]) -> Self {
         let pick =
             |values: &Vec<f64>| -> Vec<f64> { values.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| *v).collect() };
         Self {
