@@ -203,6 +203,11 @@ fn a_mechanisms_fit_leaves_a_foreign_force_out() {
             }
         }
         println!("{}\n{told} of {all}, {off} of {values} off", report.join("\n"));
+        assert!(
+            all >= 20 && 4 * told >= 3 * all && 20 * off <= values,
+            "{foreign:?}: {told} of {all}\n{}",
+            report.join("\n")
+        );
     }
 }
 

@@ -25,8 +25,11 @@ const NEXT_VALUES: usize = 4;
 const STUCK_SAMPLES: usize = 25;
 /// Share of unchanged steps above which a channel is taken as coarsely quantised, and holding is normal.
 const QUIET_SHARE: f64 = 0.2;
-/// Share of a channel that may stand at its limits. More may be a voltage that is switched, or the dry friction of a slow motion.
-const SATURATED_SHARE: f64 = 0.5;
+/// Share of a force channel that may stand at its limits; more is a channel that does not work.
+const SATURATED_SHARE: f64 = 0.9;
+/// The same share of a voltage or current, which may be switched, and of coarse steps, which may be those of dry friction in a
+/// slow motion.
+const SWITCHED_SHARE: f64 = 0.5;
 /// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
 /// (quantum/√12) is then above 1 % of that range.
 const COARSE_LEVELS: f64 = 30.0;
@@ -107,14 +110,17 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
         channel.unit,
         place(recording, first.first)
     );
-    if samples as f64 <= SATURATED_SHARE * channel.values.len() as f64 {
+    let is_switched = matches!(channel.unit.as_str(), "V" | "A");
+    let is_coarse = quantum(profile).is_some_and(|quantum| quantum * COARSE_LEVELS >= profile.spread());
+    let most = if is_switched || is_coarse { SWITCHED_SHARE } else { SATURATED_SHARE };
+    if samples as f64 <= most * channel.values.len() as f64 {
         let text = text + "the sensor was at its limit; they are left out of fits";
         return Some(about("saturation", channel, spans, text));
     }
-    let is_switched = matches!(channel.unit.as_str(), "V" | "A");
+    let is_doubtful = is_coarse && !is_switched;
     let text = text
         + "the sensor was at its limit, or it shows the dry friction of a slow motion in coarse steps; they are kept";
-    (!is_switched).then(|| about("saturation", channel, Vec::new(), text))
+    is_doubtful.then(|| about("saturation", channel, Vec::new(), text))
 }
 
 /// Spans in which `side`·value is exactly `top`, the largest, if they are too many for chance: in this channel on this

@@ -5,7 +5,7 @@ use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
 use super::zero_step::OF_POWER;
-use crate::identify::limits::{CERTAIN, LEAST_SEGMENT_ROWS, ROUNDING};
+use crate::identify::limits::{CERTAIN, LEAST_FIT_ROWS, ROUNDING};
 use crate::segment::threshold::percentile;
 use std::ops::Range;
 
@@ -50,7 +50,7 @@ pub fn stretch(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<Stretc
         }
     }
     let count = found.len();
-    if count < LEAST_SEGMENT_ROWS || 2 * count > rows {
+    if count < LEAST_FIT_ROWS || 2 * count > rows {
         return None;
     }
     let sums = |values: &[f64]| {
