@@ -6,8 +6,10 @@ use crate::ui::column_mapping::facts::look;
 use crate::ui::column_mapping::names::dimension;
 use crate::ui::column_mapping::state::mends;
 use estimator::log::units;
-use estimator::log::{LogError, NO_CLOCK, NO_KNOWN_COLUMN, UNIT, load, parse_sidecar, put_suggested, sidecar_path};
-use haptics::recording::{Recording, Suggested};
+use estimator::log::{
+    ALTERNATION, LogError, NO_CLOCK, NO_KNOWN_COLUMN, UNIT, load, parse_sidecar, put_suggested, sidecar_path,
+};
+use haptics::recording::{Recording, Suggested, Warning};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -98,7 +100,8 @@ impl Search<'_> {
                 let has_step = is_mute && self.guess()?
                     || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries))
                     || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"));
-                let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(|w| w.kind == UNIT));
+                let is_open = |w: &&Warning| [UNIT, ALTERNATION].contains(&w.kind.as_str());
+                let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(is_open));
                 (has_step, open.map(|w| w.text.clone()))
             }
             Err(error) => {

@@ -46,7 +46,7 @@ pub use self::csv::text_table::TextTable;
 pub use self::mcap::attached::attached;
 pub use self::mcap::stream::McapStream;
 pub use self::mcap::write::Encoding;
-pub use checks::{UNIT, repaired, warnings as quality};
+pub use checks::{ALTERNATION, UNIT, repaired, warnings as quality};
 pub use errors::LogError;
 pub use format::Format;
 pub use plan::{PAIRS, counts_runs, sources};

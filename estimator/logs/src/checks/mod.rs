@@ -5,6 +5,7 @@
 //! late cycle) is not reported: a warning that is often wrong is not read when it is right. `tests/tests/logs.rs`
 //! measures both.
 
+mod alternation;
 mod clock;
 mod findings;
 mod held;
@@ -14,6 +15,8 @@ mod repeats;
 mod scale;
 mod spikes;
 
+pub use alternation::ALTERNATION;
+pub(crate) use alternation::warnings as alternating;
 pub(crate) use findings::{is_position, limited, place};
 pub(crate) use held::{has_holds, saturated, stuck};
 pub(crate) use profile::{Profile, extremes};
@@ -41,9 +44,10 @@ pub fn warnings_of(recording: &Recording, with_spikes: bool) -> Vec<Warning> {
         of_channel(recording, &channels[i], with_spikes)
     });
     let (profiles, own): (Vec<Profile>, Vec<Vec<Warning>>) = own.into_iter().unzip();
-    let about_all: [&(dyn Fn() -> Vec<Warning> + Sync); 5] = [
+    let about_all: [&(dyn Fn() -> Vec<Warning> + Sync); 6] = [
         &|| clock::warnings(recording),
         &|| leaps::warnings(recording),
+        &|| alternation::warnings(recording),
         &|| held::coarse(recording, &profiles),
         &|| repeats::warnings(recording, &profiles),
         &|| scale::warnings(recording, &profiles),

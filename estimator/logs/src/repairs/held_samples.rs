@@ -1,6 +1,6 @@
 //! Channels that repeat their last value until the next one comes: a logger that is faster than its source.
 
-use crate::checks::extremes;
+use crate::checks::{alternating, extremes};
 use crate::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
@@ -17,6 +17,10 @@ const LOOSE_FROM: usize = 4;
 pub fn take_out(recording: &mut Recording) -> Option<Warning> {
     let known = recording.channels.iter().filter(|c| units::is_program_name(&c.name));
     let (name, every, kept) = known.filter_map(held).max_by_key(|(_, every, _)| *every)?;
+    // Sensors in turn may share a channel, which has a new value once for all of them.
+    if !alternating(recording).is_empty() {
+        return None;
+    }
     let count = recording.len();
     let rate_hz = recording.time_s.as_ref().map(|time| (count - 1) as f64 / (time[count - 1] - time[0]));
     let rate = rate_hz.map_or(String::new(), |rate| format!(", at {:.4} Hz,", rate / every as f64));

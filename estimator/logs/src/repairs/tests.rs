@@ -32,6 +32,20 @@ fn a_sound_recording_stays_as_it_is() {
     assert!(repair(&mut coarse).is_empty() && coarse == before);
 }
 
+/// Two sensors in alternating rows share the force, which has a new value in every second row.
+#[test]
+fn sensors_in_turn_are_doubted_and_their_rows_stay() {
+    let mut one = swing(4000);
+    for channel in &mut one.channels {
+        channel.values = (0..4000).map(|row| channel.values[row / 2]).collect();
+    }
+    let mut held = one.clone();
+    one.channels[0].values.iter_mut().skip(1).step_by(2).for_each(|angle| *angle = 2.0 * *angle + 0.3);
+    assert!(!kinds(&repair(&mut one)).contains(&"held-samples") && one.len() == 4000);
+    assert_eq!(kinds(&checks::warnings(&one)), ["alternation"]);
+    assert_eq!(kinds(&repair(&mut held)), ["held-samples"]);
+}
+
 #[test]
 fn wrapped_angles_are_put_together() {
     let (mut wrapped, whole) = (swing(4000), swing(4000));
