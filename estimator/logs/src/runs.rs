@@ -16,6 +16,10 @@ const LONGEST_STEP: f64 = 10.0;
 /// A clock that starts again falls by this share of its run or more. A packet that arrives late falls by less.
 const LEAST_FALL: f64 = 0.5;
 
+/// A run of fewer rows is an attempt that was broken off, beside one of [`LONGER`] times as many: no law is fitted to so few.
+const BROKEN_OFF: usize = 24;
+const LONGER: usize = 10;
+
 /// A run: its name where there are several, and its rows.
 pub type Run = (Option<String>, Group);
 
@@ -60,6 +64,12 @@ pub fn apart(groups: Vec<Run>, plan: &Plan, headers: &[String], path: &Path) -> 
             (1..).zip(&mut runs).for_each(|(number, (name, _))| *name = Some(number.to_string()));
         }
     }
+    if plan.runs.is_none() {
+        said = leave_out_broken_off(&mut runs)
+            .into_iter()
+            .chain(said)
+            .reduce(|short, others| format!("{others}; {short}"));
+    }
     if let Some(wanted) = &plan.runs {
         let names: Vec<String> = runs.iter().filter_map(|(name, _)| name.clone()).collect();
         runs.retain(|(name, _)| name.as_ref().is_some_and(|name| wanted.matches(name.as_bytes())));
@@ -70,6 +80,24 @@ pub fn apart(groups: Vec<Run>, plan: &Plan, headers: &[String], path: &Path) -> 
         }
     }
     Ok(Apart { runs, said, by_column })
+}
+
+/// Leaves the runs out that were broken off; a sentence about them.
+fn leave_out_broken_off(runs: &mut Vec<Run>) -> Option<String> {
+    let longest = runs.iter().map(|(_, group)| group.rows()).max()?;
+    let is_short = |(_, group): &Run| group.rows() < BROKEN_OFF && LONGER * group.rows() < longest;
+    let short: Vec<String> = runs
+        .iter()
+        .filter(|run| is_short(run))
+        .map(|(name, group)| format!("{} ({} rows)", name.as_deref().unwrap_or_default(), group.rows()))
+        .collect();
+    runs.retain(|run| !is_short(run));
+    (!short.is_empty()).then(|| {
+        format!(
+            "runs that were broken off are left out: {}; \"select\": {{\"trial\": …}} reads one of them",
+            short.join(", ")
+        )
+    })
 }
 
 /// True if the clock starts again, or pauses, at half of the changes of the column, and without a clock.

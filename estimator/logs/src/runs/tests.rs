@@ -62,6 +62,18 @@ fn runs_are_told_by_their_column_or_by_their_clock() {
 }
 
 #[test]
+fn runs_that_were_broken_off_are_left_out_with_a_sentence() {
+    let log = table("run", &[("1", 0.0, 300), ("2", 0.0, 12), ("3", 0.0, 280)]);
+    let all = read(&log, "{}").expect("two runs");
+    assert_eq!(shape(&all), [("1", 300), ("3", 280)]);
+    let said = "runs that were broken off are left out: 2 (12 rows); \"select\": {\"trial\": …} reads one of them";
+    assert!(all[0].warnings.iter().any(|warning| warning.text.ends_with(said)), "{:?}", all[0].warnings);
+    assert_eq!(shape(&read(&log, r#"{"select": {"trial": "2"}}"#).expect("one")), [("2", 12)]);
+    let short = table("run", &[("1", 0.0, 100), ("2", 0.0, 12)]);
+    assert_eq!(shape(&read(&short, "{}").expect("both")), [("1", 100), ("2", 12)]);
+}
+
+#[test]
 fn phases_of_one_run_stay_together_unless_it_is_asked_for() {
     let log = table("segment", &[("near", 0.0, 60), ("far", 0.6, 50), ("near", 1.1, 40)]);
     let all = read(&log, "{}").expect("one run");
