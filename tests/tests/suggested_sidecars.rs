@@ -117,6 +117,15 @@ fn rival_columns_are_named() {
     assert!(said.contains("`Force raw (N)` and `Force filtered (N)` may both be `f_N`"), "{said}");
 }
 
+/// One clock in two units is no clash of names.
+#[test]
+fn a_clock_in_two_units_is_one_clock() {
+    let file = table("time_s,time_ms,Position (mm),Force (N)", |_, [t, place, push]| {
+        format!("{t:.3},{:.0},{place:.5},{push:.6}", 1e3 * t)
+    });
+    mended("two units", &file);
+}
+
 /// Values that only the user knows are asked for: a factor of volts, and the rate of a log that counts its samples.
 #[test]
 fn unknown_factors_and_rates_are_asked_for() {

@@ -69,6 +69,7 @@ pub fn parse(text: &str) -> Option<i64> {
 fn with_date(text: &str, order: Order) -> Option<i64> {
     let (rest, noon) = half_day(without_zone_name(text));
     let (rest, offset_s) = zone(rest);
+    let rest = without_zone_name(rest);
     let (date, time) = rest.split_once(['T', ' '])?;
     let day_ns = day(date, order)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
     day_ns.checked_add(time_of_day(time.trim(), noon)?)
@@ -80,19 +81,31 @@ pub fn of_day(text: &str) -> Option<i64> {
     time_of_day(zone(rest).0, noon).or_else(|| duration(text.trim()))
 }
 
-/// Nanoseconds of a duration as MATLAB writes it, `0.005 sec`, or pandas, `0 days 00:00:00.005`.
+/// Nanoseconds of a duration as MATLAB writes it, `0.005 sec`, or pandas, `0 days 00:00:00.005`; also `5ms`, `PT0.005S` (ISO 8601),
+/// and `-00:00:05.000` before a trigger.
 fn duration(text: &str) -> Option<i64> {
+    if let Some(rest) = text.strip_prefix('-') {
+        return if rest.matches(':').count() == 2 { time_of_day(rest, None).map(i64::wrapping_neg) } else { None };
+    }
     if let Some((days, time)) = text.split_once(" days ") {
         return (days.parse::<i64>().ok()?.checked_mul(DAY_S * NS)?).checked_add(time_of_day(time, None)?);
     }
-    let (number, unit) = text.split_once(' ')?;
+    if let Some(rest) = text.strip_prefix("PT") {
+        let (minutes, seconds) = rest.split_once('M').unwrap_or(("0", rest));
+        let seconds = minutes.parse::<f64>().ok()? * 60.0 + seconds.strip_suffix('S')?.parse::<f64>().ok()?;
+        return nanoseconds(seconds);
+    }
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').filter(|end| *end > 0)?;
+    let (number, unit) = (&text[..end], text[end..].trim_start());
     match written_units::parse(unit, &[Dimension::Time]) {
-        Written::Known(Dimension::Time, factor) => {
-            let ns = number.parse::<f64>().ok()? * factor * NS as f64;
-            (ns.abs() < i64::MAX as f64).then(|| ns.round() as i64)
-        }
+        Written::Known(Dimension::Time, factor) => nanoseconds(number.parse::<f64>().ok()? * factor),
         _ => None,
     }
+}
+
+fn nanoseconds(seconds: f64) -> Option<i64> {
+    let ns = seconds * NS as f64;
+    (ns.abs() < i64::MAX as f64).then(|| ns.round() as i64)
 }
 
 /// The text without the name of a zone behind a blank: `UTC`, `CEST`.
@@ -257,7 +270,11 @@ mod tests {
             ("12:30:08.5 p.m.", (12 * 3600 + 30 * 60 + 8) * NS + NS / 2),
             ("2025-04-17 17:00:08.12 UTC", base + 120_000_000),
             ("4/17/25 5:00:08 PM CEST", base),
+            ("2025-04-17 19:00:08 GMT+2", base),
             ("0.005 sec", 5_000_000),
+            ("5ms", 5_000_000),
+            ("PT1M0.005S", 60 * NS + 5_000_000),
+            ("-00:00:05.000", -5 * NS),
             ("1 days 00:00:00.005000", DAY_S * NS + 5_000_000),
             ("17:00:08:120", (17 * 3600 + 8) * NS + 120_000_000),
             ("1970-01-01T00:00:00", 0),
@@ -274,6 +291,8 @@ mod tests {
             "a:b",
             "12:00:00.x",
             "5 mm",
+            "5mm",
+            "PT5",
             "sec",
             "-1:00",
             "1:2:3:4",

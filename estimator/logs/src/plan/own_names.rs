@@ -32,8 +32,11 @@ impl Planner<'_> {
             return self.add(name, si, column, factor, true);
         }
         let (name, unit, factor) = match units::split(&header) {
-            Some((quantity, unit)) => (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor),
-            None => (header.clone(), self.shown_unit(column), 1.0),
+            // The same quantity in another unit, as `time_ms` beside `time_s`, keeps its own name.
+            Some((quantity, unit)) if !self.taken.contains_key(&format!("{quantity}_{}", unit.si)) => {
+                (format!("{quantity}_{}", unit.si), unit.si.to_owned(), unit.factor)
+            }
+            _ => (header.clone(), self.shown_unit(column), 1.0),
         };
         self.add(name, unit, column, factor, false)
     }
