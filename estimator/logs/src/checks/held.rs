@@ -29,7 +29,7 @@ const QUIET_SHARE: f64 = 0.2;
 const SATURATED_SHARE: f64 = 0.9;
 /// The same share of a voltage or current, which may be switched, and of coarse steps, which may be those of dry friction in a
 /// slow motion.
-const SWITCHED_SHARE: f64 = 0.5;
+const RESTING_SHARE: f64 = 0.5;
 /// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
 /// (quantum/√12) is then above 1 % of that range.
 const COARSE_LEVELS: f64 = 30.0;
@@ -91,7 +91,7 @@ fn moves_around(values: &[f64], holds: &[Span]) -> bool {
     })
 }
 
-/// Pile-up at exactly the extreme value of a force, torque, voltage or current. Every span that fits leave out is listed.
+/// Pile-up at exactly the extreme value of a force, torque, voltage or current. Every span is listed: fits leave them out.
 pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) -> Option<Warning> {
     let sensed = units::find(&channel.unit)
         .is_some_and(|u| matches!(u.dimension, Dimension::Force | Dimension::Torque) || matches!(u.symbol, "V" | "A"));
@@ -103,24 +103,20 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
     let first = *spans.iter().min_by_key(|s| s.first)?;
     spans.sort_by_key(|s| s.first);
     let samples: usize = spans.iter().map(|s| s.end - s.first).sum();
+    // Coarse steps are told of their own.
+    let may_rest = matches!(channel.unit.as_str(), "V" | "A")
+        || quantum(profile).is_some_and(|quantum| quantum * COARSE_LEVELS >= profile.spread());
+    if samples as f64 > if may_rest { RESTING_SHARE } else { SATURATED_SHARE } * channel.values.len() as f64 {
+        return None;
+    }
     let text = format!(
-        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: ",
+        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: the sensor was at its limit; they are left out of fits",
         channel.name,
         channel.values[first.first].abs(),
         channel.unit,
         place(recording, first.first)
     );
-    let is_switched = matches!(channel.unit.as_str(), "V" | "A");
-    let is_coarse = quantum(profile).is_some_and(|quantum| quantum * COARSE_LEVELS >= profile.spread());
-    let most = if is_switched || is_coarse { SWITCHED_SHARE } else { SATURATED_SHARE };
-    if samples as f64 <= most * channel.values.len() as f64 {
-        let text = text + "the sensor was at its limit; they are left out of fits";
-        return Some(about("saturation", channel, spans, text));
-    }
-    let is_doubtful = is_coarse && !is_switched;
-    let text = text
-        + "the sensor was at its limit, or it shows the dry friction of a slow motion in coarse steps; they are kept";
-    is_doubtful.then(|| about("saturation", channel, Vec::new(), text))
+    Some(about("saturation", channel, spans, text))
 }
 
 /// Spans in which `side`·value is exactly `top`, the largest, if they are too many for chance: in this channel on this

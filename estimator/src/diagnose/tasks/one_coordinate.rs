@@ -337,7 +337,8 @@ fn first_look(
                 }
                 // If the sign is unknown, so is all of the friction.
                 let open = together * dry(&fit.values, i).powi(2) * row.open;
-                (1.0 + open / (noise * noise)).powf(-0.5)
+                // Coarse steps may leave no residual.
+                if open > 0.0 { (1.0 + open / (noise * noise)).powf(-0.5) } else { 1.0 }
             })
             .collect();
         let squares: Vec<f64> = weight.iter().zip(&along).map(|(w, a)| w * w * a).collect();
