@@ -38,16 +38,16 @@ pub fn stretch(pieces: &[Piece], terms: &[Term], known: &Known) -> Option<Stretc
         let power = (0..rows).map(|i| weights[i] * (system.target[i] - model(i)).powi(2)).collect();
         Some((weights, power))
     };
-    let whole: f64 = powers(&vec![true; rows])?.1.iter().sum();
-    let (mut found, mut left) = (0..0, (Vec::new(), Vec::new()));
+    let (mut found, mut left) = (0..0, powers(&vec![true; rows])?);
+    let whole: f64 = left.1.iter().sum();
     // The first fit is spoiled by the stretch and shows a part of it; ten rounds settle its ends.
     for _ in 0..10 {
-        left = powers(&(0..rows).map(|i| !found.contains(&i)).collect::<Vec<bool>>())?;
         let limit = CERTAIN.powi(2) * percentile(&mut left.1.clone(), 0.5);
         let last = std::mem::replace(&mut found, largest_sum(left.1.iter().map(|power| power - limit)));
         if found == last {
             break;
         }
+        left = powers(&(0..rows).map(|i| !found.contains(&i)).collect::<Vec<bool>>())?;
     }
     let count = found.len();
     if count < LEAST_FIT_ROWS || 2 * count > rows {
