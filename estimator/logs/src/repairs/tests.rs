@@ -122,6 +122,38 @@ fn a_torque_that_switches_between_its_limits_is_no_counter() {
     );
 }
 
+/// Positions of a slow source, put on the rows of a faster logger by straight lines, as a resampling does.
+#[test]
+fn interpolated_positions_are_read_at_their_own_rate() {
+    for (every, quantum) in [(20.0, 0.0), (20.0, 1e-4), (33.3, 1e-6)] {
+        let (mut lines, whole) = (swing(6000), swing(6000));
+        let (time, exact) = (whole.time_s.clone().expect("a clock"), &whole.channels[0].values);
+        let known: Vec<f64> = (0..6000).map(|k| f64::from(k) * every).take_while(|row| *row < 5998.0).collect();
+        let at = |row: f64| exact[row as usize] + row.fract() * (exact[row as usize + 1] - exact[row as usize]);
+        for row in 0..6000 {
+            let k = ((row as f64 / every) as usize).min(known.len() - 2);
+            let share = (row as f64 - known[k]) / every;
+            let value = at(known[k]) + share * (at(known[k + 1]) - at(known[k]));
+            lines.channels[0].values[row] = if quantum > 0.0 { (value / quantum).round() * quantum } else { value };
+        }
+        let found = repair(&mut lines);
+        assert_eq!(kinds(&found), ["held-samples"], "{every} {quantum}");
+        assert!(found[0].text.contains("interpolated linearly"), "{}", found[0].text);
+        let step = (time[5999] - lines.time_s.as_ref().expect("a clock")[0]) / lines.len() as f64;
+        assert!((step / (0.002 * every) - 1.0).abs() < 0.05, "{step}");
+    }
+}
+
+/// A drive at constant speed between its turns bends its position at the turns alone.
+#[test]
+fn a_triangle_stays_as_it_is() {
+    let mut sweep = swing(8000);
+    let triangle = |row: usize| (row % 100).abs_diff(50) as f64 * 0.01;
+    sweep.channels[0].values = (0..8000).map(triangle).collect();
+    let before = sweep.clone();
+    assert!(repair(&mut sweep).is_empty() && sweep == before);
+}
+
 #[test]
 fn held_rows_are_left_out() {
     for every in [2, 3, 5, 10] {
