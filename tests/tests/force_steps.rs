@@ -1,5 +1,5 @@
 //! The force of a recording fails in its middle. A step of its zero is named with its time and its size, and nothing instead of it.
-//! A stretch that does not belong to the motion is left out.
+//! A stretch that does not belong to the motion is left out. Another gain from some time on is told with its size.
 
 use blind::{Bench, Chance, Counts, Job, Set, battery};
 use estimator::diagnose::{Diagnosis, Options, diagnose};
@@ -8,8 +8,8 @@ use haptics::recording::Recording;
 use tests::tasks::{Case, Truth, barrel, blocks, needle, switch};
 
 /// Seeds on which nothing was chosen: for recordings with a step, for those that stay as they are, for fits, for other
-/// tasks, for fits of these, and for stretches.
-const SEEDS: [u64; 6] = [7_370_001, 7_370_002, 7_370_003, 7_600_001, 7_960_001, 9_400_002];
+/// tasks, for fits of these, for stretches, and for gains.
+const SEEDS: [u64; 7] = [7_370_001, 7_370_002, 7_370_003, 7_600_001, 7_960_001, 9_400_002, 9_420_001];
 /// Sizes of a step over the noise of the force.
 const SIZES: [f64; 3] = [4.0, 10.0, 40.0];
 
@@ -91,9 +91,10 @@ fn fitted(recording: &Recording) -> (Vec<(String, f64, f64)>, Vec<String>) {
     let fit = pipeline::analyse(std::slice::from_ref(recording), &pipeline::Options::default()).expect("a fit").fit;
     let known =
         fit.parameters.iter().filter_map(|p| Some((format!("{}.{}", p.object, p.name), p.value?, p.std_error?)));
-    let is_about_zero =
-        |said: &String| said.contains("jumps by") || said.contains("the zero of") || said.contains("the residual of");
-    (known.collect(), fit.warnings.into_iter().filter(is_about_zero).collect())
+    let is_about_force = |said: &String| {
+        ["jumps by", "the zero of", "the residual of", "sensor changed"].iter().any(|words| said.contains(words))
+    };
+    (known.collect(), fit.warnings.into_iter().filter(is_about_force).collect())
 }
 
 /// Names of the values that a step moved by more than a standard error, or that it took away.
@@ -218,6 +219,34 @@ fn a_mechanisms_fit_leaves_a_foreign_force_out() {
             "{foreign:?}: {told} of {all}\n{}",
             report.join("\n")
         );
+    }
+}
+
+/// A gain that changes in the middle gave values between those of both parts, with small errors, without a word.
+#[test]
+fn another_gain_from_some_time_on_is_told() {
+    for gain in [0.5, 2.0, -1.0] {
+        let (mut told, mut all, mut report) = (0, 0, Vec::new());
+        for Quiet { place, seed, mut recording, .. } in (0..2).flat_map(|k| mechanisms(SEEDS[6] + k)) {
+            let first = recording.len() * (3 + place % 5) / 10;
+            let at_s = recording.time_s.as_ref().expect("a clock")[first];
+            let force = recording.channels.iter_mut().find(|c| ["f_N", "tau_Nm"].contains(&c.name.as_str()));
+            force.expect("it").values[first..].iter_mut().for_each(|value| *value *= gain);
+            let (_, said) = fitted(&recording);
+
+            let word_before =
+                |mark: &str| -> Option<f64> { said.first()?.split_once(mark)?.0.split(' ').next_back()?.parse().ok() };
+            let at = word_before(" s on, ").or_else(|| word_before(" s: "));
+            let in_time = at.is_some_and(|t| (t - at_s).abs() < 1.0);
+            let is_gain = word_before(" times ").is_none_or(|factor| (factor / gain - 1.0).abs() < 0.1);
+            // The shorter part may be left out instead.
+            let is_told = is_gain && in_time || said.iter().any(|said| said.contains("takes the stretch out"));
+            told += usize::from(is_told);
+            report.push(format!("{is_told} {seed} {at_s:.2}: {said:?}"));
+            all += 1;
+        }
+        println!("{gain}: {told} of {all}\n{}", report.join("\n"));
+        assert!(all >= 20 && 4 * told >= 3 * all, "{gain}: {told} of {all}\n{}", report.join("\n"));
     }
 }
 

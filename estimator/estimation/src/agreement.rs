@@ -8,7 +8,7 @@ const BY_CHANCE: f64 = 2.7e-3;
 /// A recording with fewer samples than the longest one over this number does not disagree: the error of a fit to few filtered rows
 /// is too small.
 /// Choice: 30 of 3000 rows disagreed by five errors.
-const SHORTER: usize = 20;
+pub const SHORTER: usize = 20;
 /// A lower bound is not averaged: the largest one holds for all.
 const LOWER_BOUND: &str = "friction_lower_bound";
 

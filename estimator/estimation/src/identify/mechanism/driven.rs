@@ -6,8 +6,9 @@ use super::regress::{Shown, System, shown};
 use super::report::{Material, OBJECT};
 use super::signals::{Piece, Raw};
 use super::swing::Swing;
+use super::zero_step::OF_POWER;
 use super::{offset, path};
-use crate::identify::limits::HELD_OUT;
+use crate::identify::limits::{HELD_OUT, ROUNDING};
 use crate::regression::bootstrap::block_bootstrap;
 use crate::regression::linear::LinearFit;
 use crate::regression::long_run_variance::HALF_INTERVAL;
@@ -157,7 +158,25 @@ impl<'a> Solved<'a> {
         result.correlated = vec![material.correlated()];
         result.quality = quality(&self.pieces, system, solution, coordinate, known);
         result.warnings = self.warnings();
+        result.warnings.extend(result.quality.as_ref().and_then(|quality| self.hardly_explains(quality)));
         result
+    }
+
+    /// One sentence if the fit does not explain half of the force's variance on the rows that are held out.
+    fn hardly_explains(&self, quality: &Quality) -> Option<String> {
+        let force = &self.system.target;
+        let count = force.len() as f64;
+        let mean = force.iter().sum::<f64>() / count;
+        let variance = force.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / count;
+        let left = quality.heldout_rms.powi(2);
+        (left > OF_POWER * variance && left > (ROUNDING * mean).powi(2)).then(|| {
+            format!(
+                "the fit explains {:.0} % of the variance of the force on the {:.0} % held out, so that the values tell little: \
+                 check that force and motion belong together (columns, signs, clocks), and run the diagnosis",
+                100.0 * (1.0 - left / variance).max(0.0),
+                100.0 * HELD_OUT
+            )
+        })
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -1,7 +1,8 @@
 //! Defects of a force channel that the fit takes out: a step of its zero, a stretch that does not belong
 //! to the motion, and the offset of a clock of its own.
 
-use super::foreign_force;
+use super::foreign_force::{self, Stretch};
+use super::parameter_change::{self, Change};
 use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
@@ -26,7 +27,11 @@ pub fn take_defects_out(
     let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].into_iter().chain(gravity.iter().copied());
     let mut terms: Vec<Term> = all.filter(|term| known.value(*term).is_none()).collect();
     let mut said = Vec::new();
-    if let Some(step) = zero_step::zero_step(pieces, &terms, known) {
+    let change = parameter_change::change(pieces, &terms, known);
+    // Two fits also describe a step or a stretch, and leave as much as these.
+    let is_change = |rms: f64| change.is_some_and(|change| change.rms[1].powi(2) < (1.0 - OF_POWER) * rms.powi(2));
+    let step = zero_step::zero_step(pieces, &terms, known);
+    if let Some(step) = step.filter(|step| !is_change(step.residual_beside(pieces, &terms, known))) {
         if of.meta.repairs(TARE_STEP) {
             for piece in pieces.iter_mut() {
                 piece.zero_step = Some(step);
@@ -43,7 +48,11 @@ pub fn take_defects_out(
     }
     // Near a step, its edge remains in the residual.
     if said.is_empty() {
-        said.extend(leave_foreign_force_out(pieces, of, (&terms, known), is_linear));
+        let stretch = foreign_force::stretch(pieces, &terms, known).filter(|stretch| !is_change(stretch.outside));
+        said.extend(stretch.map(|stretch| leave_foreign_force_out(pieces, of, &stretch, is_linear)));
+    }
+    if said.is_empty() {
+        said.extend(change.map(|change| changed(&change, &of.name, is_linear)));
     }
     let has_clocks = of.has_several_clocks();
     // On one clock, less than a sample is sampling; more than a period of the filter is no lag that its band shows.
@@ -65,26 +74,39 @@ pub fn take_defects_out(
 }
 
 /// Leaves the stretch out in which the force does not belong to the motion, unless the sidecar forbids it; a sentence about it.
-fn leave_foreign_force_out(
-    pieces: &mut [Piece],
-    of: &Recording,
-    (terms, known): (&[Term], &Known),
-    is_linear: bool,
-) -> Option<String> {
-    let stretch = foreign_force::stretch(pieces, terms, known)?;
+fn leave_foreign_force_out(pieces: &mut [Piece], of: &Recording, stretch: &Stretch, is_linear: bool) -> String {
     if of.meta.repairs(FOREIGN_FORCE) {
-        foreign_force::leave_out(pieces, &stretch);
+        foreign_force::leave_out(pieces, stretch);
     }
     let unit = if is_linear { "N" } else { "N m" };
     let [from_s, to_s] = stretch.time_s;
-    Some(format!(
+    format!(
         "from {from_s:.2} s to {to_s:.2} s, the residual of {} is {} RMS, and elsewhere {}: a hand or a stop acted there beside the \
          recorded force, or the sensor failed; {}",
         of.name,
         amount(stretch.inside, unit),
         amount(stretch.outside, unit),
         zero_jumps::fate(of, FOREIGN_FORCE, "stretch")
-    ))
+    )
+}
+
+/// Words for parameters that are not the same throughout.
+fn changed(change: &Change, of: &str, is_linear: bool) -> String {
+    let unit = if is_linear { "N" } else { "N m" };
+    let [one, two] = change.rms.map(|rms| amount(rms, unit));
+    let advice = "read the parts on their own, with \"windows\" in the sidecar";
+    match change.gain {
+        Some(gain) => format!(
+            "from {:.2} s on, the force of {of} is {gain:.3} times the one that the motion before shows: the gain, unit or sign of its \
+             sensor changed; {advice}",
+            change.time_s
+        ),
+        None => format!(
+            "the parameters of {of} change at about {:.2} s: one fit leaves a residual of {one} RMS, and two, before and after it, {two}: \
+             the load, the mechanism or a sensor changed; {advice}",
+            change.time_s
+        ),
+    }
 }
 
 /// Words for a lag. On one clock, only the diagnosis tells it from other causes. `clocks`: the recording, if it has several.

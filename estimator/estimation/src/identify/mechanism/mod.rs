@@ -13,6 +13,7 @@ mod free;
 mod gravity;
 mod motion_segments;
 mod offset;
+mod parameter_change;
 mod parameters;
 pub mod path;
 mod pendulum;

@@ -27,6 +27,14 @@ impl ZeroStep {
     pub fn force_at(&self, time_s: f64) -> f64 {
         if time_s >= self.time_s { self.size } else { 0.0 }
     }
+
+    /// Root mean square of the residual of a fit of these terms beside the step, N or N m; infinite where there is none.
+    pub fn residual_beside(&self, pieces: &[Piece], terms: &[Term], known: &Known) -> f64 {
+        let force = |piece: &Piece| -> Vec<f64> {
+            piece.applied_force().iter().zip(piece.times_s()).map(|(force, t)| force - self.force_at(t)).collect()
+        };
+        System::stack(pieces, terms, known, force).solve().map_or(f64::INFINITY, |fit| fit.rms)
+    }
 }
 
 /// The step in the residual of one recording's fit of these terms; `None` if no step takes half of the residual's
