@@ -97,7 +97,7 @@ pub struct Channel {
 }
 
 /// Samples `first..end` of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize)]
 pub struct Span {
     /// First sample.
     pub first: usize,

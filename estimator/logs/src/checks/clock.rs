@@ -3,6 +3,7 @@
 use super::findings::{is_position, limited, place};
 use foundation::signal::gaps::UsualStep;
 use haptics::recording::{Recording, Span, Warning};
+use std::collections::HashSet;
 
 /// A step of at least this many periods has lost a sample; a late cycle (measured: up to 1.8) has not.
 const DROPPED_PERIODS: f64 = 1.9;
@@ -45,13 +46,14 @@ impl LongSteps {
         // On an uneven clock only a step far outside its own spread counts.
         let even = high <= 1.3 * median;
         let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
+        let told: HashSet<Span> = recording.warnings.iter().flat_map(|repair| repair.spans.iter().copied()).collect();
         let mut found = Self::default();
         for (i, pair) in time.windows(2).enumerate() {
-            let step = pair[1] - pair[0];
-            if step <= dropped_above.min(gap_above) {
+            let (step, span) = (pair[1] - pair[0], Span { first: i, end: i + 2 });
+            // Rows that a repair left out are told by its warning.
+            if step <= dropped_above.min(gap_above) || told.contains(&span) {
                 continue;
             }
-            let span = Span { first: i, end: i + 2 };
             if step > gap_above && continues(recording, i, median, step) {
                 found.jumps.push(span);
             } else if step > gap_above {

@@ -1,7 +1,7 @@
 //! Channels that stand still, stand at a limit, or move in coarse steps.
 
 use super::findings::{about, is_position, limited, place};
-use super::profile::{Profile, holds};
+use super::profile::{Profile, extremes, holds};
 use crate::units;
 use crate::units::Dimension;
 use foundation::signal::noise::{white_noise, white_noise_under_fast_motion};
@@ -33,6 +33,11 @@ const RESTING_SHARE: f64 = 0.5;
 /// A channel with fewer steps than this within its usual range is coarsely quantised: its quantum's standard deviation
 /// (quantum/√12) is then above 1 % of that range.
 const COARSE_LEVELS: f64 = 30.0;
+/// Least gain of displacement from one third of a span to the next, as a share of the position's range. Choice: above the noise of a
+/// position sensor.
+const GAINED_SPEED: f64 = 0.02;
+/// Least number of spans without force in which the mechanism gains speed. Choice: one or two are pushes from outside.
+const ONE_SIDED_SPANS: usize = 3;
 /// Fewer samples do not show a quantum.
 const COARSE_SAMPLES: usize = 200;
 
@@ -104,16 +109,19 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
     spans.sort_by_key(|s| s.first);
     let samples: usize = spans.iter().map(|s| s.end - s.first).sum();
     // Coarse steps are told of their own.
-    let may_rest = matches!(channel.unit.as_str(), "V" | "A")
-        || quantum(profile).is_some_and(|quantum| quantum * COARSE_LEVELS >= profile.spread());
+    let may_rest = matches!(channel.unit.as_str(), "V" | "A") || is_coarse(profile);
     if samples as f64 > if may_rest { RESTING_SHARE } else { SATURATED_SHARE } * channel.values.len() as f64 {
         return None;
     }
+    let value = channel.values[first.first].abs();
+    let limit = if value > 0.0 {
+        format!("its extreme value (±{value:.6} {})", channel.unit)
+    } else {
+        format!("0 {} while the mechanism gains speed on the side that is never measured", channel.unit)
+    };
     let text = format!(
-        "{} stands at exactly its extreme value (±{:.6} {}) in {samples} samples, first at {}: the sensor was at its limit; they are left out of fits",
+        "{} stands at exactly {limit} in {samples} samples, first at {}: the sensor was at its limit; they are left out of fits",
         channel.name,
-        channel.values[first.first].abs(),
-        channel.unit,
         place(recording, first.first)
     );
     Some(about("saturation", channel, spans, text))
@@ -125,8 +133,8 @@ fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64)) -> Op
     let values = &channel.values;
     let own: [(&[f64], f64); 1] = [(values, side)];
     let at_top = values.iter().filter(|&&v| side * v == top).count();
-    // A channel whose extreme is zero has an end, not a rail.
-    if top == 0.0 || at_top == 0 {
+    // A channel whose extreme is zero has an end, not a rail, unless the mechanism moves as if a force acted.
+    if at_top == 0 || top == 0.0 && !measures_one_direction(recording, channel, side) {
         return None;
     }
     if !piles_up(&own) {
@@ -143,6 +151,33 @@ fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64)) -> Op
         }
     }
     Some(spans)
+}
+
+/// True if the force on a mechanism is never on one side of zero although the mechanism gains speed towards that side at exactly zero
+/// force, and towards the other side it does not. A mechanism that was let go swings to both sides, or slows down.
+fn measures_one_direction(recording: &Recording, channel: &Channel, side: f64) -> bool {
+    if !matches!(channel.name.as_str(), "f_N" | "tau_Nm") {
+        return false;
+    }
+    let Some(position) = ["q_m", "q_rad"].into_iter().find_map(|name| recording.channel(name)) else { return false };
+    let (low, high, _) = extremes(position);
+    let (mut towards, mut away, mut all) = (0, 0, 0);
+    for Span { first, end } in
+        holds(&channel.values, PLATEAU_SAMPLES).into_iter().filter(|s| channel.values[s.first] == 0.0)
+    {
+        // Displacements in the three thirds of the span: `side` is the side on which no force was measured.
+        let at = |third: usize| side * position[first + third * (end - 1 - first) / 3];
+        let [a, b, c] = [1, 2, 3].map(|third| at(third) - at(third - 1));
+        let gains = |sign: f64| {
+            let gained =
+                |before: f64, after: f64| sign * after > 0.0 && sign * (after - before) > GAINED_SPEED * (high - low);
+            gained(a, b) || gained(b, c)
+        };
+        all += 1;
+        towards += usize::from(gains(1.0));
+        away += usize::from(gains(-1.0));
+    }
+    towards >= ONE_SIDED_SPANS && 2 * towards > all && away * ONE_SIDED_SPANS <= towards
 }
 
 /// Sides of the channels in the same unit that reach exactly as far as `top`: sensors of one kind have the same limit to both sides.
@@ -187,6 +222,11 @@ fn piles_up(sides: &[(&[f64], f64)]) -> bool {
     let is_noisy = || sides.iter().all(|(values, _)| white_noise(values) > NOISY_STEPS * step);
     many >= PLATEAU_EXCESS * most
         || many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt() && is_noisy()
+}
+
+/// True if the quantum of a channel is large against its own usual range.
+pub(super) fn is_coarse(profile: &Profile) -> bool {
+    quantum(profile).is_some_and(|quantum| quantum * COARSE_LEVELS >= profile.spread())
 }
 
 /// Channels whose quantum is large against the usual range of all channels in their unit.

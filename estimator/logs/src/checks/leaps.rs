@@ -48,8 +48,8 @@ fn leaps(values: &[f64]) -> Vec<usize> {
     let at = (LEVEL * sorted.len() as f64) as usize;
     let high = *sorted.select_nth_unstable_by(at.min(values.len() - 2), f64::total_cmp).1;
     let stands_out = |i: &usize| {
-        let others = (i - AROUND..i + AROUND).filter(|k| k != i).map(step);
-        high > 0.0 && step(*i) > LEAP * high.max(others.fold(0.0, f64::max))
+        let others = || (i - AROUND..i + AROUND).filter(|k| k != i).map(step);
+        high > 0.0 && step(*i) > LEAP * high && others().all(|other| step(*i) > LEAP * other)
     };
     (AROUND..values.len().saturating_sub(AROUND + 1)).filter(stands_out).collect()
 }

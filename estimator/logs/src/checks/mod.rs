@@ -14,6 +14,7 @@ mod profile;
 mod repeats;
 mod scale;
 mod spikes;
+mod stops;
 
 pub use alternation::ALTERNATION;
 pub(crate) use alternation::warnings as alternating;
@@ -23,6 +24,7 @@ pub(crate) use profile::{Profile, extremes};
 pub use repeats::copied;
 pub use scale::UNIT;
 pub use spikes::repaired;
+pub(crate) use stops::stops;
 
 use super::units;
 use haptics::recording::{Channel, Recording, Warning};

@@ -152,6 +152,31 @@ fn a_clipped_force_is_saturated_and_a_quantised_one_is_not() {
 }
 
 #[test]
+fn a_force_of_one_direction_is_saturated_and_that_of_a_throw_is_not() {
+    let time: Vec<f64> = (0..6000).map(|i| 0.002 * f64::from(i)).collect();
+    let position = |t: &f64| 0.05 * (2.1 * t).sin() + 0.03 * (5.3 * t).sin();
+    // Twice the velocity, friction of 0.2 N, and the acceleration.
+    let force = |t: &f64| {
+        let velocity = 0.105 * (2.1 * t).cos() + 0.159 * (5.3 * t).cos();
+        let acceleration = -0.2205 * (2.1 * t).sin() - 0.8427 * (5.3 * t).sin();
+        (acceleration + 2.0 * velocity + 0.2 * velocity.signum()).max(0.0)
+    };
+    let pulled = |position: Vec<f64>, force: Vec<f64>| {
+        recording(time.clone(), vec![channel("q_m", position), channel("f_N", force)])
+    };
+    let one_sided = pulled(time.iter().map(position).collect(), time.iter().map(force).collect());
+    let found = warnings(&one_sided);
+    assert_eq!(kinds(&found), ["saturation"], "{found:?}");
+    assert!(found[0].text.contains("never measured"), "{}", found[0].text);
+    // Pushed, and let go: it swings to both sides, or slows down.
+    let push = |t: &f64| if t % 2.0 < 0.2 { 3.0 * (t * 15.0).sin().abs() + 0.1 } else { 0.0 };
+    for let_go in [|t: &f64| 0.05 * (12.0 * t).sin(), |t: &f64| 0.3 * (1.0 - (-(t % 2.0)).exp())] {
+        let found = warnings(&pulled(time.iter().map(let_go).collect(), time.iter().map(push).collect()));
+        assert!(!kinds(&found).contains(&"saturation"), "{found:?}");
+    }
+}
+
+#[test]
 fn steps_that_noise_crosses_are_not_coarse() {
     use rand::{RngExt, SeedableRng};
     let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();

@@ -13,9 +13,9 @@ use std::fmt::Write as _;
 /// Sentence about a table that was long.
 pub const NOTE: &str = "the numbers of several signals stand below each other: each signal is read as a column";
 /// Names of the column with the numbers.
-const VALUES: [&str; 3] = ["value", "wert", "reading"];
+const VALUES: [&str; 5] = ["value", "wert", "reading", "data", "val"];
 /// Names of the column with the signals' names.
-const SIGNALS: [&str; 12] = [
+const SIGNALS: [&str; 14] = [
     "variable",
     "channel",
     "signal",
@@ -28,11 +28,16 @@ const SIGNALS: [&str; 12] = [
     "parameter",
     "tag",
     "key",
+    "name",
+    "kanal",
 ];
 /// Names of the column with the signals' units.
 const UNITS: [&str; 4] = ["unit", "units", "uom", "einheit"];
 /// More signals than these are no columns. Choice: a plot or a data logger has tens.
 const MOST_SIGNALS: usize = 200;
+
+/// Fewer rows show no times that repeat. Choice: two signals at two times.
+const LEAST_ROWS: usize = 4;
 
 /// Places of a long table's columns.
 #[derive(Clone, Debug)]
@@ -57,7 +62,8 @@ pub fn columns(start: &[u8], meta: Option<&Meta>) -> Option<Columns> {
     let place = |known: &[&str]| lower.iter().position(|name| known.contains(&name.trim_matches('_')));
     let is_clock = |column: usize| is_like_a_clock(&lower[column]);
     let time = (0..names.len()).find(|column| is_clock(*column))?;
-    let (signal, value, unit) = (place(&SIGNALS)?, place(&VALUES)?, place(&UNITS));
+    let by_name = place(&SIGNALS).zip(place(&VALUES));
+    let ((signal, value), unit) = (by_name.or_else(|| by_cells(start, &names, time, delimiter))?, place(&UNITS));
     let is_other = |column: &usize| ![signal, value].contains(column) && Some(*column) != unit && !is_clock(*column);
     let is_named = |meta: &Meta| {
         let mut named = meta.columns.values().chain(meta.select.keys());
@@ -73,6 +79,25 @@ pub fn columns(start: &[u8], meta: Option<&Meta>) -> Option<Columns> {
         names: names.clone(),
         delimiter,
     })
+}
+
+/// Columns of the signals and of the numbers in a table of three columns whose times repeat: the one holds texts, the other numbers.
+fn by_cells(start: &[u8], names: &[String], time: usize, delimiter: u8) -> Option<(usize, usize)> {
+    let rows: Vec<Row<'_>> = rows(start).skip(1).map(|line| cells(line, delimiter)).collect();
+    // The last row may be cut.
+    let rows = rows.split_last()?.1;
+    if names.len() != 3 || rows.iter().any(|row| row.len() != 3) {
+        return None;
+    }
+    let times: HashSet<&str> = rows.iter().map(|row| row[time].as_ref()).collect();
+    let (texts, numbers) = (
+        |column: usize| rows.iter().all(|row| seconds(&row[column]).is_none()),
+        |column: usize| rows.iter().all(|row| is_number(&row[column])),
+    );
+    let beside: Vec<usize> = (0..3).filter(|column| *column != time).collect();
+    let pairs = [(beside[0], beside[1]), (beside[1], beside[0])];
+    let is_pair = |(signal, value): &(usize, usize)| texts(*signal) && numbers(*value);
+    pairs.into_iter().find(is_pair).filter(|_| rows.len() >= LEAST_ROWS && 2 * times.len() <= rows.len() + 1)
 }
 
 /// Cells of a row; those without quotes are not copied.
@@ -196,6 +221,14 @@ mod tests {
     fn tags_and_units_belong_to_the_name() {
         let wide = table("time,device,signal,unit,value,id\n0,l,f,N,1,1\n0,r,f,N,2,2\n1,l,f,N,3,3\n");
         assert_eq!(wide.expect("a table"), "time\tl.f [N]\tr.f [N]\n0\t1\t2\n1\t3\t\n");
+    }
+
+    #[test]
+    fn three_columns_need_no_known_names() {
+        let wide = table("stamp_time,what,q\n0,a,1\n0,b,2\n1,a,3\n1,b,4\n2,a,5\n2,b,6\n");
+        assert_eq!(wide.expect("a table"), "stamp_time\ta\tb\n0\t1\t2\n1\t3\t4\n2\t5\t6\n");
+        // Every time once: the texts are states.
+        assert!(columns(b"time,state,force\n0,free,1\n1,free,2\n2,held,3\n3,held,4\n", None).is_none());
     }
 
     #[test]

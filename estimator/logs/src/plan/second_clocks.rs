@@ -6,7 +6,7 @@ use crate::units::{self, Dimension};
 use crate::written_units::{self, Written};
 
 /// Words for a time in the name of a column.
-pub const TIMES: [&str; 5] = ["time", "timestamp", "t", "zeit", "times"];
+pub const TIMES: [&str; 6] = ["time", "timestamp", "t", "ts", "zeit", "times"];
 
 /// A clock of some columns only.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Rows in which a channel stands still although it should move: its sensor or its bus had stopped.
 
-use crate::checks::{Profile, has_holds, saturated, stuck};
+use crate::checks::{Profile, has_holds, is_position, saturated, stops, stuck};
 use crate::units;
 use haptics::recording::{Recording, Warning};
 
@@ -10,11 +10,17 @@ pub fn take_out(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
     for channel in recording.channels.iter().filter(|channel| units::is_program_name(&channel.name)) {
         // The checks come behind the repairs: a profile is made here only where it is needed.
-        if !has_holds(&channel.values) {
+        let is_position = is_position(channel);
+        if !is_position && !has_holds(&channel.values) {
             continue;
         }
         let profile = Profile::of(&channel.values);
         if profile.is_constant() {
+            continue;
+        }
+        if let Some(at_stops) = stops(recording, channel, &profile) {
+            at_stops.spans.iter().for_each(|span| is_out[span.first..span.end].fill(true));
+            found.push(at_stops);
             continue;
         }
         let limit = saturated(recording, channel, &profile);

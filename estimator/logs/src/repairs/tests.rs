@@ -241,6 +241,22 @@ fn numbers_that_stand_for_no_value_are_left_out_with_their_rows() {
 }
 
 #[test]
+fn rows_at_a_stop_are_left_out() {
+    let mut stopped = swing(16_000);
+    let limits = [-2.0, 2.1];
+    stopped.channels[0].values.iter_mut().for_each(|v| *v = v.clamp(limits[0], limits[1]));
+    let at_stop = stopped.channels[0].values.iter().filter(|v| limits.contains(v)).count();
+    let found = repair(&mut stopped);
+    assert_eq!((kinds(&found), stopped.len()), (vec!["stuck-channel"], 16_000 - at_stop), "{found:?}");
+    stopped.warnings = found;
+    assert!(checks::warnings(&stopped).is_empty(), "the gaps are told already");
+    // The turning points of an encoder are no stops.
+    let mut fine = swing(16_000);
+    fine.channels[0].values.iter_mut().for_each(|v| *v = (*v / 0.01).round() * 0.01);
+    assert!(repair(&mut fine).is_empty() && fine.len() == 16_000);
+}
+
+#[test]
 fn motion_through_zero_and_a_travel_of_999_are_measured() {
     let mut rest = swing(4000);
     rest.channels[0].values.iter_mut().enumerate().for_each(|(i, v)| *v = if i < 1500 { 0.0 } else { *v - 1.7 });
