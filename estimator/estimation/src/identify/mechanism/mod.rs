@@ -5,6 +5,7 @@
 //! forces, whose constraint is found first; a coordinate without a force, which moves freely; and a path without a
 //! clock, which shows its constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
+mod attenuation;
 mod chain;
 mod driven;
 mod force_channel;
@@ -92,7 +93,11 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     let mut each = pieces_of_each(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
     let mut defects = Vec::new();
-    for (own, (recording, _)) in each.iter_mut().zip(&usable) {
+    for ((own, raw), (recording, _)) in each.iter_mut().zip(&raws).zip(&usable) {
+        if let Some((lower, said)) = attenuation::behind_a_lower_filter(raw, own, &known, &recording.name) {
+            *own = lower;
+            defects.push(said);
+        }
         defects.extend(force_channel::take_defects_out(own, recording, (raws[0].coordinate, &known)));
     }
     let pieces = each.concat();

@@ -135,11 +135,11 @@ fn later(values: &[f64], shift: isize) -> Vec<f64> {
 }
 
 /// Frequency at which most of the motion takes place.
-fn motion_hz(pieces: &[Piece]) -> f64 {
+pub fn motion_hz(pieces: &[Piece]) -> f64 {
     rms(pieces, |m| m.acceleration) / (TAU * rms(pieces, |m| m.velocity)).max(f64::MIN_POSITIVE)
 }
 
-fn rms(pieces: &[Piece], of: impl Fn(&haptics::law::Motion) -> f64) -> f64 {
+pub fn rms(pieces: &[Piece], of: impl Fn(&haptics::law::Motion) -> f64) -> f64 {
     let square = pieces.iter().map(|p| p.rms(&of).powi(2)).sum::<f64>();
     (square / pieces.len().max(1) as f64).sqrt()
 }

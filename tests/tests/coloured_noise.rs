@@ -1,0 +1,111 @@
+//! A position whose noise is not white, because it was filtered or interpolated before it was recorded, or stamped with rounded
+//! times, shows the inertia all the same.
+
+use blind::Chance;
+use estimator::identify::mechanism;
+use haptics::recording::{Channel, Recording};
+
+/// A seed on which nothing was chosen.
+const SEED: u64 = 9_720_001;
+/// Mass, kg, viscous friction, N s/m, and dry friction, N.
+const TRUTH: [f64; 3] = [1.5, 3.0, 2.0];
+const RATE_HZ: f64 = 1000.0;
+const ROWS: usize = 20_000;
+/// Tones of a hand's motion: amplitude, m, and angular frequency, rad/s.
+const TONES: [[f64; 2]; 4] = [[0.04, 2.1], [0.025, 3.7], [0.012, 5.9], [0.006, 9.3]];
+
+/// A hand's motion, with its phases.
+struct Hand([f64; TONES.len()]);
+
+impl Hand {
+    fn new(chance: &mut Chance) -> Self {
+        Self(TONES.map(|_| chance.between(0.0, std::f64::consts::TAU)))
+    }
+
+    /// Position, velocity and acceleration.
+    fn at(&self, t: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for ([size, w], phase) in TONES.iter().zip(self.0) {
+            let (sin, cos) = (w * t + phase).sin_cos();
+            sum[0] += size * sin;
+            sum[1] += size * w * cos;
+            sum[2] -= size * w * w * sin;
+        }
+        sum
+    }
+
+    fn force(&self, t: f64) -> f64 {
+        let [_, velocity, acceleration] = self.at(t);
+        TRUTH[0] * acceleration + TRUTH[1] * velocity + TRUTH[2] * (velocity / 1e-3).tanh()
+    }
+}
+
+/// Positions at even times, of a sensor of this kind.
+fn positions(kind: &str, hand: &Hand, chance: &mut Chance) -> Vec<f64> {
+    let time = |row: usize| row as f64 / RATE_HZ;
+    match kind {
+        "interpolated" => {
+            // A camera of about 97 Hz whose places were put on the rows by straight lines.
+            let shots: Vec<f64> = (0..)
+                .map(|k| f64::from(k) / 97.0 + 1e-3 * chance.normal())
+                .take_while(|t| *t < time(ROWS) + 0.1)
+                .collect();
+            let seen: Vec<f64> = shots.iter().map(|t| hand.at(*t)[0] + 1e-4 * chance.normal()).collect();
+            (0..ROWS)
+                .map(|row| {
+                    let next = shots.partition_point(|t| *t <= time(row)).clamp(1, shots.len() - 1);
+                    let share = (time(row) - shots[next - 1]) / (shots[next] - shots[next - 1]);
+                    seen[next - 1] + share * (seen[next] - seen[next - 1])
+                })
+                .collect()
+        }
+        "filtered" => {
+            let noisy: Vec<f64> = (0..ROWS).map(|row| hand.at(time(row))[0] + 2e-4 * chance.normal()).collect();
+            let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+            let twice = |values: &[f64]| {
+                (0..ROWS).map(|row| mean(&values[row.saturating_sub(6)..(row + 7).min(ROWS)])).collect::<Vec<f64>>()
+            };
+            twice(&twice(&noisy))
+        }
+        // A controller of 512 Hz whose stamps were rounded to milliseconds, and read as even.
+        _ => (0..ROWS)
+            .map(|row| {
+                let late = (row as f64 * 0.953).fract() - 0.5;
+                hand.at(time(row) + 1e-3 * late)[0] + 1e-6 * chance.normal()
+            })
+            .collect(),
+    }
+}
+
+fn recording(kind: &str, chance: &mut Chance) -> Recording {
+    let hand = Hand::new(chance);
+    let position = positions(kind, &hand, chance);
+    let time_s: Vec<f64> = (0..ROWS).map(|row| row as f64 / RATE_HZ).collect();
+    let force = time_s.iter().map(|t| hand.force(*t) + 0.05 * chance.normal()).collect();
+    let channel = |name: &str, values| Channel { name: name.to_owned(), unit: String::new(), values };
+    Recording {
+        name: kind.to_owned(),
+        time_s: Some(time_s),
+        channels: vec![channel("q_m", position), channel("f_N", force)],
+        ..Recording::default()
+    }
+}
+
+#[test]
+fn noise_that_is_not_white_does_not_attenuate_the_inertia() {
+    for kind in ["interpolated", "filtered", "stamped"] {
+        let (mut right, mut told) = (0, 0);
+        for seed in 0..8 {
+            let mut chance = Chance::new(SEED + seed, 23);
+            let fit = mechanism::fit(&[recording(kind, &mut chance)]).expect("a fit");
+            let mass = fit.parameters.iter().find(|p| p.name == "mass_kg").expect("a mass");
+            let (value, error) = (mass.value.expect("a value"), mass.std_error.expect("an error"));
+            let is_right = (value - TRUTH[0]).abs() < 3.0 * error && error < 0.05 * TRUTH[0];
+            right += usize::from(is_right);
+            told += usize::from(fit.warnings.iter().any(|warning| warning.contains("behind the usual filter")));
+            println!("{kind} {seed}: {value:.4} ± {error:.4} kg");
+        }
+        println!("{kind}: {right} of 8 right, {told} told");
+        assert!(right >= 7 && told >= 4, "{kind}: {right} of 8 right, {told} told");
+    }
+}
