@@ -33,7 +33,7 @@ pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &s
     let [sure, own_error] = below[surest].1;
     let is_clear = sure - attenuated > SIGNIFICANT * own_error.hypot(error);
     let is_surer = relative([sure, own_error]) < relative(of_usual);
-    let (pieces, [inertia, _]) = below.into_iter().take(surest + 2).last()?;
+    let (pieces, [inertia, _]) = below.into_iter().take(surest + 2).next_back()?;
     (is_clear && is_surer).then(|| {
         let unit = if raw.coordinate == Coordinate::Linear { "kg" } else { "kg m²" };
         let said = format!(
