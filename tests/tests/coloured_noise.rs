@@ -46,7 +46,7 @@ fn positions(kind: &str, hand: &Hand, chance: &mut Chance) -> Vec<f64> {
     match kind {
         "interpolated" => {
             // A camera of about 97 Hz whose places were put on the rows by straight lines.
-            let shots: Vec<f64> = (0..)
+            let shots: Vec<f64> = (0..2000)
                 .map(|k| f64::from(k) / 97.0 + 1e-3 * chance.normal())
                 .take_while(|t| *t < time(ROWS) + 0.1)
                 .collect();
