@@ -25,7 +25,9 @@ pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &s
         let inertia = inertia(&pieces, known)?;
         Some((pieces, inertia))
     };
-    let below: Vec<_> = std::iter::successors(Some(0.5), |share| Some(0.5 * share)).map_while(at).collect();
+    // The usual cut-off is at most a hundred times the motion's frequency.
+    let shares = std::iter::successors(Some(0.5), |share| Some(0.5 * share)).take(7);
+    let below: Vec<_> = shares.map_while(at).collect();
     let relative = |[value, error]: [f64; 2]| error / value.max(f64::MIN_POSITIVE);
     let surest = (0..below.len()).min_by(|a, b| relative(below[*a].1).total_cmp(&relative(below[*b].1)))?;
     let of_usual = inertia(usual, known)?;
