@@ -3,7 +3,6 @@
 use super::findings::{is_position, limited, place};
 use foundation::signal::gaps::UsualStep;
 use haptics::recording::{Recording, Span, Warning};
-use std::collections::HashSet;
 
 /// A step of at least this many periods has lost a sample; a late cycle (measured: up to 1.8) has not.
 const DROPPED_PERIODS: f64 = 1.9;
@@ -46,12 +45,18 @@ impl LongSteps {
         // On an uneven clock only a step far outside its own spread counts.
         let even = high <= 1.3 * median;
         let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
-        let told: HashSet<Span> = recording.warnings.iter().flat_map(|repair| repair.spans.iter().copied()).collect();
+        // The spans of a warning are in order.
+        let is_told = |span: &Span| {
+            let at = |of: &Warning| {
+                of.spans.binary_search_by_key(&span.first, |known| known.first).is_ok_and(|at| of.spans[at] == *span)
+            };
+            recording.warnings.iter().any(at)
+        };
         let mut found = Self::default();
         for (i, pair) in time.windows(2).enumerate() {
             let (step, span) = (pair[1] - pair[0], Span { first: i, end: i + 2 });
             // Rows that a repair left out are told by its warning.
-            if step <= dropped_above.min(gap_above) || told.contains(&span) {
+            if step <= dropped_above.min(gap_above) || is_told(&span) {
                 continue;
             }
             if step > gap_above && continues(recording, i, median, step) {

@@ -1,6 +1,6 @@
 //! Channels that stand still, stand at a limit, or move in coarse steps.
 
-use super::findings::{about, is_position, limited, place};
+use super::findings::{about, is_position, place};
 use super::profile::{Profile, extremes, holds};
 use crate::units;
 use crate::units::Dimension;
@@ -78,7 +78,7 @@ pub fn stuck(recording: &Recording, channel: &Channel, profile: &Profile, limit:
         holds.len(),
         place(recording, holds[0].first)
     );
-    Some(about("stuck-channel", channel, limited(holds), text))
+    Some(about("stuck-channel", channel, holds, text))
 }
 
 /// True when a position was on its way at the edges of a hold: a thing that came to rest has not got stuck.
@@ -143,14 +143,19 @@ fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64)) -> Op
             return None;
         }
     }
+    Some(spans_at(values, side * top))
+}
+
+/// Spans of rows with exactly this value.
+pub(super) fn spans_at(values: &[f64], value: f64) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::new();
-    for i in (0..values.len()).filter(|&i| side * values[i] == top) {
+    for i in (0..values.len()).filter(|&i| values[i] == value) {
         match spans.last_mut().filter(|s| s.end == i) {
             Some(span) => span.end = i + 1,
             None => spans.push(Span { first: i, end: i + 1 }),
         }
     }
-    Some(spans)
+    spans
 }
 
 /// True if the force on a mechanism is never on one side of zero although the mechanism gains speed towards that side at exactly zero
@@ -210,7 +215,7 @@ fn top_levels(sides: &[(&[f64], f64)]) -> [(f64, usize); 1 + NEXT_VALUES] {
 }
 
 /// True if more samples stand at exactly the largest value on these sides than chance puts there.
-fn piles_up(sides: &[(&[f64], f64)]) -> bool {
+pub(super) fn piles_up(sides: &[(&[f64], f64)]) -> bool {
     let [(_, at_top), next @ ..] = top_levels(sides);
     if at_top < PLATEAU_SAMPLES {
         return false;

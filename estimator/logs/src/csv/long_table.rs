@@ -83,10 +83,13 @@ pub fn columns(start: &[u8], meta: Option<&Meta>) -> Option<Columns> {
 
 /// Columns of the signals and of the numbers in a table of three columns whose times repeat: the one holds texts, the other numbers.
 fn by_cells(start: &[u8], names: &[String], time: usize, delimiter: u8) -> Option<(usize, usize)> {
+    if names.len() != 3 {
+        return None;
+    }
     let rows: Vec<Row<'_>> = rows(start).skip(1).map(|line| cells(line, delimiter)).collect();
     // The last row may be cut.
     let rows = rows.split_last()?.1;
-    if names.len() != 3 || rows.iter().any(|row| row.len() != 3) {
+    if rows.len() < LEAST_ROWS || rows.iter().any(|row| row.len() != 3) {
         return None;
     }
     let times: HashSet<&str> = rows.iter().map(|row| row[time].as_ref()).collect();
@@ -97,7 +100,7 @@ fn by_cells(start: &[u8], names: &[String], time: usize, delimiter: u8) -> Optio
     let beside: Vec<usize> = (0..3).filter(|column| *column != time).collect();
     let pairs = [(beside[0], beside[1]), (beside[1], beside[0])];
     let is_pair = |(signal, value): &(usize, usize)| texts(*signal) && numbers(*value);
-    pairs.into_iter().find(is_pair).filter(|_| rows.len() >= LEAST_ROWS && 2 * times.len() <= rows.len() + 1)
+    pairs.into_iter().find(is_pair).filter(|_| 2 * times.len() <= rows.len() + 1)
 }
 
 /// Cells of a row; those without quotes are not copied.

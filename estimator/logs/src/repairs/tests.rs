@@ -250,10 +250,23 @@ fn rows_at_a_stop_are_left_out() {
     assert_eq!((kinds(&found), stopped.len()), (vec!["stuck-channel"], 16_000 - at_stop), "{found:?}");
     stopped.warnings = found;
     assert!(checks::warnings(&stopped).is_empty(), "the gaps are told already");
-    // The turning points of an encoder are no stops.
-    let mut fine = swing(16_000);
-    fine.channels[0].values.iter_mut().for_each(|v| *v = (*v / 0.01).round() * 0.01);
-    assert!(repair(&mut fine).is_empty() && fine.len() == 16_000);
+    // The turning points of encoders are no stops, and neither are places at which a hand pauses.
+    let pause: fn(f64) -> f64 = |t| {
+        let (stroke, s) = ((t / 2.0).floor(), (t % 2.0).min(1.0));
+        let way = s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
+        if stroke % 2.0 == 0.0 { way } else { 1.0 - way }
+    };
+    let sampled = |position: fn(f64) -> f64, quantum: f64, period_s: f64| {
+        let mut moved = swing(8000);
+        let time_s: Vec<f64> = (0..8000).map(|i| period_s * f64::from(i)).collect();
+        moved.channels[0].values = time_s.iter().map(|t| (position(*t) / quantum).round() * quantum).collect();
+        moved.time_s = Some(time_s);
+        moved
+    };
+    let turns = [sampled(|t| (12.9 * t).sin(), 0.05, 0.02), sampled(|t| 2.0 * (2.1 * t).sin(), 0.01, 0.002)];
+    for mut moved in turns.into_iter().chain([sampled(pause, 0.001, 0.002)]) {
+        assert!(repair(&mut moved).is_empty() && moved.len() == 8000);
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::signals::{CUTOFF_OVER_MOTION, DERIVATIVE_NOISE, Piece, Raw, pieces_be
 use super::swing::{motion_hz, rms};
 use crate::identify::limits::SIGNIFICANT;
 use haptics::law::Coordinate;
+use std::slice;
 
 /// The segments behind a lower filter, if the inertia is larger and surer there: half the cut-off, among halves of the usual one, at which its
 /// relative error is the least. With them, a sentence about `name`. `None` if both inertias agree (Hausman 1978).
@@ -21,13 +22,13 @@ pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &s
             && speed(pieces) > (1.0 - DERIVATIVE_NOISE) * speed(usual)
     };
     let at = |share: f64| {
-        let pieces = pieces_below(raw, share).ok().filter(|pieces| passes(pieces, share))?;
+        let pieces = pieces_below(slice::from_ref(raw), usual, share).ok().filter(|pieces| passes(pieces, share))?;
         let inertia = inertia(&pieces, known)?;
         Some((pieces, inertia))
     };
     // The usual cut-off is at most a hundred times the motion's frequency.
     let shares = std::iter::successors(Some(0.5), |share| Some(0.5 * share)).take(7);
-    let below: Vec<_> = shares.map_while(at).collect();
+    let mut below: Vec<_> = shares.map_while(at).collect();
     let relative = |[value, error]: [f64; 2]| error / value.max(f64::MIN_POSITIVE);
     let surest = (0..below.len()).min_by(|a, b| relative(below[*a].1).total_cmp(&relative(below[*b].1)))?;
     let of_usual = inertia(usual, known)?;
@@ -35,8 +36,8 @@ pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &s
     let [sure, own_error] = below[surest].1;
     let is_clear = sure - attenuated > SIGNIFICANT * own_error.hypot(error);
     let is_surer = relative([sure, own_error]) < relative(of_usual);
-    let (pieces, [inertia, _]) = below.into_iter().take(surest + 2).next_back()?;
     (is_clear && is_surer).then(|| {
+        let (pieces, [inertia, _]) = below.swap_remove((surest + 1).min(below.len() - 1));
         let unit = if raw.coordinate == Coordinate::Linear { "kg" } else { "kg m²" };
         let said = format!(
             "the inertia of {name} is {attenuated:.4} {unit} behind the usual filter at {usual_hz:.1} Hz, and {inertia:.4} {unit} behind one at \

@@ -212,14 +212,21 @@ pub fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
 /// Cuts at gaps, resamples uneven segments, filters and derives. Segments that are too short are left out.
 pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
     let (spans, median) = uninterrupted(&raw.time_s, name)?;
-    let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median, 1.0)).collect();
+    let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median, None)).collect();
     if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, raw.time_s.len())) } else { Ok(found) }
 }
 
-/// The same segments behind a filter whose cut-off is this share of the usual one.
-pub fn pieces_below(raw: &Raw, share: f64) -> Result<Vec<Piece>, EstimateError> {
-    let (spans, median) = uninterrupted(&raw.time_s, "")?;
-    Ok(spans.into_iter().map(|(first, end)| piece(raw, first, end, median, share)).collect())
+/// The segments of all recordings behind filters whose cut-offs are this share of those of `usual`.
+pub fn pieces_below(raws: &[Raw], usual: &[Piece], share: f64) -> Result<Vec<Piece>, EstimateError> {
+    let mut usual = usual.iter();
+    let mut found = Vec::new();
+    for raw in raws {
+        let (spans, median) = uninterrupted(&raw.time_s, "")?;
+        for ((first, end), usual) in spans.into_iter().zip(usual.by_ref()) {
+            found.push(piece(raw, first, end, median, Some((share * usual.cutoff_hz, usual.accelerates))));
+        }
+    }
+    Ok(found)
 }
 
 /// Segments without a gap that are long enough (first sample, end), and the usual step, s.
@@ -247,8 +254,8 @@ fn too_few(name: &str, samples: usize) -> EstimateError {
     }
 }
 
-/// `share`: of the usual cut-off.
-fn piece(raw: &Raw, first: usize, end: usize, period: f64, share: f64) -> Piece {
+/// `known`: the cut-off, and true if the acceleration stands clear of its noise; they are sought if `None`.
+fn piece(raw: &Raw, first: usize, end: usize, period: f64, known: Option<(f64, bool)>) -> Piece {
     let time = &raw.time_s[first..end];
     let even = Resampled::new(time, period);
     let onto = |values: &[f64]| even.onto(&values[first..end]);
@@ -258,8 +265,11 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64, share: f64) -> Piece 
     let raw_force = raw.force.as_ref().map(|f| onto(f));
     let rate_hz = 1.0 / even.period_s;
 
-    let usual = choose_cutoff(&position, even.noise(&raw.position[first..end]), rate_hz);
-    let choice = Choice { cutoff_hz: share * usual.cutoff_hz, ..usual };
+    let position_noise = even.noise(&raw.position[first..end]);
+    let choice = match known {
+        Some((cutoff_hz, accelerates)) => Choice { cutoff_hz, position_noise, accelerates },
+        None => choose_cutoff(&position, position_noise, rate_hz),
+    };
     let rounding = quantum(&raw.position[first..end]).powi(2) / 12.0;
     let from_resolution = (rounding / choice.position_noise.powi(2).max(f64::MIN_POSITIVE)).min(1.0);
     let derived = derive(&position, measured_rate.as_ref(), rate_hz, &choice);

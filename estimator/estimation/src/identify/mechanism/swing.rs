@@ -48,8 +48,7 @@ impl Swing {
         let mut best = Self::at(pieces.to_vec())?;
         // In the steps in which the usual cut-off is sought.
         for share in std::iter::successors(Some(0.8), |share| Some(share * 0.8)) {
-            let below: Result<Vec<_>, _> = raws.iter().map(|raw| pieces_below(raw, share)).collect();
-            let below = below?.concat();
+            let below = pieces_below(raws, pieces, share)?;
             if share * highest_hz < CUTOFF_OVER_MOTION * motion_hz(&below) {
                 break;
             }
