@@ -43,7 +43,7 @@ pub fn take_out(recording: &mut Recording) -> Option<Warning> {
     let count = recording.len();
     let rate_hz = recording.time_s.as_ref().map(|time| (count - 1) as f64 / (time[count - 1] - time[0]));
     let rate = rate_hz.map_or(String::new(), |rate| format!(", at {:.4} Hz,", rate / every as f64));
-    let between = if interpolated { "is interpolated linearly" } else { "repeats it" };
+    let between = if interpolated { "is interpolated" } else { "repeats it" };
     let text = format!(
         "{name} has only one new value in {every} rows{rate} and {between} in between: the {} rows of {count} without a new one are left out",
         count - rows.len()
@@ -80,15 +80,20 @@ fn interpolated(channel: &Channel, time_s: Option<&[f64]>) -> Option<Rhythm> {
         return None;
     }
     let mut bends: Vec<f64> = values.windows(3).map(|v| v[0] - 2.0 * v[1] + v[2]).collect();
+    let quarter = bends.len() / 4;
     // A line across a row that is missing has no bend.
+    let mut missing = 0;
     for (bend, t) in bends.iter_mut().zip(time_s.unwrap_or_default().windows(3)) {
         let (before, after) = (t[1] - t[0], t[2] - t[1]);
         if before.max(after) > MISSING * before.min(after) {
-            *bend = 0.0;
+            (*bend, missing) = (0.0, missing + 1);
         }
     }
+    // Rounded times make the quietest quarter of the rows.
+    if missing > quarter {
+        return None;
+    }
     let mut sizes: Vec<f64> = bends.iter().map(|bend| bend.abs()).collect();
-    let quarter = sizes.len() / 4;
     let quiet = *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1;
     let (least, most, _) = extremes(values);
     let rounding = 8.0 * f64::EPSILON * least.abs().max(most.abs());
@@ -98,11 +103,12 @@ fn interpolated(channel: &Channel, time_s: Option<&[f64]>) -> Option<Rhythm> {
     if 2 * bent.len() > bends.len() {
         return None;
     }
-    // A new value between two rows bends the line in both.
-    let mut knots: Vec<usize> = Vec::new();
+    // A new value between two rows bends the line in both to the same side. A leap bends it there and back.
+    let (mut knots, mut leaps): (Vec<usize>, usize) = (Vec::new(), 0);
     for row in bent {
         match knots.last_mut() {
             Some(last) if row == *last + 1 => {
+                leaps += usize::from(bends[row] * bends[*last] < 0.0);
                 if bends[row].abs() > bends[*last].abs() {
                     *last = row;
                 }
@@ -112,7 +118,7 @@ fn interpolated(channel: &Channel, time_s: Option<&[f64]>) -> Option<Rhythm> {
     }
     // The drive itself may move at constant speed between its turns.
     let turns = knots.iter().filter(|&&i| (values[i + 1] - values[i]) * (values[i + 2] - values[i + 1]) < 0.0).count();
-    if knots.len() < LEAST_CHANGES || 2 * turns > knots.len() {
+    if knots.len() < LEAST_CHANGES || 2 * turns.max(leaps) > knots.len() {
         return None;
     }
     let changes: Vec<usize> = knots.iter().map(|row| row + 1).collect();

@@ -138,9 +138,28 @@ fn interpolated_positions_are_read_at_their_own_rate() {
         }
         let found = repair(&mut lines);
         assert_eq!(kinds(&found), ["held-samples"], "{every} {quantum}");
-        assert!(found[0].text.contains("interpolated linearly"), "{}", found[0].text);
+        assert!(found[0].text.contains("is interpolated in between"), "{}", found[0].text);
         let step = (time[5999] - lines.time_s.as_ref().expect("a clock")[0]) / lines.len() as f64;
         assert!((step / (0.002 * every) - 1.0).abs() < 0.05, "{step}");
+    }
+}
+
+/// A logger that polls its source misses or repeats a value whenever their clocks beat, and rounded times skip every few rows. Neither
+/// interpolates.
+#[test]
+fn polled_positions_and_rounded_times_are_not_interpolated() {
+    for (source_hz, poll_hz) in [(480.0, 500.0), (950.0, 1000.0), (500.0, 480.0), (125.0, 100.0)] {
+        let mut polled = swing(4000);
+        let newest = |row: usize| (row as f64 * source_hz / poll_hz).floor() / source_hz;
+        let swung = |t: f64| 0.05 * (4.1 * t).sin() + 0.02 * (9.7 * t).cos();
+        polled.time_s = Some((0..4000).map(|row| row as f64 / poll_hz).collect());
+        polled.channels[0].values = (0..4000).map(|row| swung(newest(row))).collect();
+        assert!(repair(&mut polled).is_empty(), "{source_hz} {poll_hz}");
+    }
+    for rate_hz in [60.0, 75.0] {
+        let mut rounded = swing(4000);
+        rounded.time_s = Some((0..4000).map(|row| (f64::from(row) / rate_hz * 100.0).round() / 100.0).collect());
+        assert!(repair(&mut rounded).iter().all(|warning| warning.kind != "held-samples"), "{rate_hz}");
     }
 }
 
