@@ -1,5 +1,5 @@
 //! A position whose noise is not white, because it was filtered or interpolated before it was recorded, or stamped with rounded
-//! times, shows the inertia all the same.
+//! times, shows the inertia all the same. A force that the model does not contain is told.
 
 use blind::Chance;
 use estimator::identify::mechanism;
@@ -67,6 +67,9 @@ fn positions(kind: &str, hand: &Hand, chance: &mut Chance) -> Vec<f64> {
             };
             twice(&twice(&noisy))
         }
+        "sound" | "limited" | "without its mean" => {
+            (0..ROWS).map(|row| hand.at(time(row))[0] + 1e-5 * chance.normal()).collect()
+        }
         // A controller of 512 Hz whose stamps were rounded to milliseconds, and read as even.
         _ => (0..ROWS)
             .map(|row| {
@@ -77,11 +80,30 @@ fn positions(kind: &str, hand: &Hand, chance: &mut Chance) -> Vec<f64> {
     }
 }
 
+/// Forces of a sensor of this kind.
+fn forces(kind: &str, hand: &Hand, chance: &mut Chance) -> Vec<f64> {
+    let time = |row: usize| row as f64 / RATE_HZ;
+    let mut noise = || 0.05 * chance.normal();
+    match kind {
+        "limited" => (0..ROWS).map(|row| hand.force(time(row)).clamp(-2.5, 2.5) + noise()).collect(),
+        "without its mean" => {
+            let mut slow = 0.0;
+            let past = |row| {
+                let force = hand.force(time(row));
+                slow += (force - slow) / RATE_HZ;
+                force - slow + noise()
+            };
+            (0..ROWS).map(past).collect()
+        }
+        _ => (0..ROWS).map(|row| hand.force(time(row)) + noise()).collect(),
+    }
+}
+
 fn recording(kind: &str, chance: &mut Chance) -> Recording {
     let hand = Hand::new(chance);
     let position = positions(kind, &hand, chance);
     let time_s: Vec<f64> = (0..ROWS).map(|row| row as f64 / RATE_HZ).collect();
-    let force = time_s.iter().map(|t| hand.force(*t) + 0.05 * chance.normal()).collect();
+    let force = forces(kind, &hand, chance);
     let channel = |name: &str, values| Channel { name: name.to_owned(), unit: String::new(), values };
     Recording {
         name: kind.to_owned(),
@@ -107,5 +129,16 @@ fn noise_that_is_not_white_does_not_attenuate_the_inertia() {
         }
         println!("{kind}: {right} of 8 right, {told} told");
         assert!(right >= 7 && told >= 4, "{kind}: {right} of 8 right, {told} told");
+    }
+}
+
+#[test]
+fn a_force_that_the_model_does_not_contain_is_told() {
+    for (kind, is_whole) in [("sound", true), ("limited", false), ("without its mean", false)] {
+        for seed in 0..4 {
+            let fit = mechanism::fit(&[recording(kind, &mut Chance::new(SEED + seed, 24))]).expect("a fit");
+            let told = fit.warnings.iter().find(|warning| warning.contains("the fit leaves"));
+            assert_eq!(told.is_none(), is_whole, "{kind} {seed}: {told:?} {:?}", fit.quality);
+        }
     }
 }

@@ -247,6 +247,7 @@ pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Qual
         rms: rms(0, cut, true),
         heldout_rms,
         heldout_relative: heldout_rms / rms(cut, rows.len(), false).max(1e-12),
+        noise: None,
         heldout_share: 1.0 - train,
         unit: "N".to_owned(),
     })

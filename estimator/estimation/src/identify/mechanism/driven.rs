@@ -158,7 +158,8 @@ impl<'a> Solved<'a> {
         result.correlated = vec![material.correlated()];
         result.quality = quality(&self.pieces, system, solution, coordinate, known);
         result.warnings = self.warnings();
-        result.warnings.extend(result.quality.as_ref().and_then(|quality| self.hardly_explains(quality)));
+        let quality = result.quality.as_ref();
+        result.warnings.extend(quality.and_then(|quality| self.hardly_explains(quality).or_else(|| quality.misfit())));
         result
     }
 
@@ -252,7 +253,9 @@ fn quality(
         System::stack(pieces, &[], &Known::default(), Piece::applied_force).part(|place| place >= 1.0 - HELD_OUT);
     debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
     let force = root(nothing_known.target.iter().map(|f| f * f).sum());
+    let worst_force = pieces.iter().map(|piece| piece.force_noise).fold(0.0, f64::max);
     Some(Quality {
+        noise: Some(worst_force.hypot(late.noise_by_motion(&early.values))),
         rms: fit.rms,
         heldout_rms,
         heldout_relative: if force > 0.0 { heldout_rms / force } else { f64::NAN },

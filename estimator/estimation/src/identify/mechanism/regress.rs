@@ -4,7 +4,7 @@ use super::parameters::{Known, Term};
 use super::signals::{Piece, StateNoise};
 use crate::regression::linear::{LinearFit, least_squares};
 use foundation::estimate::EstimateError;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Part of a column that no other column explains, as a share, below which two terms merge.
 /// Choice: halved or doubled, none of 5 answers changes.
@@ -112,6 +112,12 @@ impl System {
         let level = fit.values[dry].powi(2);
         let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
         Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
+    }
+
+    /// RMS residual that noise in the motion makes with these values of the terms.
+    pub fn noise_by_motion(&self, values: &[f64]) -> f64 {
+        let values = DVector::from_column_slice(values);
+        (values.dot(&(self.column_noise(None) * &values)) / self.target.len().max(1) as f64).sqrt()
     }
 
     /// Σ wᵢ E[eᵢ eᵢᵀ] of the errors e in the columns that come from noise in the motion.

@@ -1,6 +1,6 @@
 //! From the estimates of a load to the named parameters of the result.
 
-use super::doubts::doubts;
+use super::doubts::{better_reading, doubts, is_unexplained};
 use super::estimate::Estimate;
 use super::observations::{Observed, observe};
 use crate::identify::limits::SIGNIFICANT;
@@ -45,6 +45,9 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
         let text = format!("the orientations of {} show only the sum of weight and bias; {SEPARATES}", seen.name);
         warnings.insert(0, text);
     }
+    let quality = quality(&found, seen.noise_n);
+    let is_doubted = better_reading(&seen, &found).is_some() || is_unexplained(&found);
+    warnings.extend(quality.as_ref().filter(|_| !is_doubted).and_then(Quality::misfit));
     if !recording.meta.compensated.is_empty() {
         let text = "weight and bias were removed from this recording already: the values are what is left of them";
         warnings.insert(0, text.to_owned());
@@ -67,7 +70,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
         task: "payload".to_owned(),
         parameters: published.iter().map(parameter).collect(),
         correlated: vec![correlated(&published, &found)],
-        quality: quality(&found),
+        quality,
         warnings,
         ..Fit::default()
     })
@@ -167,8 +170,8 @@ fn correlated(published: &[Published], found: &Estimate) -> Correlated {
     }
 }
 
-/// Residual of the force; each pose is held out in turn.
-fn quality(found: &Estimate) -> Option<Quality> {
+/// Residual of the force; each pose is held out in turn. `noise`: of a pose's force, N.
+fn quality(found: &Estimate, noise: Option<f64>) -> Option<Quality> {
     let heldout_rms = found.held_out_rms_n?;
     let square: f64 = found.rows.iter().map(|row| row.force_n.norm_squared()).sum();
     let reading = (square / (3 * found.rows.len()) as f64).sqrt();
@@ -176,6 +179,7 @@ fn quality(found: &Estimate) -> Option<Quality> {
         rms: found.force_rms_n,
         heldout_rms,
         heldout_relative: heldout_rms / reading.max(f64::MIN_POSITIVE),
+        noise,
         heldout_share: found.block as f64 / found.rows.len() as f64,
         unit: "N".to_owned(),
     })

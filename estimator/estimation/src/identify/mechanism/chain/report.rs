@@ -128,6 +128,7 @@ pub fn quality(early: &Solution, rows: &[Row], best: &Solution, held_out: f64) -
         rms: root(&mut best.fit.residuals.iter().copied()),
         heldout_rms,
         heldout_relative: if torque > 0.0 { heldout_rms / torque } else { f64::NAN },
+        noise: None,
         heldout_share: held_out,
         unit: "Nm".to_owned(),
     }
