@@ -183,7 +183,7 @@ impl<'a> Solved<'a> {
     fn warnings(&self) -> Vec<String> {
         let mut found = Vec::new();
         if self.moved_by_another() {
-            found.push(format!("{MOVED_BY_ANOTHER}; record the force that moves it"));
+            found.push(format!("{MOVED_BY_ANOTHER}; record the force that moves it, and check its clock, because a late force shows the same"));
         } else if [Term::Inertia, Term::Viscous, Term::Coulomb].into_iter().any(|term| self.is_negative(term)) {
             found.push(
                 "inertia or friction comes out negative: check the sign of the force column (\"sign\" in the sidecar)"
