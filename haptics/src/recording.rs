@@ -178,7 +178,7 @@ impl Recording {
 
     /// True if channels of several clocks were put on one.
     pub fn has_several_clocks(&self) -> bool {
-        self.warnings.iter().any(|warning| warning.kind == RESAMPLED)
+        self.meta.several_clocks || self.warnings.iter().any(|warning| warning.kind == RESAMPLED)
     }
 
     /// Length in seconds; `None` for a clockless log.

@@ -49,11 +49,20 @@ type Fitted = (Vec<(String, f64, f64)>, Vec<String>);
 
 /// The fit of a log, with a sidecar.
 fn fitted(folder: &std::path::Path, text: &str, sidecar: &str) -> Fitted {
+    fit_of(&loaded(folder, text, sidecar))
+}
+
+/// The recordings of a log, with a sidecar.
+fn loaded(folder: &std::path::Path, text: &str, sidecar: &str) -> Vec<Recording> {
     let file = folder.join("log.csv");
     std::fs::write(&file, text).expect("a file");
     std::fs::write(folder.join("log.meta.json"), sidecar).expect("a file");
-    let recordings = log::load(&file, None).expect("a log");
-    let fit = pipeline::analyse(&recordings, &pipeline::Options::default()).expect("a fit").fit;
+    log::load(&file, None).expect("a log")
+}
+
+/// Values of a fit that are known, and its sentences about a lag.
+fn fit_of(recordings: &[Recording]) -> Fitted {
+    let fit = pipeline::analyse(recordings, &pipeline::Options::default()).expect("a fit").fit;
     let known = fit.parameters.iter().filter_map(|p| Some((p.name.clone(), p.value?, p.std_error?))).collect();
     let is_about_lag = |said: &String| said.contains("clocks of their own") || said.contains("tells a delay");
     (known, fit.warnings.into_iter().filter(is_about_lag).collect())
@@ -103,6 +112,27 @@ fn a_fit_takes_out_the_lag_of_a_force_with_a_clock_of_its_own() {
     }
     println!("{}\n{told} of {all}, {off} of {values} off", report.join("\n"));
     assert!(all >= 4 && 4 * told >= 3 * all && 10 * off <= values, "{told} of {all}, {off} of {values} off");
+}
+
+/// A written table has one clock; its sidecar tells that there were several.
+#[test]
+fn a_converted_file_gives_the_fit_of_the_original() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let jobs = battery(Counts::FAST, SEED).into_iter().filter(|job| job.set == Set::Null);
+    let linear = jobs.map(|job| job.make().0).find(|case| case.bench == Bench::Linear).expect("a case");
+    let read = loaded(folder.path(), &log(&linear.recordings[0], 0.04), r#"{"task":"mechanism"}"#);
+    assert!(read[0].has_several_clocks(), "{:?}", read[0].warnings);
+    let (values, said) = fit_of(&read);
+    let is_taken_out = |said: &[String]| said.len() == 1 && said[0].contains("takes the lag out");
+    assert!(is_taken_out(&said), "{said:?}");
+    for ending in ["csv", "mcap", "parquet"] {
+        let written = folder.path().join(format!("written.{ending}"));
+        log::write(&read, &written, &[]).expect("written");
+        let (again, said) = fit_of(&log::load(&written, None).expect("reads back"));
+        assert!(is_taken_out(&said), "{ending}: {said:?}");
+        let is_same = |(a, b): (&(String, f64, f64), &(String, f64, f64))| (a.1 - b.1).abs() <= 0.01 * a.2;
+        assert!(values.iter().zip(&again).all(is_same), "{ending}: {values:?}, {again:?}");
+    }
 }
 
 /// On one clock a lag stays in and is told: only the diagnosis tells a delay from other causes.

@@ -269,3 +269,58 @@ fn clocks_of_one_name_are_told_apart() {
     assert!(warnings.iter().any(|w| w.text.contains("`column 3` is a second clock")), "{warnings:?}");
     is_the_drawer("two clocks", text, r#"{"task":"mechanism","clocks":{"f_N":"column 3"}}"#);
 }
+
+/// A unit may stand before a name, in quotes, or in a comment above the names.
+#[test]
+fn units_in_other_places_are_read() {
+    let table = |header: &str| {
+        drawer(1500, 100.0).iter().fold(header.to_owned() + "\n", |mut text, [t, place, push]| {
+            let _ = writeln!(text, "{t:.3},{:.5},{:.9}", 1e3 * place, 1e-3 * push);
+            text
+        })
+    };
+    for header in [
+        "[s] Time,[mm] Position,[kN] Force",
+        "Time 's',Position 'mm',Force 'kN'",
+        "# Units: s, mm, kN\nTime,Position,Force",
+        "# Position in mm, force in kN\nTime (s),Position,Force",
+    ] {
+        let names: Vec<&str> = header.lines().last().expect("names").split(',').collect();
+        let columns = format!(r#"{{"t_s":"{}","q_m":"{}","f_N":"{}"}}"#, names[0], names[1], names[2]);
+        is_the_drawer(header, table(header), &format!(r#"{{"task":"mechanism","columns":{columns}}}"#));
+    }
+    let stated = table("Scale factor,1,0.01,0.1\nTime (s),Position (mm),Force (kN)");
+    let mapped = r#"{"columns":{"t_s":"Time (s)","q_m":"Position (mm)","f_N":"Force (kN)"}}"#;
+    let read = File::new(stated, mapped).load().expect("read");
+    assert!(read[0].warnings.iter().any(|w| w.text.contains("`Scale factor,1,0.01,0.1` above the names")));
+    let mapped = r#"{"columns":{"t_s":"Time","q_m":"Position (mm)","f_N":"Force (kN)"}}"#;
+    let read = File::new(table("Time,Position (mm),Force (kN)"), mapped).load().expect("read");
+    assert!(read[0].warnings.iter().any(|w| w.text.contains("`Time` states no unit: its times are taken as seconds")));
+}
+
+/// A factor behind a unit may be taken out or put in: it is asked for.
+#[test]
+fn a_factor_behind_a_unit_is_asked_for() {
+    for force in ["Force (N x10)", "Force [N*10]", "Force (N) x10"] {
+        let text = format!("Time (s),Position (mm),{force}\n0,1,2\n0.01,2,3\n0.02,3,4\n");
+        let mapped = format!(r#"{{"columns":{{"t_s":"Time (s)","q_m":"Position (mm)","f_N":"{force}"}}}}"#);
+        let refused = File::new(text, &mapped).load().expect_err("two meanings");
+        assert!(refused.contains("\"scale\": {\"f_N\": SI value of 1}"), "{force}: {refused}");
+    }
+}
+
+/// Lines of facts between the names and the rows begin no second table, and a cell with a unit is none of it.
+#[test]
+fn text_above_the_rows_is_no_second_table() {
+    let rows = (0..30).fold(String::new(), |mut text, k| {
+        let t = 0.01 * f64::from(k);
+        let _ = writeln!(text, "{t},{k},{t},{k}");
+        text
+    });
+    let facts = "Name,q_m,Name,f_N\nData-Type,REAL64,Data-Type,REAL64\nScaleFactor,1,ScaleFactor,1\n";
+    let refused = File::new(format!("{facts}{rows}"), "{}").load().expect_err("facts");
+    assert!(refused.contains("leave one line of column names right above the numbers"), "{refused}");
+    let units = "t_s,q_m,f_N\n0.000 s,1.5 mm,2 N\n0.010 s,1.6 mm,2 N\n0.020 s,1.7 mm,2 N\n";
+    let refused = File::new(units, "{}").load().expect_err("units in cells");
+    assert!(refused.contains("`0.000 s` holds a unit, which belongs into the name of the column"), "{refused}");
+}

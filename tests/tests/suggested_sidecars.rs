@@ -206,3 +206,22 @@ fn the_index_of_a_data_frame_is_suggested_as_a_clock() {
     let counted = table(",pos_mm,force_N", |at, [_, place, push]| format!("{},{place:.5},{push:.6}", 100 + at));
     assert!(suggest(&counted).contains(r#""rate_hz": null"#));
 }
+
+/// A motor and its load turn by different angles: both are named.
+#[test]
+fn a_motor_and_its_load_are_rivals() {
+    let said =
+        suggest(&table("Time (s),Motor position (rad),Load position (rad),Torque (Nm)", |_, [t, place, push]| {
+            format!("{t:.3},{:.6},{:.6},{push:.6}", 0.05 * place, 1e-3 * place)
+        }));
+    assert!(said.contains("`Motor position (rad)` and `Load position (rad)` may both be `q_rad`"), "{said}");
+}
+
+/// Whole numbers may be counts: their factor is asked for. A channel that stands still is named.
+#[test]
+fn counts_and_dead_channels_are_told() {
+    let said = suggest(&table("t_s,q_m,f_N", |_, [t, place, push]| format!("{t:.3},{:.0},{push:.6}", 1e2 * place)));
+    assert!(said.contains(r#""q_m": null"#), "{said}");
+    let said = suggest(&table("Time (s),Position (mm),Force (N)", |_, [t, place, _]| format!("{t:.3},{place:.5},0")));
+    assert!(said.contains("`Force (N)` is 0 in every row"), "{said}");
+}

@@ -66,6 +66,11 @@ impl Search<'_> {
             if let Some(rival) = &row.rival {
                 self.guesses.push(format!("`{header}` and `{rival}` may both be `{name}`: check which one is meant"));
             }
+            if let Some((value, _)) = row.facts.range.filter(|(low, high)| low == high) {
+                self.guesses.push(format!(
+                    "`{header}` is {value} in every row: map another column to `{name}` if there is one"
+                ));
+            }
             if row.unit_stated || [name, header].iter().any(|key| draft.meta.scale.contains_key(*key)) {
                 continue;
             }
@@ -88,6 +93,13 @@ impl Search<'_> {
         self.entries != before
     }
 
+    /// Takes in the entries that settle a doubt, and keeps one about a unit open; false if they say nothing new.
+    fn settle(&mut self, doubt: &Warning) -> bool {
+        let is_taken = doubt.suggested.as_ref().is_some_and(|entries| self.take(entries));
+        self.guesses.extend(Some(&doubt.text).filter(|_| is_taken && doubt.kind == UNIT).cloned());
+        is_taken
+    }
+
     /// One step: true if there was one, and the problem that it is about.
     fn step(&mut self) -> anyhow::Result<(bool, Option<String>)> {
         Ok(match self.read()? {
@@ -98,7 +110,7 @@ impl Search<'_> {
                 let doubt = warnings.find(|w| w.suggested.is_some());
                 let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
                 let has_step = is_mute && self.guess()?
-                    || doubt.and_then(|w| w.suggested.as_ref()).is_some_and(|entries| self.take(entries))
+                    || doubt.is_some_and(|doubt| self.settle(doubt))
                     || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"));
                 let is_open = |w: &&Warning| [UNIT, ALTERNATION].contains(&w.kind.as_str());
                 let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(is_open));

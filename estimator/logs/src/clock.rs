@@ -3,7 +3,7 @@
 use super::csv::calendar;
 use super::errors::LogError;
 use super::mcap::resample;
-use super::origin::Origin;
+use super::origin::{EPOCHS, Origin, STAMP_UNITS};
 use super::plan::{Plan, Use};
 use super::raw::{Cells, is_missing};
 use super::row_order;
@@ -14,10 +14,6 @@ use std::path::Path;
 
 /// Times from which a number of seconds is none: three thousand years.
 const NO_SECONDS: f64 = 1e11;
-/// Seconds since 1970 of stamps that recordings have: 1990 to 2100.
-const EPOCHS: std::ops::Range<f64> = 6.3e8..4.1e9;
-/// Units that stamps since 1970 are counted in.
-const STAMP_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
 /// Ranges of stamps in ticks of 100 ns, 2000 to 2100, with the epochs that they count from: of Windows since 1601, of .NET since
 /// the year 1.
 const TICKS: [(&str, std::ops::Range<f64>); 2] = [("1601", 1.25e17..1.58e17), ("year 1", 6.3e17..6.63e17)];
@@ -73,7 +69,12 @@ pub fn times(group: &mut Group, plan: &Plan, meta: &Meta, headers: &[String], pa
     };
     said.extend(passed.map(|what| format!("the column `{}` {what}", headers[column])));
     let origin = stamped.or_else(|| origin(&time, plan.uses[column])).or(plan.origin);
-    said.extend(without_epoch(&mut time, factor).map(|what| format!("the column `{}` {what}", headers[column])));
+    let (is_assumed, is_dated) = (plan.is_unit_assumed, time.first().is_some_and(|first| EPOCHS.contains(first)));
+    let epoch = without_epoch(&mut time, factor);
+    if epoch.is_none() && is_assumed && !is_dated && matches!(plan.uses[column], Use::Number { .. }) {
+        said.push(format!("the column `{}` states no unit: its times are taken as seconds", headers[column]));
+    }
+    said.extend(epoch.map(|what| format!("the column `{}` {what}", headers[column])));
     if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
         let (row, line) = group.place(i + 1);
         let goes_back = time[i + 1] < time[i];

@@ -275,6 +275,16 @@ pub enum LogError {
         /// The log.
         path: PathBuf,
     },
+    /// Lines of facts stand between the names and the rows.
+    #[error("{at} holds text and no numbers, and so do the rows above it: leave one line of column names right above the numbers, and no other: {path}", at = place(*row, *line), path = path.display())]
+    NoNumbers {
+        /// Row of data, from 1.
+        row: usize,
+        /// Line in the file, from 1.
+        line: u64,
+        /// The log.
+        path: PathBuf,
+    },
     /// A needed column is empty in one of several runs.
     #[error("{at}, column `{column}`: the run that begins there has no value in this column while the others have some; put the values of one instant into one row, or give the channel a file of its own and \"join\" it: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
     NoValues {

@@ -70,6 +70,7 @@ fn entry(key: &str, value: &Value) -> Option<String> {
     match key {
         "task" => task(value),
         "rate_hz" | "gravity_m_s2" | "from_s" | "to_s" => must(key, value, value.is_number(), "a number"),
+        "several_clocks" => must(key, value, value.is_boolean(), "true or false"),
         "up" => must(key, value, value.is_string(), "a text like \"y\""),
         "wrench_frame" => must(
             key,

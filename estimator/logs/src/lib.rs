@@ -5,6 +5,7 @@
 //! format.
 
 mod assemble;
+mod bursts;
 mod checks;
 mod clock;
 mod columnar;

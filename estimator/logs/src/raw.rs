@@ -95,6 +95,14 @@ impl Raw {
         self.columns.first().map_or(0, Cells::len)
     }
 
+    /// Adds a column. `unit`: text of its unit outside its name.
+    pub fn push(&mut self, (header, alias): (String, String), unit: String, cells: Cells) {
+        self.headers.push(header);
+        self.aliases.push(alias);
+        self.units.push(unit);
+        self.columns.push(cells);
+    }
+
     /// The sidecar with full names (`topic.field`) put as the headers have them.
     pub fn resolved(&self, meta: &Meta) -> Meta {
         let header = |name: &String| {

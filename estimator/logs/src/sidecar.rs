@@ -72,7 +72,7 @@ fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
 /// out, everything else is kept.
 pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
     let path = path_for(log);
-    write_as_is(&portable_meta(&recording.meta), &path)?;
+    write_as_is(&written_meta(recording), &path)?;
     Ok(path)
 }
 
@@ -83,7 +83,8 @@ pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
     haptics::text_file::write(path, text + "\n").map_err(|e| failed(e.to_string()))
 }
 
-/// Facts of the sidecar without the old file's columns and the files joined to it: a written table is in the program's names and SI units already.
+/// Facts of the sidecar without the old file's columns and the files joined to it: a written table is in the program's names
+/// and SI units already.
 pub(super) fn portable_meta(meta: &Meta) -> Meta {
     let mut meta = meta.clone();
     meta.columns.clear();
@@ -95,6 +96,11 @@ pub(super) fn portable_meta(meta: &Meta) -> Meta {
     meta.clocks.clear();
     meta.join.clear();
     meta
+}
+
+/// The sidecar of a written table: it has one clock, and the sidecar tells if there were several.
+pub(super) fn written_meta(recording: &Recording) -> Meta {
+    Meta { several_clocks: recording.has_several_clocks(), ..portable_meta(&recording.meta) }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod plain_text;
 mod spellings;
 
 use super::units::{Dimension, Unit, split};
-use plain_text::{tidied, times};
+use plain_text::{is_factor, tidied, times};
 use spellings::{
     Atom, COUNTS, Exponents, FORCE, GRAVITY_M_S2, HABITS, LENGTH, MASS, OTHER, PLAIN, PREFIXED, PREFIXES, PRESSURE,
 };
@@ -237,9 +237,9 @@ fn is_sign(text: &str) -> bool {
         && matches!(parse(text, &[]), Written::Known(dimension, _) if !matches!(dimension, Dimension::Other | Dimension::Time))
 }
 
-/// Brackets around units, those of East Asian fonts included.
-const BRACKETS: [(char, char); 7] =
-    [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>'), ('（', '）'), ('［', '］'), ('【', '】')];
+/// Brackets around units, those of East Asian fonts and apostrophes included.
+const BRACKETS: [(char, char); 8] =
+    [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>'), ('（', '）'), ('［', '］'), ('【', '】'), ('\'', '\'')];
 
 /// Text in brackets of a header.
 struct Bracketed<'a> {
@@ -247,18 +247,21 @@ struct Bracketed<'a> {
     inside: &'a str,
     /// True if nothing stands behind it. Others state a unit only if it is known: `Load (kN) Test 1`, `Force [N] (filtered)`.
     is_last: bool,
-    /// True for `position[elbow]` and `q[0]`, items of lists.
+    /// True for `position[elbow]` and `q[0]`, items of lists, and for words in quotes.
     may_be_item: bool,
 }
 
-/// The texts in brackets behind a name, in their order.
+/// The texts in brackets behind a name, or before it as in `[kN] Force`, in their order.
 fn bracketed(header: &str) -> Vec<Bracketed<'_>> {
     let opened = header.char_indices().filter_map(|(at, c)| Some((at, BRACKETS.iter().find(|(open, _)| *open == c)?)));
     let group = |(at, (open, close)): (usize, &(char, char))| {
         let (name, rest) = (&header[..at], &header[at + open.len_utf8()..]);
         let (inside, behind) = rest.split_once(*close)?;
-        let may_be_item = *open == '[' && !name.ends_with(' ');
-        let is_last = behind.is_empty();
+        let may_be_item = *open == '[' && !name.is_empty() && !name.ends_with(' ') || *open == '\'';
+        let is_last = !name.is_empty() && (behind.is_empty() || is_factor(behind));
+        // A factor behind the brackets belongs to what stands in them: `(N) x10`.
+        let inside = if is_factor(behind) { &header[at..] } else { inside };
+        let name = if name.is_empty() { behind } else { name };
         (!name.trim().is_empty()).then_some(Bracketed {
             name: name.trim(),
             inside: inside.trim(),

@@ -68,6 +68,10 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "one clock for all"), example = json!({ "f_N": "time_force_s" }))]
     pub clocks: BTreeMap<String, OwnClock>,
+    /// True if the columns had clocks of their own before they were put on the one of the table; written by `convert`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(extend("x-absent" = "false"), example = true)]
+    pub several_clocks: bool,
     /// Other files of the same run, whose channels are put on the log's clock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-absent" = "one file"), example = json!([{ "file": "force.csv", "offset_s": 0.012 }]))]

@@ -307,9 +307,11 @@ fn names_objects(header: &str) -> bool {
     words(header).iter().any(|word| OBJECTS.contains(&word.as_str()))
 }
 
-/// True for a column with a few distinct values, each in a block of rows.
+/// True for a column with a few distinct values, each in a block of rows. Every row names its object; facts beside a table
+/// end before it does.
 fn several(facts: &ColumnFacts) -> bool {
-    facts.distinct.as_ref().is_some_and(|d| d.len() > 1 && facts.changes < 4 * d.len())
+    let is_of_blocks = |d: &Vec<String>| d.len() > 1 && facts.changes < 4 * d.len();
+    facts.distinct.as_ref().is_some_and(|d| is_of_blocks(d) && !d.iter().any(String::is_empty))
 }
 
 impl Row {

@@ -199,3 +199,12 @@ fn a_row_of_units_tells_what_a_name_does_not() {
     let expected = [("t_s", "s"), ("q_m", "mm"), ("f_N", "N")];
     assert_eq!(found, expected.map(|(name, unit)| (Some(name.to_owned()), Some(unit))));
 }
+
+#[test]
+fn the_position_of_a_load_is_a_rival_of_its_motors() {
+    let facts = ["Time (s)|0|10", "Motor position (rad)", "Load position (rad)", "Torque (Nm)"].map(column);
+    let guesses = guess(&facts);
+    assert_eq!(guesses[1].name.as_deref(), Some("q_rad"));
+    assert_eq!(guesses[1].rival.as_deref(), Some("Load position (rad)"), "{guesses:?}");
+    assert_eq!(guesses[2].name, None);
+}

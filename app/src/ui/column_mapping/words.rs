@@ -142,8 +142,8 @@ fn combined(kinds: &[Kind], by_unit: Option<Kind>) -> Option<Kind> {
     if has(Velocity) && (by_unit == Some(AngularVelocity) || has(Angle)) {
         return Some(AngularVelocity);
     }
-    // The position of a shaft in turns.
-    if has(Position) && by_unit == Some(Angle) && kinds.iter().all(|kind| *kind == Position) {
+    // The position of a shaft may be in turns, and that of a load is no force.
+    if by_unit.is_some_and(has) || has(Position) && by_unit == Some(Angle) {
         return by_unit;
     }
     [Torque, Force, AngularVelocity, Velocity, Angle, Position, Time, Trial, Label].into_iter().find(|kind| has(*kind))

@@ -86,10 +86,15 @@ fn speed(recording: &Recording) -> Option<Warning> {
     })
 }
 
-/// `scale`: factors by channel that would settle the doubt; none if only the user knows them.
+/// `scale`: factors by channel that would settle the doubt; none if only the user knows them. Whole numbers may be counts,
+/// whose factor is asked for.
 fn doubt(recording: &Recording, column: &str, text: String, scale: &[(&str, f64)]) -> Warning {
-    let scale: serde_json::Map<_, _> =
-        scale.iter().map(|(name, factor)| ((*name).to_owned(), (*factor).into())).collect();
+    let counts = |name: &str| recording.channel(name).is_some_and(|values| values.iter().all(|v| v.fract() == 0.0));
+    let entry = |(name, factor): &(&str, f64)| {
+        let factor = Some(*factor).filter(|_| !counts(name));
+        ((*name).to_owned(), factor.map_or(serde_json::Value::Null, Into::into))
+    };
+    let scale: serde_json::Map<_, _> = scale.iter().map(entry).collect();
     let suggested = (!scale.is_empty()).then(|| serde_json::Map::from_iter([("scale".to_owned(), scale.into())]));
     let all = Span { first: 0, end: recording.len() };
     Warning { kind: UNIT.to_owned(), column: Some(column.to_owned()), spans: vec![all], text, suggested }

@@ -154,7 +154,15 @@ impl<'a> Join<'a> {
             Fault::Unequal(found) => {
                 LogError::UnequalRow { row, line, found, expected: self.dialect.headers.len(), path }
             }
-            Fault::Names => LogError::SecondTable { row, line, path },
+            Fault::Names => {
+                let mut read = self.table.groups.iter().flat_map(|(_, group)| &group.columns).flatten();
+                let has_rows = read.any(|value| value.is_finite());
+                if has_rows {
+                    LogError::SecondTable { row, line, path }
+                } else {
+                    LogError::NoNumbers { row, line, path }
+                }
+            }
             Fault::Cell(column, what) => {
                 LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, path }
             }

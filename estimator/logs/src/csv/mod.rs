@@ -4,6 +4,7 @@
 //! the parts are put together in the order of the file ([`join`]). Rows, lines, sentences and bits do not depend on the
 //! number of threads.
 
+mod above;
 #[cfg(target_arch = "x86_64")]
 mod batch;
 mod blocks;

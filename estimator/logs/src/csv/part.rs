@@ -6,6 +6,7 @@ use super::plain::{self, Plain};
 use crate::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::plan::{Plan, Use};
 use crate::raw::{MISSING, place_of};
+use crate::written_units::{self, Written};
 use haptics::recording::Labels;
 use memchr::memchr;
 
@@ -97,6 +98,14 @@ pub fn parse(layout: &mut Layout<'_>, bytes: &[u8], columns: Vec<Vec<f64>>) -> P
     }
     reader.layout.bytes_a_row = bytes.len() / reader.part.rows.max(1);
     reader.part
+}
+
+/// True for a number with a unit behind it.
+fn has_unit(cell: &[u8]) -> bool {
+    let cell = String::from_utf8_lossy(cell);
+    let is_of_number = |c: char| c.is_ascii_digit() || "+-.,eE".contains(c);
+    let (number, unit) = cell.split_at(cell.find(|c| !is_of_number(c)).unwrap_or(cell.len()));
+    number.contains(|c: char| c.is_ascii_digit()) && written_units::parse(unit, &[]) != Written::Unknown
 }
 
 struct Reader<'a, 'p> {
@@ -210,7 +219,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             if let Err(fault) = self.take(record, &cells) {
                 let is_text = |k: usize| {
                     let cell = cells.get(record, k);
-                    !cell.is_empty() && number(cell, self.layout.notation).is_none()
+                    !cell.is_empty() && number(cell, self.layout.notation).is_none() && !has_unit(cell)
                 };
                 let is_names = matches!(fault, Fault::Cell(..)) && cells.len() > 1 && (0..cells.len()).all(is_text);
                 let fault = if is_names { Fault::Names } else { fault };
@@ -296,6 +305,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
         let what = match value {
             Some(_) => format!("`{shown}` is not a finite number"),
+            None if has_unit(cell) => format!("`{shown}` holds a unit, which belongs into the name of the column"),
             None => format!("`{shown}` is not a number"),
         };
         Err(Fault::Cell(column, what))

@@ -4,7 +4,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
-use super::{calendar, labview, layout, long_table, serial_log};
+use super::{above, calendar, labview, layout, long_table, serial_log};
 use crate::errors::LogError;
 use crate::{format, stated_rate};
 use haptics::recording::Meta;
@@ -159,8 +159,8 @@ fn stated_delimiter(line: &[u8]) -> Option<u8> {
     if let [one] = sign { Some(*one) } else { line.len().eq(&4).then_some(b'\t') }
 }
 
-/// Header, units and first row as the rows of numbers show them; places count from the start of `text`. `above`: comments.
-fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialect> {
+/// Header, units and first row as the rows of numbers show them; places count from the start of `text`. `comments`: those above.
+fn laid_out(text: &[u8], comments: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialect> {
     let candidates = match stated {
         Some(delimiter) => vec![delimiter],
         None => vec![of_first_line, b'\t', b';', b',', b'|'],
@@ -179,7 +179,7 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
                 records[records.len() / 2..].iter().any(|record| record.cells.iter().any(|cell| cell.contains(',')));
         }
         let notation = Notation { delimiter, decimal };
-        let found = layout::of(&records, notation).or_else(|| layout::below_comment(&records, above, notation));
+        let found = layout::of(&records, notation).or_else(|| layout::below_comment(&records, comments, notation));
         let found = found.filter(|found| found.width > 1 || stated.is_some())?;
         let first = &records[found.first];
         let mut dialect = Dialect {
@@ -193,6 +193,14 @@ fn laid_out(text: &[u8], above: &[u8], stated: Option<u8>, of_first_line: u8) ->
             ..Dialect::default()
         };
         dialect.note_decimals(grouped);
+        if dialect.units.is_empty()
+            && let Some((units, comment)) = above::units(comments, &dialect.headers, delimiter)
+        {
+            dialect.units = units;
+            dialect.notes.push(format!("the units are those of the comment `{comment}`"));
+        }
+        let lines = &records[..found.header.unwrap_or(0)];
+        dialect.notes.extend(lines.iter().find_map(|line| above::factors(&line.cells, found.width, notation)));
         take_upper_names(&mut dialect.headers, &records[..found.header.unwrap_or(0)]);
         let header = found.header.map_or(0, |k| records[k].line);
         let unread = header.saturating_sub(u64::from(found.units.is_some_and(|k| Some(k) < found.header)));

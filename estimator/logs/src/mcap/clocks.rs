@@ -38,14 +38,13 @@ fn single(mut part: Part, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) ->
     let mut raw = Raw::default();
     if !timed && !part.source.clockless {
         let clock = if part.offers(Clock::Stamp) { Clock::Stamp } else { Clock::Log };
-        match (part.settle(clock, notes), meta.rate_hz) {
+        match (part.settle(clock, meta, notes), meta.rate_hz) {
             (Ok(()), _) => {
                 let stamps = part.stamps(clock);
                 let base = stamps.first().copied().unwrap_or(0);
                 raw.origin_ns = dated(base);
-                raw.headers.push("t_s".to_owned());
-                raw.aliases.push(String::new());
-                raw.columns.push(Cells::Numbers(seconds(&stamps, base)));
+                let times = Cells::Numbers(seconds(&stamps, base));
+                raw.push(("t_s".to_owned(), String::new()), String::new(), times);
                 let text = format!("the time is {} of {}, from the first message on", clock.words(), part.source.name);
                 notes.push(note("clock", text));
             }
@@ -55,10 +54,8 @@ fn single(mut part: Part, meta: &Meta, notes: &mut Vec<Warning>, path: &Path) ->
             (Err(why), None) => return Err(LogError::NoClock { why, path: path.to_path_buf() }),
         }
     }
-    for (name, cells) in part.names.into_iter().zip(part.source.topic.columns) {
-        raw.headers.push(name.short);
-        raw.aliases.push(name.full);
-        raw.columns.push(cells);
+    for ((name, unit), cells) in part.names.into_iter().zip(part.units).zip(part.source.topic.columns) {
+        raw.push((name.short, name.full), unit, cells);
     }
     Ok(raw)
 }
@@ -80,7 +77,7 @@ fn several(parts: Vec<Part>, meta: &Meta, notes: &mut Vec<Warning>, path: &Path)
     let base = needed().filter_map(|p| p.stamps(clock).first().copied()).min().unwrap_or(0);
     let mut timed = Vec::new();
     for mut part in parts {
-        let settled = if part.offers(clock) { part.settle(clock, notes) } else { Err(String::new()) };
+        let settled = if part.offers(clock) { part.settle(clock, meta, notes) } else { Err(String::new()) };
         let time = part.time_s(clock, base);
         let name = &part.source.name;
         if settled.is_ok() && time.len() > 1 && is_increasing(&time) && time.iter().all(|t| t.is_finite()) {
@@ -192,12 +189,7 @@ fn merge(
     }
     let time: Vec<f64> = keep.iter().map(|&i| whole[i]).collect();
     let mut raw = Raw::default();
-    let mut push = |short: String, full: String, cells: Cells| {
-        raw.headers.push(short);
-        raw.aliases.push(full);
-        raw.columns.push(cells);
-    };
-    push("t_s".to_owned(), String::new(), Cells::Numbers(time.clone()));
+    raw.push(("t_s".to_owned(), String::new()), String::new(), Cells::Numbers(time.clone()));
     let mut said = Vec::new();
     let mut kind = "clock";
     for (index, (part, from)) in timed.into_iter().enumerate() {
@@ -208,12 +200,13 @@ fn merge(
             said.push(resample::describe(&part.source.name, &from, &time));
             notes.extend(resample::gaps(&part.source.name, &from, &time).map(|t| note("gap", t)));
         }
-        for (column, (name, cells)) in part.names.into_iter().zip(part.source.topic.columns).enumerate() {
+        let named = part.names.into_iter().zip(part.units);
+        for (column, ((name, unit), cells)) in named.zip(part.source.topic.columns).enumerate() {
             if Some(column) == time_field {
                 continue;
             }
             let cells = if index == master { cells.gathered(&keep) } else { resample::onto(&time, &from, &cells) };
-            push(name.short, name.full, cells);
+            raw.push((name.short, name.full), unit, cells);
         }
         if index == master {
             let text = format!("{} of {}", clock.words(), part.source.name);

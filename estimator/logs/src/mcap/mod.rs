@@ -18,6 +18,7 @@ mod rosmsg;
 mod schema;
 mod source;
 mod stamps;
+mod stated_units;
 pub mod stream;
 mod topic;
 pub mod write;

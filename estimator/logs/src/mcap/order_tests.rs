@@ -169,3 +169,69 @@ fn of_publishers_that_talk_at_the_same_time_the_one_with_most_messages_is_read()
     assert_eq!(angles(&log), (0..40).map(f64::from).collect::<Vec<_>>());
     assert!(said(&log, "2 publishers") && said(&log, "20 of 60 messages are left out"), "{:?}", log.warnings);
 }
+
+/// Two topics of numbers: a position every 4 ms, and a force every 2 ms whose log time is given in nanoseconds.
+fn pushed(log_ns: impl Fn(u64) -> u64, unit: &str) -> Out {
+    let mut out = Out::new(None);
+    let (place, force) = (out.json("/pos"), out.json("/ft"));
+    let mut messages: Vec<(u64, u16, String)> =
+        (0..500).map(|k| (k * 4_000_000, place, format!(r#"{{"value": {k}}}"#))).collect();
+    messages.extend((0..1000).map(|k| (log_ns(k), force, format!(r#"{{"value": {}{unit}}}"#, 0.5 * k as f64))));
+    messages.sort_by_key(|(log_ns, ..)| *log_ns);
+    for (log_ns, topic, text) in &messages {
+        out.put(*topic, 1_000_000_000 + log_ns, text.as_bytes());
+    }
+    out
+}
+
+const PUSHED: &str = r#"{"columns": {"q_m": "/pos.value", "f_N": "/ft.value"}}"#;
+
+#[test]
+fn a_topic_in_bursts_is_spread_before_it_meets_the_others() {
+    // Packets of ten, every 20 ms; in one log their times repeat.
+    for within_ns in [15_000, 0] {
+        let log = pushed(|k| (k / 10 + 1) * 20_000_000 + (k % 10) * within_ns, "").load(PUSHED).expect("loads");
+        assert!(said(&log, "the topic /ft: the stamps come in bursts of 10 samples"), "{:?}", log.warnings);
+        let (q, f) = (log.channel("q_m").expect("mapped"), log.channel("f_N").expect("mapped"));
+        // The force is late by one packet, and a line otherwise; the low-pass rings at its ends.
+        let off = q.iter().zip(f).skip(40).take(400).map(|(q, f)| (f - (q - 5.0)).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6, "{off}");
+    }
+}
+
+#[test]
+fn messages_that_nearly_coincide_make_no_spikes() {
+    let late = |k: u64| k * 2_000_000 + if k % 7 == 3 { 1_999_000 } else { 0 };
+    let log = pushed(late, "").load(PUSHED).expect("loads");
+    let f = log.channel("f_N").expect("mapped");
+    assert!(f.windows(2).all(|w| (w[1] - w[0]).abs() < 3.0), "{f:?}");
+}
+
+#[test]
+fn a_unit_beside_a_value_is_used() {
+    let log = pushed(|k| k * 2_000_000, r#", "unit": "kN""#).load(PUSHED).expect("loads");
+    let (q, f) = (log.channel("q_m").expect("mapped"), log.channel("f_N").expect("mapped"));
+    // The low-pass rings at its ends.
+    assert!(q.iter().zip(f).skip(40).take(400).all(|(q, f)| (f - 1e3 * q).abs() < 1e-3), "{:?}", &f[..60]);
+    assert!(!said(&log, "unit` holds text"), "{:?}", log.warnings);
+}
+
+#[test]
+fn a_number_that_counts_since_1970_is_a_stamp() {
+    for (name, unit_ns) in [("timestamp", 1_000_000_u64), ("timestamp_us", 1_000), ("stamp", 1_000_000_000)] {
+        let mut out = Out::new(None);
+        let topic = out.json("/pos");
+        for row in 0..60 {
+            let stamp = (1_750_000_000_000_000_000 + row * 4_000_000) as f64 / unit_ns as f64;
+            // The log is late now and then.
+            let log_ns = 9_000_000_000 + row * 4_000_000 + (row % 3) * 1_500_000;
+            out.put(topic, log_ns, format!(r#"{{"{name}": {stamp:?}, "value": {row}}}"#).as_bytes());
+        }
+        let log = out.load(r#"{"columns": {"q_m": "value"}}"#).expect("loads");
+        let time = log.time_s.as_ref().expect("a clock");
+        let off = time.iter().enumerate().map(|(row, t)| (t - 0.004 * row as f64).abs()).fold(0.0, f64::max);
+        // A double holds seconds since 1970 to a quarter of a microsecond.
+        assert!(off < 5e-7 && said(&log, "the time is the stamp in the messages"), "{name}: {off}, {:?}", log.warnings);
+        assert_eq!(names(&log), ["q_m"]);
+    }
+}

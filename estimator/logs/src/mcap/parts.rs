@@ -6,6 +6,8 @@ use super::names::{self, Name};
 use super::repeats;
 use super::source::{Decoder, Source, note};
 use super::stamps::{self, Course};
+use super::stated_units;
+use crate::bursts::{self, BURSTS};
 use crate::errors::LogError;
 use crate::raw::{Cells, renamed};
 use haptics::recording::{Meta, Warning};
@@ -16,6 +18,8 @@ use std::path::Path;
 pub struct Part {
     pub source: Source,
     pub names: Vec<Name>,
+    /// Texts of the units that stand beside the values; empty where there are none.
+    pub units: Vec<String>,
     /// Stamps in the messages, ns, if they run on in all but a few.
     stamps_ns: Option<Vec<i64>>,
     pub needed: bool,
@@ -59,14 +63,15 @@ pub fn of(sources: Vec<Source>, meta: &Meta, notes: &mut Vec<Warning>, path: &Pa
         let said = [repeats::count_once(&mut source.topic, clock), repeats::one_publisher(&mut source.topic)];
         let said = said.into_iter().flatten();
         notes.extend(said.map(|text| note("topic", format!("the topic {}: {text}", source.name))));
-        all_stamps.push(usable_stamps(source, notes));
+        all_stamps.push(usable_stamps(source, &meta, notes));
     }
     forget_repeated(&mut split);
+    let units: Vec<Vec<String>> = split.iter_mut().map(|source| stated_units::take(&mut source.topic)).collect();
     let mut parts: Vec<Part> = Vec::new();
     let names = names::of(&split);
-    for ((source, names), stamps_ns) in split.into_iter().zip(names).zip(all_stamps) {
+    for (((source, names), units), stamps_ns) in split.into_iter().zip(names).zip(units).zip(all_stamps) {
         let needed = names.iter().any(|n| is_needed(n, &meta));
-        parts.push(Part { source, names, stamps_ns, needed });
+        parts.push(Part { source, names, units, stamps_ns, needed });
     }
     // Topics that are not needed are dropped; if none is needed, all are shown.
     if parts.iter().all(|p| !p.needed) {
@@ -152,8 +157,13 @@ fn forget_repeated(sources: &mut [Source]) {
 }
 
 /// The stamps of a topic, taken out of its columns; none, with a note, where they do not run on.
-fn usable_stamps(source: &mut Source, notes: &mut Vec<Warning>) -> Option<Vec<i64>> {
-    let stamps = stamps::take(&mut source.topic)?;
+fn usable_stamps(source: &mut Source, meta: &Meta, notes: &mut Vec<Warning>) -> Option<Vec<i64>> {
+    let clocks = meta.clocks.values().map(|clock| clock.parts().0);
+    let named = meta.columns.values().map(String::as_str).chain(clocks).map(|name| field_of(&source.name, name));
+    let named: HashSet<&str> = named.collect();
+    // A file of ours has its clock; such a field is a channel there.
+    let is_ours = source.own.is_some();
+    let stamps = stamps::take(&mut source.topic, &|field| is_ours || named.contains(field))?;
     if let Course::Stalls(why) = stamps::course(&stamps, Clock::Stamp.words()) {
         notes.push(note("clock", format!("the topic {}: {why} and is not used", source.name)));
         return None;
@@ -228,10 +238,14 @@ impl Part {
         })
     }
 
-    /// Leaves out the few rows in which a clock does not run on, with a note; an error in words if they are many.
-    pub fn settle(&mut self, clock: Clock, notes: &mut Vec<Warning>) -> Result<(), String> {
+    /// Spreads stamps that come in bursts, and leaves out the few rows in which a clock does not run on, with notes; an error
+    /// in words if they are many.
+    pub fn settle(&mut self, clock: Clock, meta: &Meta, notes: &mut Vec<Warning>) -> Result<(), String> {
         if clock == Clock::Field {
             return Ok(());
+        }
+        if meta.repairs(BURSTS) {
+            self.spread(clock, notes);
         }
         let name = &self.source.name;
         match stamps::course(&self.stamps(clock), clock.words()) {
@@ -244,6 +258,19 @@ impl Part {
             Course::Stalls(why) => return Err(format!("{why} in {name}")),
         }
         Ok(())
+    }
+
+    /// Gives messages that come in bursts the times of the samples in them.
+    fn spread(&mut self, clock: Clock, notes: &mut Vec<Warning>) {
+        let stamps = self.stamps(clock);
+        let base = stamps.first().copied().unwrap_or(0);
+        let Some((even, text)) = bursts::even(&seconds(&stamps, base)) else { return };
+        notes.push(note(BURSTS, format!("the topic {}: {text}", self.source.name)));
+        let even: Vec<i64> = even.into_iter().map(|t| base.wrapping_add((1e9 * t).round() as i64)).collect();
+        match clock {
+            Clock::Stamp => self.stamps_ns = Some(even),
+            _ => self.source.topic.log_ns = even.into_iter().map(i64::cast_unsigned).collect(),
+        }
     }
 
     /// True if `clock` runs on in all but a few rows.

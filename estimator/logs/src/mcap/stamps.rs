@@ -2,6 +2,8 @@
 
 use super::names;
 use super::topic::Topic;
+use crate::origin::since_1970_ns;
+use crate::plan::is_like_a_clock;
 use crate::raw::Cells;
 
 /// Fields of a stamp in a message: seconds and nanoseconds (ROS, Foxglove's schemas in JSON and in protobuf).
@@ -44,13 +46,30 @@ fn fields(topic: &Topic) -> Option<(&'static str, &'static str)> {
     STAMPS.into_iter().find(|(seconds, nanos)| numbers(seconds) && numbers(nanos))
 }
 
-/// The stamps; their fields are taken out of the columns.
-pub fn take(topic: &mut Topic) -> Option<Vec<i64>> {
+/// The stamps; their fields are taken out of the columns. `is_asked`: true for a field that the sidecar names.
+pub fn take(topic: &mut Topic, is_asked: &dyn Fn(&str) -> bool) -> Option<Vec<i64>> {
     let stamps = raw(topic);
     if let Some((seconds, nanos)) = fields(topic) {
         topic.forget(|field| field == seconds || field == nanos);
+        return stamps;
     }
-    stamps
+    let (field, stamps) = in_one_field(topic).filter(|(field, _)| time_column(topic).is_none() && !is_asked(field))?;
+    topic.forget(|other| other == field);
+    Some(stamps)
+}
+
+/// A field that is called a time and counts since 1970 in every message, and its stamps, ns.
+fn in_one_field(topic: &Topic) -> Option<(String, Vec<i64>)> {
+    let is_called_a_time = |field: &str| {
+        let name = field.rsplit('.').next().unwrap_or(field);
+        // These are clocks of the log format.
+        let is_known = names::time_factor(field).is_some() || matches!(field, "time_s" | "timestamp_s");
+        !is_known && (is_like_a_clock(name) || name == "stamp")
+    };
+    topic.fields.iter().zip(&topic.columns).filter(|(field, _)| is_called_a_time(field)).find_map(|(field, cells)| {
+        let Cells::Numbers(values) = cells else { return None };
+        Some((field.clone(), since_1970_ns(values)?))
+    })
 }
 
 /// The column that is a time of the program.

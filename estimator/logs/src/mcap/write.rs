@@ -5,7 +5,7 @@ use super::metadata::{METADATA, SIDECAR, STREAMED, channel_metadata};
 use super::schema::{self, RowSchema};
 use crate::errors::LogError;
 use crate::rows::{Attachment, Value, cell, columns, log_times_ns, not_finite};
-use crate::sidecar::portable_meta;
+use crate::sidecar::written_meta;
 use ::mcap::records::{MessageHeader, Metadata};
 use ::mcap::{McapError, WriteOptions, Writer};
 use haptics::recording::{Meta, Recording};
@@ -149,7 +149,7 @@ pub fn write(
         return Err(LogError::NotWritable { why, path: path.to_path_buf() });
     }
     let Some(first) = recordings.first() else { return Ok(()) };
-    let mut metadata = metadata(&portable_meta(&first.meta));
+    let mut metadata = metadata(&written_meta(first));
     // Reserved for streams.
     metadata.remove(STREAMED);
     let carried = (attachments, encoding);

@@ -4,7 +4,7 @@ use super::metadata::{CREATED_BY, SIDECAR, UNITS, one_line};
 use super::sums::{Sum, Sums};
 use crate::errors::LogError;
 use crate::rows::{Value, cell, columns, not_finite};
-use crate::sidecar::portable_meta;
+use crate::sidecar::written_meta;
 use haptics::recording::Recording;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType, ZstdLevel};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
@@ -103,6 +103,6 @@ fn metadata(recordings: &[Recording]) -> Vec<KeyValue> {
     let json = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
     vec![
         KeyValue::new(UNITS.to_owned(), json(serde_json::to_string(&units))),
-        KeyValue::new(SIDECAR.to_owned(), json(serde_json::to_string(&portable_meta(&first.meta)))),
+        KeyValue::new(SIDECAR.to_owned(), json(serde_json::to_string(&written_meta(first)))),
     ]
 }

@@ -96,6 +96,16 @@ pub fn is_clock(header: &str, unit: &str) -> bool {
 }
 
 impl Planner<'_> {
+    /// Notes a time column that the sidecar maps in seconds and whose name is one word, without a unit.
+    pub(super) fn note_assumed_unit(&mut self) {
+        let Some(column) = self.plan.time else { return };
+        let header = &self.headers[column];
+        let is_mapped = self.meta.columns.get("t_s").is_some_and(|source| source == header);
+        let is_scaled = self.meta.scale.contains_key("t_s") || self.meta.scale.contains_key(header);
+        let is_word = !header.contains(['_', ' ']) && self.unit_text(column, &[Dimension::Time]).is_empty();
+        self.plan.is_unit_assumed = is_mapped && is_word && !is_scaled;
+    }
+
     /// `time_s`, `Time [ms]`, `timestamp_ns`: the time, when nothing else claims to be it.
     pub(super) fn guess_time(&mut self) {
         let is_off = self.meta.columns.get("t_s").is_some_and(String::is_empty);

@@ -78,6 +78,8 @@ pub struct Plan {
     pub targets: Vec<Target>,
     /// The time column.
     pub time: Option<usize>,
+    /// True if nothing states the unit of the time column.
+    pub is_unit_assumed: bool,
     /// Column of the fraction of a second beside whole seconds in the time column, with seconds over its numbers.
     pub fraction: Option<(usize, f64)>,
     /// Clocks of some columns only.
@@ -141,6 +143,7 @@ pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> 
         }
     }
     planner.guess_time();
+    planner.note_assumed_unit();
     planner.take_fraction();
     planner.take_clocks()?;
     planner.suspect_clocks();

@@ -1,7 +1,6 @@
 //! Repairs of a recording on loading: numbers that stand for no value, stamps in bursts, held samples, wrapped angles and counters, spikes. Each is told by a warning,
 //! and `"as_recorded"` in the sidecar switches it off by its kind.
 
-mod bursts;
 mod held_samples;
 mod integrated;
 mod sentinels;
@@ -9,7 +8,7 @@ mod stuck_channels;
 mod wrapped_angles;
 mod wrapped_counters;
 
-use super::checks;
+use super::{bursts, checks};
 use haptics::recording::{REPAIRS, Recording, Span, Warning};
 
 /// A repair, with the warnings about it.
@@ -20,7 +19,7 @@ pub fn repair(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
     let steps: [(&str, Step); 6] = [
         (REPAIRS[0], sentinels::take_out),
-        (REPAIRS[1], |recording| bursts::spread(recording).into_iter().collect()),
+        (bursts::BURSTS, |recording| bursts::spread(recording).into_iter().collect()),
         (REPAIRS[2], |recording| held_samples::take_out(recording).into_iter().collect()),
         (REPAIRS[3], wrapped_angles::unwrap),
         (REPAIRS[4], wrapped_counters::unwrap),

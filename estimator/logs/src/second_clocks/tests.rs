@@ -116,3 +116,19 @@ fn a_second_clock_needs_no_unit() {
     let said = one.warnings.iter().filter(|w| w.suggested.is_some()).collect::<Vec<_>>();
     assert!(said.len() == 1 && said[0].text.contains("`Time - F` is a second clock"), "{:?}", one.warnings);
 }
+
+#[test]
+fn a_written_table_tells_that_there_were_several_clocks() {
+    let sidecar = format!(r#"{{{COLUMNS}, "clocks": {{"f_N": "time_force_s"}}}}"#);
+    let one = read(&pairs(HEADER, 100.0, 0.5), &sidecar).expect("reads");
+    let folder = tempfile::tempdir().expect("a folder");
+    for ending in ["csv", "mcap", "parquet"] {
+        for (recording, is_several) in [(one.clone(), true), (read("t_s,q_m\n0,1\n1,2\n", "{}").expect("reads"), false)]
+        {
+            let path = folder.path().join(format!("written.{ending}"));
+            crate::write(std::slice::from_ref(&recording), &path, &[]).expect("written");
+            let again = load(&path, None).expect("reads back").remove(0);
+            assert_eq!((again.has_several_clocks(), &again.channels), (is_several, &recording.channels), "{ending}");
+        }
+    }
+}

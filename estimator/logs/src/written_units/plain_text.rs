@@ -28,10 +28,10 @@ pub(super) fn tidied(text: &str) -> String {
     signs.into_iter().fold(leveled, |text, (from, to)| text.replace(from, to))
 }
 
-/// The number that a unit is multiplied by, and the unit alone: `0.1 N`, `10^-3 m`, `x1000 N`, `1/10 mm`, `m*1e-3`.
+/// The number that a unit is multiplied by, and the unit alone: `0.1 N`, `10^-3 m`, `x1000 N`, `1/10 mm`, `m*1e-3`. A number
+/// above one behind a unit makes none of it: `N x10` may count tens of newtons, or state newtons that were multiplied.
 pub(super) fn times(text: &str) -> (f64, String) {
     let unit = |text: &str| text.replace('^', "").replace(['*', '×'], ".");
-    let is_times = |c: char| matches!(c, '*' | '×' | 'x' | 'X');
     let leading = text.trim_start_matches(is_times).trim_start();
     let end = leading.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(leading.len());
     if let Some(number) = number(leading[..end].trim_end_matches([' ', '*', '.', '×'])).filter(|_| end < leading.len())
@@ -39,11 +39,20 @@ pub(super) fn times(text: &str) -> (f64, String) {
         return (number, unit(&leading[end..]));
     }
     if let Some((before, behind)) = text.rsplit_once(is_times)
-        && let Some(number) = number(behind.trim())
+        && let Some(number) = number(behind.trim()).filter(|number| *number <= 1.0)
     {
         return (number, unit(before.trim_end()));
     }
     (1.0, unit(text))
+}
+
+fn is_times(c: char) -> bool {
+    matches!(c, '*' | '×' | 'x' | 'X')
+}
+
+/// True for a factor alone: `x10`.
+pub(super) fn is_factor(text: &str) -> bool {
+    text.trim().strip_prefix(is_times).is_some_and(|behind| number(behind.trim()).is_some())
 }
 
 /// A number, a power of ten, or a part: `1000`, `1e-3`, `10^-3`, `1/10`.

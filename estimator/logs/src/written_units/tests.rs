@@ -106,6 +106,13 @@ fn the_wanted_quantity_decides_between_two_meanings() {
 }
 
 #[test]
+fn a_factor_behind_a_unit_has_two_meanings() {
+    for text in ["N x10", "N*10", "Nm x100", "deg x10", "mm, x100", "N) x10"] {
+        assert_eq!(parse(text, &[]), Written::Unknown, "{text}");
+    }
+}
+
+#[test]
 fn units_are_found_in_headers() {
     for (header, name, unit) in [
         ("Fx1 [N]", "Fx1", "N"),
@@ -130,6 +137,12 @@ fn units_are_found_in_headers() {
         ("sensor V2", "sensor V2", ""),
         ("x_min", "x_min", ""),
         ("motor_t_s", "motor_t", "s"),
+        ("[kN] Force", "Force", "kN"),
+        ("(left) Force", "(left) Force", ""),
+        ("Force 'kN'", "Force", "kN"),
+        ("Force 'left'", "Force 'left'", ""),
+        ("Force (N x10)", "Force", "N x10"),
+        ("Force (N) x10", "Force", "(N) x10"),
         ("Load (kN) Test 1", "Load", "kN"),
         ("Position (cm) Run #1", "Position", "cm"),
         ("Force [N] (filtered)", "Force", "N"),

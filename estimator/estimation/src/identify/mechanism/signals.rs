@@ -241,8 +241,9 @@ pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>,
     let mut cuts = vec![0];
     cuts.extend((1..n).filter(|&i| time_s[i] - time_s[i - 1] > GAP_PERIODS * median));
     cuts.push(n);
+    let longest = cuts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
     let spans: Vec<_> = cuts.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| b - a >= LEAST_SEGMENT_ROWS).collect();
-    if spans.is_empty() { Err(too_few(name, n)) } else { Ok((spans, median)) }
+    if spans.is_empty() { Err(too_few(name, longest)) } else { Ok((spans, median)) }
 }
 
 fn too_few(name: &str, samples: usize) -> EstimateError {

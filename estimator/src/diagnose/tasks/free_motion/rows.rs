@@ -56,7 +56,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     if made.rows.is_empty() {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
-            samples: raw.time_s.len(),
+            samples: pieces.iter().map(|piece| piece.time_s.len()).max().unwrap_or(0),
             what: " in one uninterrupted piece".to_owned(),
             needed: LEAST_PIECES * plan.block,
         });

@@ -52,7 +52,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     if made.rows.is_empty() {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
-            samples: raw.time_s.len(),
+            samples: stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0),
             what: " in one uninterrupted piece".to_owned(),
             needed: LEAST_PIECES * block,
         });

@@ -1,6 +1,6 @@
 //! Stamps of a converter that sends its samples in bursts: even at the sensor, stamped when a packet came in.
 
-use haptics::recording::{Recording, Span, Warning};
+use haptics::recording::{REPAIRS, Recording, Span, Warning};
 
 /// A step shorter than this share of the mean one lies within a burst.
 const WITHIN: f64 = 0.25;
@@ -12,9 +12,19 @@ const LEAST_BURSTS: usize = 16;
 /// Largest distance of a stamp from the even time, in intervals between bursts.
 const FARTHEST: f64 = 1.5;
 
+/// Kind of the warning about them.
+pub const BURSTS: &str = REPAIRS[1];
+
 /// Spreads the samples of even bursts over the time between them.
 pub fn spread(recording: &mut Recording) -> Option<Warning> {
-    let time = recording.time_s.as_ref()?;
+    let (even, text) = even(recording.time_s.as_deref()?)?;
+    let spans = vec![Span { first: 0, end: even.len() }];
+    recording.time_s = Some(even);
+    Some(Warning { kind: BURSTS.to_owned(), column: Some("t_s".to_owned()), spans, text, ..Warning::default() })
+}
+
+/// Times of samples whose stamps come in even bursts, spread over the time between them, and a sentence about it.
+pub fn even(time: &[f64]) -> Option<(Vec<f64>, String)> {
     let count = time.len();
     let mean_s = (time.last()? - time.first()?) / (count.checked_sub(1)? as f64);
     let within = time.windows(2).filter(|w| w[1] - w[0] < WITHIN * mean_s).count();
@@ -42,7 +52,5 @@ pub fn spread(recording: &mut Recording) -> Option<Warning> {
         "the stamps come in bursts of {size} samples: the times are spread evenly, at the mean rate of {:.4} Hz; state \"rate_hz\" if it is another",
         1.0 / period_s
     );
-    recording.time_s = Some(even);
-    let spans = vec![Span { first: 0, end: count }];
-    Some(Warning { kind: "burst-stamps".to_owned(), column: Some("t_s".to_owned()), spans, text, ..Warning::default() })
+    Some((even, text))
 }
