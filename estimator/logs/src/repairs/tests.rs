@@ -152,7 +152,7 @@ fn polled_positions_and_rounded_times_are_not_interpolated() {
         let mut polled = swing(4000);
         let newest = |row: usize| (row as f64 * source_hz / poll_hz).floor() / source_hz;
         let swung = |t: f64| 0.05 * (4.1 * t).sin() + 0.02 * (9.7 * t).cos();
-        polled.time_s = Some((0..4000).map(|row| row as f64 / poll_hz).collect());
+        polled.time_s = Some((0..4000).map(|row| f64::from(row) / poll_hz).collect());
         polled.channels[0].values = (0..4000).map(|row| swung(newest(row))).collect();
         assert!(repair(&mut polled).is_empty(), "{source_hz} {poll_hz}");
     }
