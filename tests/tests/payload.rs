@@ -1,6 +1,7 @@
 //! Payload of a force/torque sensor from outside: fit, diagnosis, compensation, and refusals on the command line.
 
 use serde_json::Value;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Output};
 use tests::{shared_recordings, touchstone};
@@ -77,6 +78,39 @@ fn poses_are_told_fitted_and_removed_once() {
     let again = folder.path().join("again.csv").to_string_lossy().into_owned();
     assert!(sentence(&["convert", &out, &again, "--compensate"]).contains("already"));
     assert!(!Path::new(&again).exists());
+}
+
+/// Rests of 0.6 s in the poses, with a noise of 6 mN and 0.6 mN m. `spoil`: changes the three forces and torques of a sample.
+fn rests(spoil: impl Fn(&mut [f64])) -> String {
+    let poses = poses(NAMES, &ROUND, 0.0);
+    let mut text = format!("t_s,{NAMES}\n");
+    for (pose, line) in poses.lines().skip(1).enumerate() {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        for sample in 0..60 {
+            let mut row = cells.clone();
+            for (axis, value) in row[4..].iter_mut().enumerate() {
+                let wobble = ((37 * sample + 5 * axis) % 11) as f64 - 5.0;
+                *value += if axis < 3 { 2e-3 } else { 2e-4 } * wobble;
+            }
+            spoil(&mut row[4..]);
+            let row: Vec<String> = row.iter().map(|v| format!("{v:.6}")).collect();
+            let _ = writeln!(text, "{:.2},{}", 0.01 * (60 * pose + sample) as f64, row.join(","));
+        }
+    }
+    text
+}
+
+#[test]
+fn torques_that_do_not_belong_to_the_load_are_told_and_forces_at_a_limit_are_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fit = |name: &str, text: String| json(&["fit", &written(folder.path(), name, &text)]);
+    let is_told = |fit: &Value| fit["warnings"].to_string().contains("of the torque");
+    let sound = fit("sound.csv", rests(|_| {}));
+    assert!(!is_told(&sound) && (value(&sound, "weight_N") - 8.0).abs() < 0.01, "{sound}");
+    let swapped = fit("swapped.csv", rests(|wrench| wrench.swap(3, 4)));
+    assert!(is_told(&swapped), "{}", swapped["warnings"]);
+    let limited = fit("limited.csv", rests(|wrench| wrench[2] = wrench[2].min(10.0)));
+    assert!((value(&limited, "weight_N") - 8.0).abs() < 0.01, "{limited}");
 }
 
 #[test]

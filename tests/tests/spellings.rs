@@ -50,6 +50,13 @@ fn numbers_of_other_programs_are_read() {
                 None => cell.to_owned(),
             }),
         ),
+        (
+            "brackets of accountants",
+            semicolon(&|cell| match cell.strip_prefix('-') {
+                Some(digits) => format!("({digits})"),
+                None => cell.to_owned(),
+            }),
+        ),
         ("exponents of Fortran", semicolon(&signed)),
         ("decimal commas in quotes", quoted(&|cell| cell.replace('.', ","))),
         ("thousands in quotes", quoted(&|cell| grouped(cell, ",", "."))),
@@ -296,6 +303,34 @@ fn units_in_other_places_are_read() {
     let mapped = r#"{"columns":{"t_s":"Time","q_m":"Position (mm)","f_N":"Force (kN)"}}"#;
     let read = File::new(table("Time,Position (mm),Force (kN)"), mapped).load().expect("read");
     assert!(read[0].warnings.iter().any(|w| w.text.contains("`Time` states no unit: its times are taken as seconds")));
+}
+
+/// Dashboards and spreadsheets write a unit behind each number. One that changes from row to row is refused.
+#[test]
+fn units_behind_numbers_are_those_of_their_column() {
+    let table = |delimiter: &str, comma: bool| {
+        let header = ["Time", "Position", "Force"].join(delimiter) + "\n";
+        drawer(1500, 100.0).iter().fold(header, |mut text, [t, place, push]| {
+            let row = format!("{t:.2} s|{:.3} mm|{:.4}mN", 1e3 * place, 1e3 * push).replace('|', delimiter);
+            let _ = writeln!(text, "{}", if comma { row.replace('.', ",") } else { row });
+            text
+        })
+    };
+    let mapped = r#"{"task": "mechanism", "columns": {"t_s": "Time", "q_m": "Position", "f_N": "Force"}}"#;
+    for (delimiter, comma) in [(",", false), (";", true), ("\t", false)] {
+        is_the_drawer(delimiter, table(delimiter, comma), mapped);
+    }
+    let mixed = table(",", false).replacen(" mm", " m", 700);
+    let refused = File::new(mixed, mapped).load().expect_err("two units");
+    assert!(refused.contains("holds a unit, which belongs into the name of the column"), "{refused}");
+}
+
+/// Facts of an oscilloscope above the names have a number for each channel.
+#[test]
+fn facts_with_numbers_above_the_names_are_no_rows() {
+    let facts = "Model,MDO3024\nSample Interval,1e-2\n\nVertical Offset,0,0\nVertical Scale,1,1\nVertical Position,0,0\n,,\nLabel,pos,force\n";
+    let table = format!("{facts}{}", table(",", str::to_owned));
+    is_the_drawer("an oscilloscope", table, MAPPED);
 }
 
 /// A factor behind a unit may be taken out or put in: it is asked for.

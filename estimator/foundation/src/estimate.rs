@@ -140,9 +140,10 @@ impl Quality {
         let share = self.heldout_relative * left / self.heldout_rms.max(f64::MIN_POSITIVE);
         let times = left / self.noise?.max(f64::MIN_POSITIVE);
         (share > MISFIT_SHARE && times > MISFIT_NOISE).then(|| {
+            let what = if unit == "N" { "force" } else { "torque" };
             let noise = if times > 1000.0 { "more than 1000".to_owned() } else { format!("{times:.0}") };
             format!(
-                "the fit leaves {left:.3} {unit} RMS, {:.0} % of the force and {noise} times its noise: a force acts that the model does not \
+                "the fit leaves {left:.3} {unit} RMS, {:.0} % of the {what} and {noise} times its noise: a force acts that the model does not \
                  contain, or a channel is wrong, and the values can be off by more than their errors; the diagnosis looks for the cause",
                 100.0 * share
             )

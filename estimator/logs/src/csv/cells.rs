@@ -46,18 +46,14 @@ fn plain_number(cell: &[u8], notation: Notation) -> Option<f64> {
     fast_float2::parse(&point).ok()
 }
 
-/// A number in the spelling of Rust, from those of other programs: a minus sign of typography or behind the number, an exponent
-/// of Fortran, blanks or apostrophes between thousands, an infinity as a sign, a formula of a spreadsheet.
+/// A number in the spelling of Rust, from those of other programs: a minus sign of typography or behind the number, brackets
+/// of accountants around a negative number, an exponent of Fortran, blanks or apostrophes between thousands, an infinity as a sign, a formula of a spreadsheet.
 fn respelled(cell: &[u8]) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(cell).ok()?;
     let text = text.strip_prefix("=\"").and_then(|text| text.strip_suffix('"')).unwrap_or(text);
-    let (minus, digits) = match text.strip_suffix('-') {
-        Some(digits) => ("-", digits),
-        None => match text.strip_prefix(['-', '\u{2212}', '\u{2013}']) {
-            Some(digits) => ("-", digits),
-            None => ("", text),
-        },
-    };
+    let in_brackets = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
+    let negative = text.strip_suffix('-').or_else(|| text.strip_prefix(['-', '\u{2212}', '\u{2013}'])).or(in_brackets);
+    let (minus, digits) = negative.map_or(("", text), |digits| ("-", digits));
     let is_digit = |c: char| c.is_ascii_digit();
     if digits == "\u{221e}" {
         return Some([minus, "inf"].concat().into_bytes());

@@ -76,10 +76,15 @@ impl Body {
     /// True for a record with numbers in more than half of the columns of numbers.
     fn is_row(&self, record: &Record, notation: Notation) -> bool {
         let cells = &record.cells;
-        let fits = |c: &&usize| cells[**c].is_empty() || is_number(&cells[**c], notation);
         cells.len() == self.width
-            && 2 * self.numeric.iter().filter(fits).count() > self.numeric.len()
+            && 2 * self.numbers(record, notation) > self.numeric.len()
             && self.numeric.iter().any(|c| is_number(&cells[*c], notation))
+    }
+
+    /// Number of the columns of numbers in which a record has one, or a blank.
+    fn numbers(&self, record: &Record, notation: Notation) -> usize {
+        let fits = |c: &&usize| record.cells.get(**c).is_some_and(|cell| cell.is_empty() || is_number(cell, notation));
+        self.numeric.iter().filter(fits).count()
     }
 }
 
@@ -108,7 +113,9 @@ pub fn of(records: &[Record], notation: Notation) -> Option<Layout> {
     let body = Body::of(records, notation)?;
     let width = body.width;
     let is_row = |k: usize| records.get(k).is_none_or(|r| body.is_row(r, notation));
-    let first = (1..records.len()).find(|&k| is_row(k) && is_row(k + 1))?;
+    // A fact above the names may have a number for every column but the first.
+    let is_whole = |k: usize| records.get(k).is_none_or(|r| body.numbers(r, notation) == body.numeric.len());
+    let first = (1..records.len()).find(|&k| is_row(k) && is_row(k + 1) && (is_whole(k) || is_whole(k + 1)))?;
     // A delimiter behind the last cell of every row, but not behind the last name; or numbers of rows, without a name.
     let ends_blank = records[first..].iter().take(2).all(|r| r.cells.last().is_some_and(String::is_empty));
     let may_lack_one = ends_blank || counts_rows(&records[first..], notation);

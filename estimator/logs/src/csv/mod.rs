@@ -24,6 +24,7 @@ mod serial_log;
 mod simd;
 mod sniff;
 pub mod text_table;
+mod unit_cells;
 
 use super::errors::LogError;
 use super::plan::Plan;

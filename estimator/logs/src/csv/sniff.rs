@@ -4,7 +4,7 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
-use super::{above, calendar, labview, layout, long_table, serial_log};
+use super::{above, calendar, labview, layout, long_table, serial_log, unit_cells};
 use crate::errors::LogError;
 use crate::{format, stated_rate};
 use haptics::recording::Meta;
@@ -36,36 +36,27 @@ pub fn sniff(path: &Path, meta: Option<&Meta>) -> Result<Dialect, LogError> {
     };
     let mut notes = Vec::new();
     notes.extend(end.map(|_| "the zeros behind the text, which a logger reserves, are not read".to_owned()));
-    let (mut text, mut clocks, mut is_long) = (None, Vec::new(), false);
+    let mut text = None;
     if encoding != Encoding::Utf8 && !is_binary(&start, encoding) {
         text = Some(encoding::decoded(whole(&start)?, encoding));
         notes.extend((encoding == Encoding::Latin1).then(|| "the text is not UTF-8: it is read as Latin-1".to_owned()));
     }
     let beginning = |text: &[u8]| text[..text.len().min(SNIFF_BYTES)].to_vec();
     start = text.as_deref().map_or(start, beginning);
-    if labview::is_measurement(&start) {
-        let all = text.map_or_else(|| whole(&start), Ok)?;
-        let made = labview::table(&all, path)?;
-        (text, clocks) = (Some(made.text), made.clocks);
-    } else if let Some(kind) = serial_log::kind(&start, !is_short) {
-        let all = text.map_or_else(|| whole(&start), Ok)?;
-        text = Some(serial_log::tabbed(&all, kind));
-    } else if let Some(width) = encoding::blank_width(&start, !is_short) {
-        let all = text.map_or_else(|| whole(&start), Ok)?;
-        text = Some(encoding::tabbed(&all, width));
-    } else if let Some(columns) = long_table::columns(&start, meta) {
-        let all = text.map_or_else(|| whole(&start), Ok)?;
-        let made = long_table::wide(&all, &columns);
-        is_long = made.is_some();
-        notes.extend(is_long.then(|| long_table::NOTE.to_owned()));
-        text = Some(made.unwrap_or(all));
-    }
+    let all = || text.clone().map_or_else(|| whole(&start), Ok);
+    let made = laid_out_anew(&start, is_short, meta, path, &all)?;
+    let (clocks, is_long, units) = (made.clocks, made.is_long, made.units);
+    notes.extend(made.note.map(str::to_owned));
+    text = made.text.or(text);
     start = text.as_deref().map_or(start, beginning);
     let mut found = dialect(&start, path)?;
     found.name_columns();
     let above = String::from_utf8_lossy(&start[..(found.start as usize).min(start.len())]);
     found.rate = above.lines().find_map(|line| Some((line.to_owned(), stated_rate::of_line(line)?)));
     found.notes.splice(0..0, notes);
+    if found.units.is_empty() {
+        found.units = units;
+    }
     if end.is_some() && text.is_none() {
         found.end = end;
     } else {
@@ -73,6 +64,53 @@ pub fn sniff(path: &Path, meta: Option<&Meta>) -> Result<Dialect, LogError> {
     }
     (found.text, found.clocks, found.is_long) = (text, clocks, is_long);
     Ok(found)
+}
+
+/// A text that was laid out anew as a table.
+#[derive(Default)]
+struct LaidOutAnew {
+    /// None if the text is a table already.
+    text: Option<Vec<u8>>,
+    clocks: Vec<(usize, usize)>,
+    is_long: bool,
+    units: Vec<String>,
+    note: Option<&'static str>,
+}
+
+/// Measurements of LabVIEW, logs of serial monitors, columns of even width, long tables, and cells with units as a table.
+/// `all`: the whole text.
+fn laid_out_anew(
+    start: &[u8],
+    is_short: bool,
+    meta: Option<&Meta>,
+    path: &Path,
+    all: &dyn Fn() -> Result<Vec<u8>, LogError>,
+) -> Result<LaidOutAnew, LogError> {
+    let none = LaidOutAnew::default();
+    Ok(if labview::is_measurement(start) {
+        let made = labview::table(&all()?, path)?;
+        LaidOutAnew { text: Some(made.text), clocks: made.clocks, ..none }
+    } else if let Some(kind) = serial_log::kind(start, !is_short) {
+        LaidOutAnew { text: Some(serial_log::tabbed(&all()?, kind)), ..none }
+    } else if let Some(width) = encoding::blank_width(start, !is_short) {
+        LaidOutAnew { text: Some(encoding::tabbed(&all()?, width)), ..none }
+    } else if let Some(columns) = long_table::columns(start, meta) {
+        let all = all()?;
+        let made = long_table::wide(&all, &columns);
+        let is_long = made.is_some();
+        LaidOutAnew { text: Some(made.unwrap_or(all)), is_long, note: is_long.then_some(long_table::NOTE), ..none }
+    } else if let Some(found) = unit_cells::of(start, delimiter_of(later_line(start))) {
+        LaidOutAnew { text: Some(found.taken_out(&all()?)), units: found.units, ..none }
+    } else {
+        none
+    })
+}
+
+/// A line in the middle of a text.
+fn later_line(start: &[u8]) -> &[u8] {
+    let lines = start.split(|b| *b == b'\n');
+    let middle = lines.clone().count() / 2;
+    lines.skip(middle).find(|line| !line.trim_ascii().is_empty()).unwrap_or_default()
 }
 
 /// End of a text before zeros that fill the rest of its file, bytes; none without them.

@@ -11,7 +11,8 @@ use haptics::law::Coordinate;
 use std::slice;
 
 /// The segments behind a lower filter, if the inertia is larger and surer there: half the cut-off, among halves of the usual one, at which its
-/// relative error is the least. With them, a sentence about `name`. `None` if both inertias agree (Hausman 1978).
+/// relative error is the least. With them, a sentence about `name`. `None` if both inertias agree (Hausman 1978), or differ by less
+/// than a filter's own share of noise.
 ///
 /// Noise that attenuates the inertia leaves a residual, so that its error falls with it. Half the cut-off lets a thirtieth of the noise through.
 pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &str) -> Option<(Vec<Piece>, String)> {
@@ -34,7 +35,7 @@ pub fn behind_a_lower_filter(raw: &Raw, usual: &[Piece], known: &Known, name: &s
     let of_usual = inertia(usual, known)?;
     let [attenuated, error] = of_usual;
     let [sure, own_error] = below[surest].1;
-    let is_clear = sure - attenuated > SIGNIFICANT * own_error.hypot(error);
+    let is_clear = sure - attenuated > (SIGNIFICANT * own_error.hypot(error)).max(DERIVATIVE_NOISE * sure);
     let is_surer = relative([sure, own_error]) < relative(of_usual);
     (is_clear && is_surer).then(|| {
         let (pieces, [inertia, _]) = below.swap_remove((surest + 1).min(below.len() - 1));

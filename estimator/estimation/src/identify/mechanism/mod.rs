@@ -42,7 +42,7 @@ pub use report::{OBJECT, PHASE};
 use swing::Swing;
 pub use world::{Prediction, measured, path_of, predict, world};
 
-pub use signals::{Piece, Raw};
+pub use signals::{Piece, Raw, saturated};
 
 /// Coordinate and force of one recording, as recorded; of a tool's along `path`, or along its own where none is given.
 pub fn raw(recording: &Recording, path: Option<&MechanismPath>) -> Result<Raw, EstimateError> {

@@ -1,5 +1,6 @@
 //! From samples to poses: one observation for every orientation that was held, or passed through slowly.
 
+use crate::identify::mechanism::saturated;
 use crate::segment::poses::{ARM_M, COM_M, ENOUGH_RESTS, REST_RAD_S, REST_S, Rates, SLOW_SHARE, poses, rates};
 use foundation::estimate::EstimateError;
 use foundation::signal::wrench::{Wrench, orientations, vector, wrench};
@@ -45,6 +46,8 @@ pub struct Observed {
     pub middle_s: f64,
     /// Standard deviation of single samples within a pose, N; none if no pose has several.
     pub noise_n: Option<f64>,
+    /// The same of the torque, N m.
+    pub noise_nm: Option<f64>,
     /// Sentences about samples that were left out.
     pub warnings: Vec<String>,
 }
@@ -99,7 +102,7 @@ pub fn observe(recording: &Recording) -> Result<Observed, EstimateError> {
     }
     let samples = samples(recording, &turned, &read);
     let mut warnings = Vec::new();
-    let lost = recording.len() - samples.rows.len();
+    let lost = turned.iter().filter(|turned| turned.is_none()).count();
     if lost > 0 {
         warnings.push(format!("{lost} sample(s) of {} without an orientation are left out", recording.name));
     }
@@ -111,7 +114,8 @@ pub fn observe(recording: &Recording) -> Result<Observed, EstimateError> {
     let poses: Vec<Observation> = runs.iter().enumerate().map(|(k, run)| samples.mean(run, k)).collect();
     Ok(Observed {
         name: recording.name.clone(),
-        noise_n: samples.noise_n(&runs),
+        noise_n: noise(&samples.force_n, &runs),
+        noise_nm: samples.torque_nm.as_ref().and_then(|torque_nm| noise(torque_nm, &runs)),
         poses,
         frame: read.frame,
         force_names: read.force_names,
@@ -128,7 +132,10 @@ pub fn observe(recording: &Recording) -> Result<Observed, EstimateError> {
 }
 
 fn samples(recording: &Recording, turned: &[Option<UnitQuaternion<f64>>], read: &Wrench<'_>) -> Samples {
-    let is_read = |i: &usize| turned[*i].is_some() && vector(&read.force, *i).iter().all(|v| v.is_finite());
+    let names = read.force_names.iter().chain(&read.torque_names).map(String::as_str);
+    let at_limit = saturated(recording, &names.collect::<Vec<_>>());
+    let is_read =
+        |i: &usize| turned[*i].is_some() && !at_limit[*i] && vector(&read.force, *i).iter().all(|v| v.is_finite());
     let rows: Vec<usize> = (0..recording.len()).filter(is_read).collect();
     let vectors = |columns: &[&[f64]; 3]| rows.iter().map(|i| vector(columns, *i)).collect::<Vec<_>>();
     Samples {
@@ -200,13 +207,13 @@ impl Samples {
             t[run.end - 1] - t[run.start] + step_s >= REST_S
         })
     }
+}
 
-    /// Standard deviation of a force component between neighbouring samples of one pose, N.
-    fn noise_n(&self, runs: &[Range<usize>]) -> Option<f64> {
-        let steps = |run: &Range<usize>| (run.start + 1..run.end).map(|i| self.force_n[i] - self.force_n[i - 1]);
-        let count: usize = runs.iter().map(|run| run.len() - 1).sum();
-        let squares: f64 = runs.iter().flat_map(steps).map(|step| step.norm_squared()).sum();
-        // A step has the variance of two samples, in three components.
-        (count > 0).then(|| (squares / (6 * count) as f64).sqrt())
-    }
+/// Standard deviation of a component between neighbouring samples of one pose.
+fn noise(values: &[Vector3<f64>], runs: &[Range<usize>]) -> Option<f64> {
+    let steps = |run: &Range<usize>| (run.start + 1..run.end).map(|i| values[i] - values[i - 1]);
+    let count: usize = runs.iter().map(|run| run.len() - 1).sum();
+    let squares: f64 = runs.iter().flat_map(steps).map(|step| step.norm_squared()).sum();
+    // A step has the variance of two samples, in three components.
+    (count > 0).then(|| (squares / (6 * count) as f64).sqrt())
 }

@@ -47,7 +47,8 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     }
     let quality = quality(&found, seen.noise_n);
     let is_doubted = better_reading(&seen, &found).is_some() || is_unexplained(&found);
-    warnings.extend(quality.as_ref().filter(|_| !is_doubted).and_then(Quality::misfit));
+    let torque = torque_quality(&found, seen.noise_nm);
+    warnings.extend([&quality, &torque].into_iter().flatten().filter(|_| !is_doubted).filter_map(Quality::misfit));
     if !recording.meta.compensated.is_empty() {
         let text = "weight and bias were removed from this recording already: the values are what is left of them";
         warnings.insert(0, text.to_owned());
@@ -168,6 +169,16 @@ fn correlated(published: &[Published], found: &Estimate) -> Correlated {
         covariance: shown.iter().map(|a| shown.iter().map(|b| pair(a, b)).collect()).collect(),
         shown_below: vec![f64::INFINITY; shown.len()],
     }
+}
+
+/// Residual of the torque. `noise`: of a sample's torque, N m.
+fn torque_quality(found: &Estimate, noise: Option<f64>) -> Option<Quality> {
+    let root = |squares: f64| (squares / 3.0).sqrt();
+    let rms = root(found.rms_nm?.iter().map(|rms| rms * rms).sum());
+    let squares: f64 = found.rows.iter().filter_map(|row| row.torque_nm).map(|torque| torque.norm_squared()).sum();
+    let reading = root(squares / found.rows.len() as f64);
+    let heldout_relative = rms / reading.max(f64::MIN_POSITIVE);
+    Some(Quality { rms, heldout_rms: rms, heldout_relative, heldout_share: 0.0, noise, unit: "Nm".to_owned() })
 }
 
 /// Residual of the force; each pose is held out in turn. `noise`: of a pose's force, N.

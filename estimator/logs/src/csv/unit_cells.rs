@@ -1,0 +1,67 @@
+//! Cells with a unit behind their number (`3.7 mm`), as dashboards and spreadsheets write them. A column that has the same one in
+//! every row is one of numbers.
+
+use super::cells::{Notation, number};
+use super::decimal::Decimal;
+use super::layout;
+use crate::written_units::{Written, parse};
+
+/// A table with units behind its numbers.
+pub struct UnitCells {
+    delimiter: u8,
+    /// Unit of each column; empty for a column without one.
+    pub units: Vec<String>,
+}
+
+/// The units behind the numbers of the later rows at the start of a text; none if all columns hold numbers or words.
+pub fn of(start: &[u8], delimiter: u8) -> Option<UnitCells> {
+    let mut records = layout::records(start, delimiter, layout::LOOKED_AT);
+    // The last one may be cut off.
+    records.pop();
+    let later = &records[records.len() / 2..];
+    let width = later.first()?.cells.len();
+    if later.len() < 2 || later.iter().any(|record| record.cells.len() != width) {
+        return None;
+    }
+    let unit = |column: usize| {
+        let mut units = later.iter().map(|record| &record.cells[column]).filter(|cell| !cell.is_empty());
+        let (_, unit) = parted(units.next()?)?;
+        let is_known = matches!(parse(unit, &[]), Written::Known(..));
+        (is_known && units.all(|cell| parted(cell).is_some_and(|(_, other)| other == unit))).then(|| unit.to_owned())
+    };
+    let units: Vec<String> = (0..width).map(|column| unit(column).unwrap_or_default()).collect();
+    units.iter().any(|unit| !unit.is_empty()).then_some(UnitCells { delimiter, units })
+}
+
+impl UnitCells {
+    /// The text without these units. A cell with another one stays, and is refused later.
+    pub fn taken_out(&self, text: &[u8]) -> Vec<u8> {
+        let (mut plain, mut at) = (Vec::with_capacity(text.len()), 0);
+        for record in layout::records(text, self.delimiter, usize::MAX) {
+            plain.extend_from_slice(&text[at..record.start]);
+            for (column, cell) in record.cells.iter().enumerate() {
+                let own = self.units.get(column).map_or("", String::as_str);
+                let number = parted(cell).filter(|(_, unit)| !own.is_empty() && *unit == own);
+                plain.extend((column > 0).then_some(self.delimiter));
+                plain.extend_from_slice(quoted(number.map_or(cell, |(number, _)| number), self.delimiter).as_bytes());
+            }
+            at = record.end;
+        }
+        plain.extend_from_slice(&text[at..]);
+        plain
+    }
+}
+
+/// A number and the unit behind it.
+fn parted(cell: &str) -> Option<(&str, &str)> {
+    let end = cell.rfind(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','))? + 1;
+    let (digits, unit) = (&cell[..end], cell[end..].trim());
+    let notation = Notation { decimal: Decimal::Either, ..Notation::default() };
+    (!unit.is_empty() && number(digits.as_bytes(), notation).is_some()).then_some((digits, unit))
+}
+
+/// A cell as a record holds it: in quotes if a delimiter or a quote is part of it.
+fn quoted(cell: &str, delimiter: u8) -> String {
+    let needs_quotes = cell.contains(['"', '\n']) || cell.contains(char::from(delimiter));
+    if needs_quotes { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
