@@ -159,7 +159,9 @@ impl<'a> Solved<'a> {
         result.quality = quality(&self.pieces, system, solution, coordinate, known);
         result.warnings = self.warnings();
         let quality = result.quality.as_ref();
-        result.warnings.extend(quality.and_then(|quality| self.hardly_explains(quality).or_else(|| quality.misfit())));
+        let moving_rms = system.steady().residual_rms(&solution.values);
+        let misfit = |quality: &Quality| self.hardly_explains(quality).or_else(|| quality.misfit(moving_rms));
+        result.warnings.extend(quality.and_then(misfit));
         result
     }
 
@@ -244,10 +246,8 @@ fn quality(
     if n == 0 {
         return None;
     }
-    let residual =
-        |i: usize| late.target[i] - late.columns.iter().zip(&early.values).map(|(c, v)| c[i] * v).sum::<f64>();
     let root = |sum: f64| (sum / n as f64).sqrt();
-    let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
+    let heldout_rms = late.residual_rms(&early.values);
     // Relative to the force as measured, its known part included.
     let nothing_known =
         System::stack(pieces, &[], &Known::default(), Piece::applied_force).part(|place| place >= 1.0 - HELD_OUT);

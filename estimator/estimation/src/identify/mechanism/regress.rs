@@ -114,6 +114,13 @@ impl System {
         Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
     }
 
+    /// RMS residual with these values of the terms; all rows count the same.
+    pub fn residual_rms(&self, values: &[f64]) -> f64 {
+        let predicted = |i: usize| self.columns.iter().zip(values).map(|(c, v)| c[i] * v).sum::<f64>();
+        let squares: f64 = self.target.iter().enumerate().map(|(i, target)| (target - predicted(i)).powi(2)).sum();
+        (squares / self.target.len().max(1) as f64).sqrt()
+    }
+
     /// RMS residual that noise in the motion makes with these values of the terms.
     pub fn noise_by_motion(&self, values: &[f64]) -> f64 {
         let values = DVector::from_column_slice(values);
@@ -159,7 +166,7 @@ impl System {
     }
 
     /// Away from reversals, where the filter has not mixed the two directions; everything, when little is left.
-    fn steady(&self) -> Self {
+    pub fn steady(&self) -> Self {
         let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return self.clone() };
         let kept: Vec<bool> = self.columns[dry].iter().map(|c| c.abs() > STEADY_DIRECTION).collect();
         if 10 * kept.iter().filter(|k| **k).count() < kept.len() { self.clone() } else { self.filtered(&kept) }
