@@ -356,6 +356,9 @@ fn text_above_the_rows_is_no_second_table() {
     let refused = File::new(format!("{facts}{rows}"), "{}").load().expect_err("facts");
     assert!(refused.contains("leave one line of column names right above the numbers"), "{refused}");
     let units = "t_s,q_m,f_N\n0.000 s,1.5 mm,2 N\n0.010 s,1.6 mm,2 N\n0.020 s,1.7 mm,2 N\n";
-    let refused = File::new(units, "{}").load().expect_err("units in cells");
-    assert!(refused.contains("`0.000 s` holds a unit, which belongs into the name of the column"), "{refused}");
+    let refused = File::new(units, "{}").load().expect_err("a name in metres above millimetres");
+    assert!(refused.contains("the name of the column `q_m` says m and its stated unit is `mm`"), "{refused}");
+    let decided = File::new(units, r#"{"scale": {"q_m": 0.001}}"#).load().expect("a scale decides");
+    let place = decided[0].channel("q_m").expect("a position");
+    assert!((place[2] - 0.0017).abs() < 1e-12, "{place:?}");
 }

@@ -237,6 +237,18 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// A name in metres above a unit row in millimetres, or a similar contradiction.
+    #[error("the name of the column `{column}` says {named} and its stated unit is `{stated}`; give its factor to SI with \"scale\" in the sidecar: {path}", column = plain(column), stated = plain(stated), path = path.display())]
+    TwoUnits {
+        /// The file's name.
+        column: String,
+        /// Unit in the name.
+        named: &'static str,
+        /// Unit in the file's row of units, in its metadata, or behind its numbers.
+        stated: String,
+        /// The file.
+        path: PathBuf,
+    },
     /// Text where a number belongs.
     #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), advice = cell_advice(*line), column = plain(column), what = plain(what), path = path.display())]
     BadCell {

@@ -163,6 +163,13 @@ impl LinearFit {
         }
     }
 
+    /// Multiplies the error of each value, and keeps the correlations.
+    pub fn scale_errors(&mut self, factors: &[f64]) {
+        let p = self.values.len();
+        self.covariance = DMatrix::from_fn(p, p, |i, j| self.covariance[(i, j)] * factors[i] * factors[j]);
+        self.std_errors.iter_mut().zip(factors).for_each(|(error, factor)| *error *= factor);
+    }
+
     /// Takes out the attenuation by noise in the regressors (errors in variables, Fuller 1987, §2.2). The normal matrix
     /// is larger than that of the true regressors by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share
     /// `known_to`. This share of the correction joins the errors. With noise too large to be taken out, the values stay

@@ -5,4 +5,5 @@ pub mod bootstrap;
 pub mod influence;
 pub mod linear;
 pub mod long_run_variance;
+pub mod repetition;
 pub mod robust;

@@ -99,18 +99,11 @@ fn laid_out_anew(
         let made = long_table::wide(&all, &columns);
         let is_long = made.is_some();
         LaidOutAnew { text: Some(made.unwrap_or(all)), is_long, note: is_long.then_some(long_table::NOTE), ..none }
-    } else if let Some(found) = unit_cells::of(start, delimiter_of(later_line(start))) {
+    } else if let Some(found) = unit_cells::of(start) {
         LaidOutAnew { text: Some(found.taken_out(&all()?)), units: found.units, ..none }
     } else {
         none
     })
-}
-
-/// A line in the middle of a text.
-fn later_line(start: &[u8]) -> &[u8] {
-    let lines = start.split(|b| *b == b'\n');
-    let middle = lines.clone().count() / 2;
-    lines.skip(middle).find(|line| !line.trim_ascii().is_empty()).unwrap_or_default()
 }
 
 /// End of a text before zeros that fill the rest of its file, bytes; none without them.

@@ -14,7 +14,12 @@ pub struct UnitCells {
 }
 
 /// The units behind the numbers of the later rows at the start of a text; none if all columns hold numbers or words.
-pub fn of(start: &[u8], delimiter: u8) -> Option<UnitCells> {
+pub fn of(start: &[u8]) -> Option<UnitCells> {
+    // With decimal commas, a row may hold more commas than delimiters.
+    [b'|', b'\t', b';', b','].into_iter().find_map(|delimiter| with_delimiter(start, delimiter))
+}
+
+fn with_delimiter(start: &[u8], delimiter: u8) -> Option<UnitCells> {
     let mut records = layout::records(start, delimiter, layout::LOOKED_AT);
     // The last one may be cut off.
     records.pop();
@@ -30,10 +35,23 @@ pub fn of(start: &[u8], delimiter: u8) -> Option<UnitCells> {
         (is_known && units.all(|cell| parted(cell).is_some_and(|(_, other)| other == unit))).then(|| unit.to_owned())
     };
     let units: Vec<String> = (0..width).map(|column| unit(column).unwrap_or_default()).collect();
-    units.iter().any(|unit| !unit.is_empty()).then_some(UnitCells { delimiter, units })
+    let found = UnitCells { delimiter, units };
+    let is_one = found.with_units().next().is_some() && !records.iter().any(|record| found.has_other_units(record));
+    is_one.then_some(found)
 }
 
 impl UnitCells {
+    fn with_units(&self) -> impl Iterator<Item = (usize, &str)> {
+        self.units.iter().enumerate().filter(|(_, unit)| !unit.is_empty()).map(|(column, unit)| (column, unit.as_str()))
+    }
+
+    /// True for a row of numbers with units of which one is not that of its column.
+    fn has_other_units(&self, record: &layout::Record) -> bool {
+        let unit_of = |column: usize| record.cells.get(column).and_then(|cell| parted(cell)).map(|(_, unit)| unit);
+        self.with_units().all(|(column, _)| unit_of(column).is_some())
+            && self.with_units().any(|(column, own)| unit_of(column) != Some(own))
+    }
+
     /// The text without these units. A cell with another one stays, and is refused later.
     pub fn taken_out(&self, text: &[u8]) -> Vec<u8> {
         let (mut plain, mut at) = (Vec::with_capacity(text.len()), 0);

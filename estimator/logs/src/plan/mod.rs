@@ -331,6 +331,9 @@ impl Planner<'_> {
             self.plan.uses[column] = Use::Number { required: false, factor };
             return Ok(());
         }
+        if required {
+            self.name_and_unit_agree(&name, column)?;
+        }
         let keys = [name.as_str(), header.as_str()];
         let pick = |map: &BTreeMap<String, f64>| map.get(keys[0]).or_else(|| map.get(keys[1])).copied().unwrap_or(1.0);
         let factor = factor * pick(&self.meta.scale) * pick(&self.meta.sign);

@@ -94,6 +94,34 @@ impl Planner<'_> {
         }
     }
 
+    /// An error for a column whose name states another unit of the same dimension than the file does elsewhere. The sidecar
+    /// decides by a scale or by a unit of its own (`q_mm`).
+    pub(super) fn name_and_unit_agree(&self, name: &str, column: usize) -> Result<(), LogError> {
+        let (header, stated) = (&self.headers[column], self.stated(column));
+        let by_user = |(key, source): (&String, &String)| {
+            source == header && units::split(key).is_some_and(|(_, unit)| unit.factor != 1.0)
+        };
+        let is_decided = self.meta.scale.contains_key(name)
+            || self.meta.scale.contains_key(header)
+            || self.meta.columns.iter().any(by_user);
+        let Some((_, named)) = units::split(header).filter(|_| !stated.is_empty() && !is_decided) else {
+            return Ok(());
+        };
+        match written_units::parse(stated, &[named.dimension]) {
+            Written::Known(dimension, factor)
+                if dimension == named.dimension && (factor / named.factor - 1.0).abs() > 1e-9 =>
+            {
+                Err(LogError::TwoUnits {
+                    column: header.clone(),
+                    named: named.symbol,
+                    stated: stated.to_owned(),
+                    path: self.path.to_path_buf(),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Reason why a column with a name of the program's is not used: what the sidecar maps comes first.
     fn is_unwanted(&self, name: &str) -> Option<String> {
         if self.mapped(name) {

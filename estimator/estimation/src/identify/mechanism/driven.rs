@@ -12,6 +12,7 @@ use crate::identify::limits::{HELD_OUT, ROUNDING};
 use crate::regression::bootstrap::block_bootstrap;
 use crate::regression::linear::LinearFit;
 use crate::regression::long_run_variance::HALF_INTERVAL;
+use crate::regression::repetition;
 use foundation::estimate::{EstimateError, Fit, Parameter, Quality};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -67,6 +68,8 @@ struct Solved<'a> {
     gravity: Option<Gravity>,
     system: System,
     solution: LinearFit,
+    /// Factor on each error for a residual that repeats with the motion.
+    repeated: Vec<f64>,
     /// Sentence and ratio of a swing.
     swing: Option<(String, [f64; 2])>,
 }
@@ -100,11 +103,13 @@ impl<'a> Solved<'a> {
             let solution = system.solve()?;
             (Cow::Borrowed(pieces), system, solution)
         };
+        let repeated = repetition::factors(&solution, &system.columns, system.weights(&solution).as_deref());
+        solution.scale_errors(&repeated);
         if let Some(Gravity::Absent { doubt, .. }) = &gravity {
             solution.widen(doubt);
         }
         solution.widen(&clock_errors(&system.terms, &solution.values));
-        Ok(Self { pieces, seen, gravity, system, solution, swing: told })
+        Ok(Self { pieces, seen, gravity, system, solution, repeated, swing: told })
     }
 
     /// Value of a term in units of half its 95 % interval; `None` if it is not fitted.
@@ -158,6 +163,7 @@ impl<'a> Solved<'a> {
         result.correlated = vec![material.correlated()];
         result.quality = quality(&self.pieces, system, solution, coordinate, known);
         result.warnings = self.warnings();
+        result.warnings.extend(self.repetition(coordinate));
         let quality = result.quality.as_ref();
         let moving_rms = system.steady().residual_rms(&solution.values);
         let misfit = |quality: &Quality| self.hardly_explains(quality).or_else(|| quality.misfit(moving_rms));
@@ -180,6 +186,18 @@ impl<'a> Solved<'a> {
                 100.0 * HELD_OUT
             )
         })
+    }
+
+    /// One sentence if the residual repeats with the motion.
+    fn repetition(&self, coordinate: Coordinate) -> Option<String> {
+        let terms = self.system.terms.iter().zip(&self.repeated);
+        let (term, factor) = terms.filter(|(_, factor)| **factor > 1.0).max_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(format!(
+            "the residual repeats with the motion, as the rounding of a position or a force that the model does not contain does: \
+             equal strokes tell no more than one, and the error of {} is {factor:.1} times as large as noise would make it; \
+             vary the strokes",
+            term.name(coordinate)
+        ))
     }
 
     fn warnings(&self) -> Vec<String> {
