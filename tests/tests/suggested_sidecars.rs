@@ -194,6 +194,22 @@ fn milliseconds_of_a_board_are_a_clock() {
     mended("millis", &file);
 }
 
+/// Seconds in a column that states milliseconds make a rate that no motion is recorded at.
+#[test]
+fn seconds_called_milliseconds_are_told() {
+    for header in ["t_ms,q_m,f_N", "Time (ms),Position (m),Force (N)"] {
+        let file = table(header, |_, [t, place, push]| format!("{t:.3},{:.9},{push:.6}", 1e-3 * place));
+        mended(header, &file);
+    }
+}
+
+/// A file without a force says so.
+#[test]
+fn a_missing_force_is_told() {
+    let said = suggest(&table("t_s,q_m,current_A", |_, [t, place, push]| format!("{t:.3},{place:.6},{push:.6}")));
+    assert!(said.contains("no column is recognized as a force or torque") && said.contains("`current_A`"), "{said}");
+}
+
 /// The index of a data frame is a clock if its numbers are times.
 #[test]
 fn the_index_of_a_data_frame_is_suggested_as_a_clock() {

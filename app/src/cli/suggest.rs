@@ -17,6 +17,8 @@ use std::path::{Path, PathBuf};
 
 /// Suggestions that follow from each other.
 const ROUNDS: usize = 8;
+/// Name of the sidecar in which entries are tried.
+const TRIED: &str = "suggested.meta.json";
 
 /// Output of `info --suggest --json`.
 #[derive(JsonSchema, Serialize)]
@@ -34,6 +36,8 @@ pub(crate) struct Said {
 /// Entries of a sidecar that make a log load without doubts.
 struct Search<'a> {
     log: &'a Path,
+    /// Folder of the sidecar in which the entries are tried.
+    tried: tempfile::TempDir,
     entries: Suggested,
     has_guessed: bool,
     /// Sentences about units that were inferred from values.
@@ -41,10 +45,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Reads the log with the entries so far. They are tried in a sidecar of their own.
+    /// Reads the log with the entries so far.
     fn read(&self) -> anyhow::Result<Result<Vec<Recording>, LogError>> {
-        let folder = tempfile::tempdir()?;
-        let sidecar = folder.path().join("suggested.meta.json");
+        let sidecar = self.tried.path().join(TRIED);
         std::fs::write(&sidecar, Value::Object(self.entries.clone()).to_string())?;
         Ok(load(self.log, Some(&sidecar)))
     }
@@ -114,14 +117,16 @@ impl Search<'_> {
                     || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"));
                 let is_open = |w: &&Warning| [UNIT, ALTERNATION].contains(&w.kind.as_str());
                 let open = doubt.or_else(|| recordings.iter().flat_map(|r| &r.warnings).find(is_open));
-                (has_step, open.map(|w| w.text.clone()))
+                (has_step, open.map(|w| w.text.clone()).or_else(|| recordings.iter().find_map(missing)))
             }
             Err(error) => {
                 let has_step = match error.suggested() {
                     Some(entries) => self.take(&entries),
                     None => mends(&error) && self.guess()?,
                 };
-                (has_step, Some(error.to_string()))
+                let tried = self.tried.path().join(TRIED).display().to_string();
+                let named = error.to_string().replace(&tried, &sidecar_path(self.log).display().to_string());
+                (has_step, Some(named))
             }
         })
     }
@@ -129,11 +134,37 @@ impl Search<'_> {
 
 /// True for a recording with a motion and a force.
 fn has_motion_and_force(recording: &Recording) -> bool {
-    let names = || recording.channels.iter().filter(|channel| units::is_program_name(&channel.name));
-    let quantity = |name: &str| units::split(name).map(|(quantity, _)| quantity.to_owned()).unwrap_or_default();
-    let is_force = |name: &str| name.starts_with('f') || name.starts_with("tau");
-    let is_motion = |name: &str| ["q", "dq", "ddq", "x", "y", "z", "v"].iter().any(|start| name.starts_with(start));
-    names().any(|c| is_force(&quantity(&c.name))) && names().any(|c| is_motion(&quantity(&c.name)))
+    has_force(recording) && has_motion(recording)
+}
+
+fn has_force(recording: &Recording) -> bool {
+    has_quantity(recording, &["f", "tau"])
+}
+
+fn has_motion(recording: &Recording) -> bool {
+    has_quantity(recording, &["q", "dq", "ddq", "x", "y", "z", "v"])
+}
+
+/// True for a recording with a channel of the program's whose quantity starts with one of these.
+fn has_quantity(recording: &Recording, starts: &[&str]) -> bool {
+    let known = recording.channels.iter().filter(|channel| units::is_program_name(&channel.name));
+    let mut quantities = known.filter_map(|channel| units::split(&channel.name)).map(|(quantity, _)| quantity);
+    quantities.any(|quantity| starts.iter().any(|start| quantity.starts_with(start)))
+}
+
+/// A sentence if no column was found that is a motion, or a force.
+fn missing(recording: &Recording) -> Option<String> {
+    let absent = match (has_motion(recording), has_force(recording)) {
+        (true, true) => return None,
+        (true, false) => "force or torque",
+        (false, true) => "motion",
+        (false, false) => "motion or a force",
+    };
+    let names: Vec<String> = recording.channels.iter().map(|channel| format!("`{}`", channel.name)).collect();
+    let there = if names.is_empty() { "no other one".to_owned() } else { names.join(", ") };
+    Some(format!(
+        "no column is recognized as a {absent}: if one is, map it with \"columns\" in the sidecar; beside the clock, the file has {there}"
+    ))
 }
 
 /// Entries that ask for the factor of a column.
@@ -162,7 +193,8 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
         Ok(text) => serde_json::from_str(text.trim_start_matches('\u{feff}'))?,
         Err(_) => Suggested::new(),
     };
-    let mut search = Search { log, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
+    let tried = tempfile::tempdir()?;
+    let mut search = Search { log, tried, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
     let mut open = None;
     for _ in 0..ROUNDS {
         let (has_step, problem) = search.step()?;

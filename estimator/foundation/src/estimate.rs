@@ -133,11 +133,10 @@ const MISFIT_SHARE: f64 = 0.05;
 const MISFIT_NOISE: f64 = 3.0;
 
 impl Quality {
-    /// A sentence if the model leaves a part of the force that noise does not explain: errors of parameters count noise only.
-    ///
-    /// `left`: RMS residual of the rows whose force the model predicts, in `unit`. It does not predict that of a standing mechanism.
-    pub fn misfit(&self, left: f64) -> Option<String> {
-        let unit = &self.unit;
+    /// A sentence if the model leaves a part of the force that noise does not explain: errors of parameters count noise only. It
+    /// looks at the rows that were fitted, because the force of a standing mechanism is not predicted, and counts little there.
+    pub fn misfit(&self) -> Option<String> {
+        let (left, unit) = (self.rms, &self.unit);
         let share = self.heldout_relative * left / self.heldout_rms.max(f64::MIN_POSITIVE);
         let times = left / self.noise?.max(f64::MIN_POSITIVE);
         (share > MISFIT_SHARE && times > MISFIT_NOISE).then(|| {

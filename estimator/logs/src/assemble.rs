@@ -94,6 +94,14 @@ struct About<'a> {
 }
 
 impl About<'_> {
+    /// Seconds of the clock's stated unit, and the scale in a sidecar that makes seconds of it: that of an own name multiplies.
+    fn clock_unit(&self) -> (f64, f64) {
+        let Some(column) = self.plan.time else { return (1.0, 1.0) };
+        let Use::Number { factor, .. } = self.plan.uses[column] else { return (1.0, 1.0) };
+        let is_own = units::split(&self.headers[column]).is_some();
+        (factor, if is_own { factor.recip() } else { 1.0 })
+    }
+
     /// The recording of a group of rows. `names`: its trial, and the part of its name after the file's.
     fn recording(
         &self,
@@ -119,7 +127,9 @@ impl About<'_> {
         }
         recording.warnings.extend(notes(self.plan, self.table, self.headers, &recording));
         recording.warnings.extend(facts::doubts(&recording));
-        recording.warnings.extend(recording.time_s.as_deref().and_then(clock::unit_doubt));
+        recording
+            .warnings
+            .extend(recording.time_s.as_deref().and_then(|time| clock::unit_doubt(time, self.clock_unit())));
         let repairs = repairs::repair(&mut recording);
         recording.warnings.extend(repairs);
         let is_repaired = recording.meta.repairs("spikes");

@@ -240,13 +240,29 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
     Some(format!("counts {name} since {epoch}, not seconds: its times are seconds since the first row"))
 }
 
-/// Doubt about the unit of a clock whose stamps are whole numbers and slower than a measurement of motion.
-pub fn unit_doubt(time: &[f64]) -> Option<Warning> {
+/// Doubt about the unit of a clock that is too fast for a measurement of motion, or whose stamps are whole numbers and too slow.
+/// `stated_s`: seconds of the unit that the file states, 1 without one; `undone`: the scale in a sidecar that makes seconds of it.
+pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warning> {
     let is_whole = |t: &f64| t.fract() == 0.0;
-    if time.len() < FEWEST_STAMPS || !time.iter().all(is_whole) {
+    let rate_hz = usual_step(time)?.recip();
+    if time.len() < FEWEST_STAMPS {
         return None;
     }
-    let rate_hz = usual_step(time)?.recip();
+    let (kind, column) = (super::checks::UNIT.to_owned(), Some("t_s".to_owned()));
+    if stated_s < 1.0 && rate_hz > RATES_HZ.end && RATES_HZ.contains(&(rate_hz * stated_s)) {
+        let text = format!(
+            "the times run at {} Hz in the unit that the file states, too fast for a motion; as seconds they run at {} Hz: if \
+             they are, state \"scale\": {{\"t_s\": {}}} in the sidecar",
+            shown(rate_hz),
+            shown(rate_hz * stated_s),
+            undone
+        );
+        let suggested = json!({ "scale": { "t_s": undone } }).as_object().cloned();
+        return Some(Warning { kind, column, text, suggested, ..Warning::default() });
+    }
+    if !time.iter().all(is_whole) {
+        return None;
+    }
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
     let text = format!(
         "the times are whole numbers and run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \
@@ -255,7 +271,6 @@ pub fn unit_doubt(time: &[f64]) -> Option<Warning> {
         shown(rate_hz / unit)
     );
     let suggested = json!({ "scale": { "t_s": unit } }).as_object().cloned();
-    let (kind, column) = (super::checks::UNIT.to_owned(), Some("t_s".to_owned()));
     Some(Warning { kind, column, text, suggested, ..Warning::default() })
 }
 

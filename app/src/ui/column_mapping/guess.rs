@@ -239,8 +239,15 @@ fn name_of(kind: Kind, reading: &Reading) -> Option<String> {
     Some(name)
 }
 
-/// Beside a force without a direction, `q` is a length, and so is `x` without `y`.
+/// Beside a force without a direction, `q` is a length, and so is `x` without `y`. Beside a length without a direction, the only
+/// component of a force is all of it.
 fn name_one_coordinate(candidates: &mut [Candidate], columns: &[ColumnFacts]) {
+    let is_component = |c: &Candidate| ["fx_N", "fy_N", "fz_N"].contains(&c.name.as_str()) && c.points < OWN_NAME;
+    let has_only =
+        |name: &str| candidates.iter().any(|c| c.name == name) && !candidates.iter().any(|c| c.name == "f_N");
+    if has_only("q_m") && candidates.iter().filter(|c| is_component(c)).count() == 1 {
+        candidates.iter_mut().filter(|c| is_component(c)).for_each(|c| c.name = "f_N".into());
+    }
     let has = |name: &str| candidates.iter().any(|c| c.name == name);
     if !has("f_N") || has("tau_Nm") || has("q_m") {
         return;
@@ -249,7 +256,7 @@ fn name_one_coordinate(candidates: &mut [Candidate], columns: &[ColumnFacts]) {
         // These words stand for coordinates of either kind.
         "q_rad" => {
             let words = words(&columns[c.column].header);
-            words.iter().all(|word| ["q", "encoder", "position", "pos"].contains(&word.as_str()))
+            words.iter().all(|word| ["q", "encoder", "position", "pos", "count", "counts"].contains(&word.as_str()))
         }
         "x_m" => !has("y_m") && c.points < OWN_NAME,
         _ => false,

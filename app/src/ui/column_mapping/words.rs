@@ -184,8 +184,9 @@ const QUANTITIES: [(Kind, &str); 7] = [
 
 fn meaning(word: &str) -> Meaning {
     use Meaning::{Doubtful, Finger, Measured, Processed, Rate, SomethingElse};
+    // The first place of a list is no finger.
     if let Ok(number) = word.parse() {
-        return Finger(number);
+        return if number == 0 { Meaning::None } else { Finger(number) };
     }
     if let Some((kind, _)) = QUANTITIES.iter().find(|(_, words)| words.split(' ').any(|known| known == word)) {
         return Meaning::Kind(*kind);

@@ -33,7 +33,7 @@ pub fn factors(fit: &LinearFit, columns: &[Vec<f64>], weights: Option<&[f64]>) -
     let size = (2 * n).next_power_of_two();
     let mut planner = FftPlanner::new();
     let transform = planner.plan_fft_forward(size);
-    let mut spectrum = |values: &[f64]| {
+    let spectrum = |values: &[f64]| {
         let weighted = |(i, v): (usize, &f64)| Complex::new(v * weights.map_or(1.0, |w| w[i].max(0.0).sqrt()), 0.0);
         let mut transformed: Vec<Complex<f64>> = values.iter().enumerate().map(weighted).collect();
         transformed.resize(size, Complex::ZERO);

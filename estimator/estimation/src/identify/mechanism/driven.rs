@@ -12,7 +12,6 @@ use crate::identify::limits::{HELD_OUT, ROUNDING};
 use crate::regression::bootstrap::block_bootstrap;
 use crate::regression::linear::LinearFit;
 use crate::regression::long_run_variance::HALF_INTERVAL;
-use crate::regression::repetition;
 use foundation::estimate::{EstimateError, Fit, Parameter, Quality};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -68,7 +67,7 @@ struct Solved<'a> {
     gravity: Option<Gravity>,
     system: System,
     solution: LinearFit,
-    /// Factor on each error for a residual that repeats with the motion.
+    /// Factor on each error for a residual that repeats with the motion; empty for a swing.
     repeated: Vec<f64>,
     /// Sentence and ratio of a swing.
     swing: Option<(String, [f64; 2])>,
@@ -96,15 +95,13 @@ impl<'a> Solved<'a> {
             seen.fitted.extend(terms);
         }
         let told = swing.as_ref().map(|swing| (swing.sentence(), swing.ratio));
-        let (pieces, system, mut solution) = if let Some(Swing { pieces, system, solution, .. }) = swing {
-            (Cow::Owned(pieces), system, solution)
+        let (pieces, system, (mut solution, repeated)) = if let Some(Swing { pieces, system, solution, .. }) = swing {
+            (Cow::Owned(pieces), system, (solution, Vec::new()))
         } else {
             let system = System::stack(pieces, &seen.fitted, known, Piece::applied_force);
-            let solution = system.solve()?;
-            (Cow::Borrowed(pieces), system, solution)
+            let solved = system.solve_repeated()?;
+            (Cow::Borrowed(pieces), system, solved)
         };
-        let repeated = repetition::factors(&solution, &system.columns, system.weights(&solution).as_deref());
-        solution.scale_errors(&repeated);
         if let Some(Gravity::Absent { doubt, .. }) = &gravity {
             solution.widen(doubt);
         }
@@ -165,9 +162,7 @@ impl<'a> Solved<'a> {
         result.warnings = self.warnings();
         result.warnings.extend(self.repetition(coordinate));
         let quality = result.quality.as_ref();
-        let moving_rms = system.steady().residual_rms(&solution.values);
-        let misfit = |quality: &Quality| self.hardly_explains(quality).or_else(|| quality.misfit(moving_rms));
-        result.warnings.extend(quality.and_then(misfit));
+        result.warnings.extend(quality.and_then(|quality| self.hardly_explains(quality).or_else(|| quality.misfit())));
         result
     }
 

@@ -3,6 +3,7 @@
 use super::parameters::{Known, Term};
 use super::signals::{Piece, StateNoise};
 use crate::regression::linear::{LinearFit, least_squares};
+use crate::regression::repetition;
 use foundation::estimate::EstimateError;
 use nalgebra::{DMatrix, DVector};
 
@@ -96,6 +97,20 @@ impl System {
     /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and
     /// takes out the attenuation by noise in the regressors.
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
+        let (fit, weights) = self.weighted()?;
+        Ok(fit.without_attenuation(&self.column_noise(weights.as_deref()), self.noise_known_to))
+    }
+
+    /// The same with errors that count a residual that repeats with the motion, and the factor on each of them.
+    pub fn solve_repeated(&self) -> Result<(LinearFit, Vec<f64>), EstimateError> {
+        let (mut fit, weights) = self.weighted()?;
+        let repeated = repetition::factors(&fit, &self.columns, weights.as_deref());
+        fit.scale_errors(&repeated);
+        Ok((fit.without_attenuation(&self.column_noise(weights.as_deref()), self.noise_known_to), repeated))
+    }
+
+    /// The fit, and the weights that it was solved with.
+    fn weighted(&self) -> Result<(LinearFit, Option<Vec<f64>>), EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
         for _ in 0..WEIGHTING_ROUNDS {
@@ -103,14 +118,16 @@ impl System {
             let Some(weights) = weights.as_deref() else { break };
             fit = least_squares(&self.columns, &self.target, Some(weights))?;
         }
-        Ok(fit.without_attenuation(&self.column_noise(weights.as_deref()), self.noise_known_to))
+        Ok((fit, weights))
     }
 
     /// Weights of the samples after `fit`; `None` if no term depends on the direction.
     pub fn weights(&self, fit: &LinearFit) -> Option<Vec<f64>> {
         let dry = self.terms.iter().position(|t| *t == Term::Coulomb).filter(|_| self.is_weighted)?;
         let level = fit.values[dry].powi(2);
-        let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
+        // The weighted RMS would fall with every round toward that of the few rows that fit best.
+        let base = self.in_motion().map_or(fit.rms, |rows| rows.residual_rms(&fit.values));
+        let floor = base.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
         Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
     }
 
@@ -165,11 +182,17 @@ impl System {
         rest
     }
 
-    /// Away from reversals, where the filter has not mixed the two directions; everything, when little is left.
-    pub fn steady(&self) -> Self {
-        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return self.clone() };
+    /// The rows away from reversals, where the filter has not mixed the two directions; `None` if they are few. All without
+    /// Coulomb friction.
+    pub fn in_motion(&self) -> Option<Self> {
+        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return Some(self.clone()) };
         let kept: Vec<bool> = self.columns[dry].iter().map(|c| c.abs() > STEADY_DIRECTION).collect();
-        if 10 * kept.iter().filter(|k| **k).count() < kept.len() { self.clone() } else { self.filtered(&kept) }
+        (10 * kept.iter().filter(|k| **k).count() >= kept.len()).then(|| self.filtered(&kept))
+    }
+
+    /// The same, or everything if they are few.
+    pub fn steady(&self) -> Self {
+        self.in_motion().unwrap_or_else(|| self.clone())
     }
 
     /// The samples that are `kept`.

@@ -49,7 +49,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     let is_doubted = better_reading(&seen, &found).is_some() || is_unexplained(&found);
     let torque = torque_quality(&found, seen.noise_nm);
     let qualities = [&quality, &torque].into_iter().flatten().filter(|_| !is_doubted);
-    warnings.extend(qualities.filter_map(|quality| quality.misfit(quality.rms)));
+    warnings.extend(qualities.filter_map(Quality::misfit));
     if !recording.meta.compensated.is_empty() {
         let text = "weight and bias were removed from this recording already: the values are what is left of them";
         warnings.insert(0, text.to_owned());
