@@ -45,7 +45,7 @@ pub fn factors(fit: &LinearFit, columns: &[Vec<f64>], weights: Option<&[f64]>) -
     let mut sums = Sums { variance: vec![0.0; p], power: vec![0.0; p], squares: vec![0.0; p] };
     for (f, residual) in residual.iter().enumerate() {
         let part = |of: fn(&Complex<f64>) -> f64| DVector::from_fn(p, |j, _| of(&columns[j][f]));
-        sums.add([part(|c| c.re), part(|c| c.im)], residual.norm_sqr(), &fit.normal_inverse, n as f64);
+        sums.add(&[part(|c| c.re), part(|c| c.im)], residual.norm_sqr(), &fit.normal_inverse, n as f64);
     }
     (0..p).map(|j| sums.factor(j, fit.covariance[(j, j)], n as f64, size as f64)).collect()
 }
@@ -62,12 +62,12 @@ struct Sums {
 
 impl Sums {
     /// `regressors`: real and imaginary parts; `residual`: |r|².
-    fn add(&mut self, regressors: [DVector<f64>; 2], residual: f64, inverse: &DMatrix<f64>, n: f64) {
+    fn add(&mut self, regressors: &[DVector<f64>; 2], residual: f64, inverse: &DMatrix<f64>, n: f64) {
         let influence = regressors.each_ref().map(|part| inverse * part);
         let leverage = regressors.iter().zip(&influence).map(|(x, a)| x.dot(a)).sum::<f64>() / n;
         let residual = residual / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE));
-        for j in 0..self.power.len() {
-            let power = influence[0][j].powi(2) + influence[1][j].powi(2);
+        for (j, (re, im)) in influence[0].iter().zip(&influence[1]).enumerate() {
+            let power = re * re + im * im;
             self.variance[j] += power * residual;
             self.power[j] += power;
             self.squares[j] += power * power;
