@@ -156,6 +156,11 @@ fn text_of_labview_is_a_table() {
         format!("\t{:.5}\t{f:.6}", 1e3 * q).replace('.', ",")
     });
     is_the_drawer("lvm", head.to_owned() + &rows, r#"{"columns": {"q_m": "Position", "f_N": "Force"}}"#);
+    // Names with units, and no labels of units.
+    let bare = head.lines().filter(|line| !line.starts_with("Y_Unit_Label")).fold(String::new(), |all, line| all + line + "\n");
+    let named = rows.replacen("Position\tForce", "Position (mm)\tForce (N)", 1);
+    let sidecar = r#"{"columns": {"q_m": "Position (mm)", "f_N": "Force (N)"}}"#;
+    is_the_drawer("lvm without labels", bare + &named, sidecar);
     // Each channel has a clock; the second one is twice as fast and starts 0.2 s later.
     let fast = drawer(1400, 200.0);
     let head = "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tMulti\n***End_of_Header***\t\n\t\nChannels\t2\t\t\t\nSamples\t700\t\t1360\t\nDate\t2026/11/01\t\t2026/11/01\t\nTime\t10:00:00.0\t\t10:00:00.2\t\nY_Unit_Label\tmm\t\tN\t\n***End_of_Header***\t\t\t\t\nX_Value\tPosition\tX_Value\tForce\tComment\n";

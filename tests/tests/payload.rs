@@ -114,6 +114,15 @@ fn torques_that_do_not_belong_to_the_load_are_told_and_forces_at_a_limit_are_lef
 }
 
 #[test]
+fn two_orientations_show_no_error_and_no_weight() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = written(folder.path(), "two.csv", &poses(NAMES, &[30.0], 0.01));
+    let fit = json(&["fit", &log]);
+    let weight = fit["parameters"].as_array().expect("parameters").iter().find(|p| p["name"] == "weight_N");
+    assert_eq!(weight.expect("reported")["identified"], false, "{fit}");
+}
+
+#[test]
 fn what_changed_is_named_and_one_orientation_leaves_it_open() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = written(folder.path(), "first.csv", &poses(NAMES, &ROUND, 0.0));

@@ -203,6 +203,24 @@ fn seconds_called_milliseconds_are_told() {
     }
 }
 
+/// A share of a range is no torque: its factor is asked for.
+#[test]
+fn the_factor_of_a_percentage_is_asked_for() {
+    let said = suggest(&table("t_s,q_mm,force_%", |_, [t, place, push]| format!("{t:.3},{place:.6},{push:.6}")));
+    assert!(said.contains("\"f_N\": null"), "{said}");
+}
+
+/// A factor that only one of two runs needs is left to the user.
+#[test]
+fn a_factor_of_one_run_is_no_factor_of_the_file() {
+    let file = table("run,t_s,q_m,f_N", |at, [t, place, push]| {
+        let (run, metres) = if at < 750 { (1, 1e-3 * place) } else { (2, place) };
+        format!("{run},{t:.3},{metres:.6},{push:.6}")
+    });
+    let said = suggest(&file);
+    assert!(!said.contains("\"q_m\": 0.001") && said.contains("its unit looks wrong by 1000"), "{said}");
+}
+
 /// A file without a force says so.
 #[test]
 fn a_missing_force_is_told() {

@@ -110,7 +110,7 @@ impl Search<'_> {
                 let mut warnings = recordings.iter().flat_map(|r| &r.warnings);
                 let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()))
                     || recordings.iter().any(|recording| !has_motion_and_force(recording));
-                let doubt = warnings.find(|w| w.suggested.is_some());
+                let doubt = warnings.find(|w| w.suggested.is_some() && holds_for_all(w, &recordings));
                 let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
                 let has_step = is_mute && self.guess()?
                     || doubt.is_some_and(|doubt| self.settle(doubt))
@@ -130,6 +130,13 @@ impl Search<'_> {
             }
         })
     }
+}
+
+/// False for a factor that some recordings of the file do not need.
+fn holds_for_all(doubt: &Warning, recordings: &[Recording]) -> bool {
+    let is_factor = doubt.suggested.as_ref().is_some_and(|entries| entries.contains_key("scale"));
+    let has_it = |recording: &Recording| recording.warnings.iter().any(|other| other.suggested == doubt.suggested);
+    !is_factor || recordings.iter().all(has_it)
 }
 
 /// True for a recording with a motion and a force.

@@ -202,6 +202,10 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
 
 /// Name and unit text of a header that names a unit in words, behind a sign, or at the end of its name.
 fn without_brackets<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str) {
+    // A share of a range is no unit of a quantity, and only the user knows the range.
+    if let Some(name) = header.strip_suffix('%').filter(|name| !name.is_empty()) {
+        return (name.trim_end_matches(['_', ' ']), "%");
+    }
     let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
     let spoken = [" in ", " / ", "/", ", ", ",", "_in_", "|"].iter().find_map(|mark| {
         let mut places = header.match_indices(mark);

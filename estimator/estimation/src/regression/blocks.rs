@@ -21,7 +21,7 @@ pub struct Block {
 pub struct Solved {
     /// Values; 0 for a direction that the readings do not show.
     pub values: DVector<f64>,
-    /// False for a value that no reading shows, or only together with another one.
+    /// False for a value that no reading shows, or only together with another one, and for one whose error no block shows.
     pub identified: Vec<bool>,
     /// Influence of each block on the values; the sum of their squares is the covariance.
     pub influence: Vec<DVector<f64>>,
@@ -89,12 +89,12 @@ pub fn solve(blocks: &[Block]) -> Solved {
     }
     let influence =
         scaled.iter().zip(&half).zip(&residuals).map(|((x, a), e)| &inverse * (x.transpose() * (a * e))).collect();
-    let freedom = (0..p).map(|j| freedom(&scaled, &half, &inverse, j)).collect();
+    let freedom: Vec<f64> = (0..p).map(|j| freedom(&scaled, &half, &inverse, j)).collect();
     let unscaled = |v: DVector<f64>| v.component_mul(&scale);
     let influence: Vec<DVector<f64>> = influence;
     Solved {
         values: unscaled(values),
-        identified: (0..p).map(is_shown).collect(),
+        identified: (0..p).map(|j| is_shown(j) && freedom[j] > 0.0).collect(),
         influence: influence.into_iter().map(unscaled).collect(),
         freedom,
         residuals,
@@ -102,7 +102,7 @@ pub fn solve(blocks: &[Block]) -> Solved {
     }
 }
 
-/// Degrees of freedom of a value's error: of the quadratic form that CR2 is, under independent errors (Satterthwaite 1946).
+/// Degrees of freedom of a value's error, 0 if each block alone shows a part of the value: of the quadratic form that CR2 is, under independent errors (Satterthwaite 1946).
 ///
 /// The form is `B = diag(aᵀa) − UᵀN⁻¹U`, with the weights a of each block and `u = xᵀa`; they are (tr B)²/tr B².
 fn freedom(scaled: &[DMatrix<f64>], half: &[DMatrix<f64>], inverse: &DMatrix<f64>, j: usize) -> f64 {
@@ -119,6 +119,9 @@ fn freedom(scaled: &[DMatrix<f64>], half: &[DMatrix<f64>], inverse: &DMatrix<f64
     }
     let between = inverse * all;
     squares += (&between * &between).trace();
+    if trace < WITHOUT_OTHERS * wanted[j] {
+        return 0.0;
+    }
     if squares > 0.0 { trace * trace / squares } else { 1.0 }
 }
 

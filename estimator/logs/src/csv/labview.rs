@@ -133,7 +133,8 @@ impl Columns {
             if is_clock(names[k]) {
                 "(s)".to_owned()
             } else {
-                format!("({})", stated.next().map_or("", String::as_str))
+                // Without a label, the name may have the unit.
+                stated.next().map_or_else(String::new, |unit| format!("({unit})"))
             }
         };
         let mut lines = vec![self.kept.iter().map(name).collect::<Vec<_>>(), self.kept.iter().map(unit).collect()];
