@@ -157,7 +157,10 @@ fn text_of_labview_is_a_table() {
     });
     is_the_drawer("lvm", head.to_owned() + &rows, r#"{"columns": {"q_m": "Position", "f_N": "Force"}}"#);
     // Names with units, and no labels of units.
-    let bare = head.lines().filter(|line| !line.starts_with("Y_Unit_Label")).fold(String::new(), |all, line| all + line + "\n");
+    let bare = head
+        .lines()
+        .filter(|line| !line.starts_with("Y_Unit_Label"))
+        .fold(String::new(), |all, line| all + line + "\n");
     let named = rows.replacen("Position\tForce", "Position (mm)\tForce (N)", 1);
     let sidecar = r#"{"columns": {"q_m": "Position (mm)", "f_N": "Force (N)"}}"#;
     is_the_drawer("lvm without labels", bare + &named, sidecar);

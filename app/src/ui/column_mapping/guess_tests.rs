@@ -165,9 +165,12 @@ fn a_clock_that_stands_or_goes_back_is_not_the_time() {
 #[test]
 fn one_coordinate_a_shared_unit_and_open_factors() {
     for (headers, expected) in [
-        ("t_s,slide/position,ft/force/x", &["t_s = t_s s", "q_m = slide/position m", "f_N = ft/force/x N"][..]),
-        ("t_s,encoder_counts,f_N", &["t_s = t_s s", "q_m = encoder_counts", "f_N = f_N N"]),
-        ("%time,field.position0,field.effort0", &["t_s = %time s", "q_m = field.position0 m", "f_N = field.effort0 N"]),
+        ("t_s|0|9;slide/position;ft/force/x", &["t_s = t_s s", "q_m = slide/position m", "f_N = ft/force/x N"][..]),
+        ("t_s|0|9;encoder_counts|0|65000|3;f_N", &["t_s = t_s s", "q_m = encoder_counts", "f_N = f_N N"]),
+        (
+            "%time|0|9;field.position0;field.effort0",
+            &["t_s = %time s", "q_m = field.position0 m", "f_N = field.effort0 N"],
+        ),
         // Beside a force without a direction.
         ("t|0|9;q;f", &["t_s = t s", "q_m = q m", "f_N = f N"][..]),
         ("t|0|9;x;F", &["t_s = t s", "q_m = x m", "f_N = F N"]),
