@@ -72,7 +72,9 @@ fn killed_after(place: &Path, until_s: f64) -> Said {
     let heard = File::create(&complaints).expect("a file");
     let mut child = child::command("work", place, "").stdout(Stdio::piped()).stderr(heard).spawn().expect("starts");
     let mut said = Said::default();
-    for line in BufReader::new(child.stdout.take().expect("piped")).lines() {
+    // It is read from until the child is gone: printing into a closed pipe panics.
+    let mut lines = BufReader::new(child.stdout.take().expect("piped")).lines();
+    for line in &mut lines {
         said.take(&line.expect("readable"));
         if said.recorded_s >= until_s {
             break;
@@ -80,6 +82,7 @@ fn killed_after(place: &Path, until_s: f64) -> Said {
     }
     child.kill().expect("SIGKILL");
     child.wait().expect("gone");
+    drop(lines);
     let heard = std::fs::read(&complaints).expect("there");
     child::must_not_have_panicked(&String::from_utf8_lossy(&heard));
     assert!(said.recorded_s >= until_s, "it ended by itself: {said:?}");
