@@ -126,16 +126,20 @@ impl System {
         let dry = self.terms.iter().position(|t| *t == Term::Coulomb).filter(|_| self.is_weighted)?;
         let level = fit.values[dry].powi(2);
         // The weighted RMS would fall with every round toward that of the few rows that fit best.
-        let base = self.in_motion().map_or(fit.rms, |rows| rows.residual_rms(&fit.values));
+        let base = self.rms_in_motion(&fit.values).unwrap_or(fit.rms);
         let floor = base.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
         Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
     }
 
     /// RMS residual with these values of the terms; all rows count the same.
     pub fn residual_rms(&self, values: &[f64]) -> f64 {
-        let predicted = |i: usize| self.columns.iter().zip(values).map(|(c, v)| c[i] * v).sum::<f64>();
-        let squares: f64 = self.target.iter().enumerate().map(|(i, target)| (target - predicted(i)).powi(2)).sum();
+        let squares: f64 =
+            self.target.iter().enumerate().map(|(i, target)| (target - self.predicted(i, values)).powi(2)).sum();
         (squares / self.target.len().max(1) as f64).sqrt()
+    }
+
+    fn predicted(&self, row: usize, values: &[f64]) -> f64 {
+        self.columns.iter().zip(values).map(|(c, v)| c[row] * v).sum()
     }
 
     /// RMS residual that noise in the motion makes with these values of the terms.
@@ -182,17 +186,25 @@ impl System {
         rest
     }
 
-    /// The rows away from reversals, where the filter has not mixed the two directions; `None` if they are few. All without
-    /// Coulomb friction.
-    pub fn in_motion(&self) -> Option<Self> {
-        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return Some(self.clone()) };
+    /// True for each row away from reversals, where the filter has not mixed the two directions; `None` if they are few, or
+    /// without Coulomb friction.
+    fn in_motion(&self) -> Option<Vec<bool>> {
+        let dry = self.terms.iter().position(|t| *t == Term::Coulomb)?;
         let kept: Vec<bool> = self.columns[dry].iter().map(|c| c.abs() > STEADY_DIRECTION).collect();
-        (10 * kept.iter().filter(|k| **k).count() >= kept.len()).then(|| self.filtered(&kept))
+        (10 * kept.iter().filter(|k| **k).count() >= kept.len()).then_some(kept)
     }
 
-    /// The same, or everything if they are few.
+    /// RMS residual of the rows in motion with these values of the terms; `None` if they are few.
+    fn rms_in_motion(&self, values: &[f64]) -> Option<f64> {
+        let kept = self.in_motion()?;
+        let rows = (0..kept.len()).filter(|&i| kept[i]);
+        let squares: f64 = rows.clone().map(|i| (self.target[i] - self.predicted(i, values)).powi(2)).sum();
+        Some((squares / rows.count().max(1) as f64).sqrt())
+    }
+
+    /// Rows away from reversals, or everything if they are few.
     pub fn steady(&self) -> Self {
-        self.in_motion().unwrap_or_else(|| self.clone())
+        self.in_motion().map_or_else(|| self.clone(), |kept| self.filtered(&kept))
     }
 
     /// The samples that are `kept`.
