@@ -243,11 +243,12 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
 /// Doubt about the unit of a clock that is too fast for a measurement of motion, or whose stamps are whole numbers and too slow.
 /// `stated_s`: seconds of the unit that the file states, 1 without one; `undone`: the scale in a sidecar that makes seconds of it.
 pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warning> {
-    let is_whole = |t: &f64| t.fract() == 0.0;
-    let rate_hz = usual_step(time)?.recip();
-    if time.len() < FEWEST_STAMPS {
+    let is_whole = time.iter().all(|t| t.fract() == 0.0);
+    // The usual step of a long recording takes a while: it is needed for few of them.
+    if time.len() < FEWEST_STAMPS || stated_s >= 1.0 && !is_whole {
         return None;
     }
+    let rate_hz = usual_step(time)?.recip();
     let (kind, column) = (super::checks::UNIT.to_owned(), Some("t_s".to_owned()));
     if stated_s < 1.0 && rate_hz > RATES_HZ.end && RATES_HZ.contains(&(rate_hz * stated_s)) {
         let text = format!(
@@ -260,7 +261,7 @@ pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warnin
         let suggested = json!({ "scale": { "t_s": undone } }).as_object().cloned();
         return Some(Warning { kind, column, text, suggested, ..Warning::default() });
     }
-    if !time.iter().all(is_whole) {
+    if !is_whole {
         return None;
     }
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;

@@ -28,7 +28,15 @@ fn with_delimiter(start: &[u8], delimiter: u8) -> Option<UnitCells> {
     if later.len() < 2 || later.iter().any(|record| record.cells.len() != width) {
         return None;
     }
+    // A label of `0"` is no length.
+    let is_text = |column: usize| {
+        let mut cells = records.iter().filter_map(|record| record.cells.get(column));
+        cells.any(|cell| ["trial", "label"].contains(&cell.as_str()))
+    };
     let unit = |column: usize| {
+        if is_text(column) {
+            return None;
+        }
         let mut units = later.iter().map(|record| &record.cells[column]).filter(|cell| !cell.is_empty());
         let (_, unit) = parted(units.next()?)?;
         let is_known = matches!(parse(unit, &[]), Written::Known(..));
