@@ -5,8 +5,13 @@ use tests::drawer::{File, drawer, is_the_drawer};
 
 /// Runs `info --suggest`; its output.
 fn suggest(file: &File) -> String {
+    suggest_with(file, &[])
+}
+
+fn suggest_with(file: &File, flags: &[&str]) -> String {
     let mut command = std::process::Command::new(tests::touchstone());
-    let output = command.args(["info", "--suggest", "log.csv"]).current_dir(file.0.path()).output().expect("it runs");
+    command.args(["info", "--suggest", "log.csv"]).args(flags).current_dir(file.0.path());
+    let output = command.output().expect("it runs");
     assert!(output.status.success(), "{output:?}");
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
@@ -226,6 +231,26 @@ fn a_factor_of_one_run_is_no_factor_of_the_file() {
 fn a_missing_force_is_told() {
     let said = suggest(&table("t_s,q_m,current_A", |_, [t, place, push]| format!("{t:.3},{place:.6},{push:.6}")));
     assert!(said.contains("no column is recognized as a force or torque") && said.contains("`current_A`"), "{said}");
+}
+
+/// A payload moves by its orientation.
+#[test]
+fn an_orientation_is_a_motion() {
+    let header = "t_s,r11,r12,r13,r21,r22,r23,r31,r32,r33,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm";
+    let said = suggest(&table(header, |_, [t, ..]| {
+        let (s, c) = t.sin_cos();
+        format!("{t:.3},1,0,0,0,{c},{},0,{s},{c},0,{s:.3},{c:.3},0,0,0", -s)
+    }));
+    assert!(!said.contains("recognized"), "{said}");
+}
+
+/// A problem names the sidecar that the user gave.
+#[test]
+fn a_given_sidecar_is_named() {
+    let file = table("t_s,q_m,f_N", |_, [t, place, push]| format!("{t:.3},{place:.6},{push:.6}"));
+    std::fs::write(file.0.path().join("mine.json"), r#"{"rate_hz":-5}"#).expect("written");
+    let said = suggest_with(&file, &["--meta", "mine.json"]);
+    assert!(said.contains("mine.json") && !said.contains("log.meta.json"), "{said}");
 }
 
 /// The index of a data frame is a clock if its numbers are times.

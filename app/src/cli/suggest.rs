@@ -9,6 +9,7 @@ use estimator::log::units;
 use estimator::log::{
     ALTERNATION, LogError, NO_CLOCK, NO_KNOWN_COLUMN, UNIT, load, parse_sidecar, put_suggested, sidecar_path,
 };
+use estimator::signal::wrench;
 use haptics::recording::{Recording, Suggested, Warning};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -36,6 +37,8 @@ pub(crate) struct Said {
 /// Entries of a sidecar that make a log load without doubts.
 struct Search<'a> {
     log: &'a Path,
+    /// The user's sidecar, as sentences name it.
+    sidecar: &'a Path,
     /// Folder of the sidecar in which the entries are tried.
     tried: tempfile::TempDir,
     entries: Suggested,
@@ -59,7 +62,7 @@ impl Search<'_> {
             return Ok(false);
         }
         self.has_guessed = true;
-        let meta = parse_sidecar(&Value::Object(self.entries.clone()).to_string(), &sidecar_path(self.log))?;
+        let meta = parse_sidecar(&Value::Object(self.entries.clone()).to_string(), self.sidecar)?;
         let mut draft = Draft::new(&look(self.log)?, meta);
         draft.guess_the_rest();
         let Value::Object(mut guessed) = serde_json::to_value(draft.sidecar())? else { return Ok(false) };
@@ -125,8 +128,7 @@ impl Search<'_> {
                     None => mends(&error) && self.guess()?,
                 };
                 let tried = self.tried.path().join(TRIED).display().to_string();
-                let named = error.to_string().replace(&tried, &sidecar_path(self.log).display().to_string());
-                (has_step, Some(named))
+                (has_step, Some(error.to_string().replace(&tried, &self.sidecar.display().to_string())))
             }
         })
     }
@@ -149,7 +151,8 @@ fn has_force(recording: &Recording) -> bool {
 }
 
 fn has_motion(recording: &Recording) -> bool {
-    has_quantity(recording, &["q", "dq", "ddq", "x", "y", "z", "v"])
+    wrench::orientations(recording).is_some()
+        || has_quantity(recording, &["q", "dq", "ddq", "x", "y", "z", "v"])
 }
 
 /// True for a recording with a channel of the program's whose quantity starts with one of these.
@@ -201,7 +204,7 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
         Err(_) => Suggested::new(),
     };
     let tried = tempfile::tempdir()?;
-    let mut search = Search { log, tried, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
+    let mut search = Search { log, sidecar: &path, tried, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
     let mut open = None;
     for _ in 0..ROUNDS {
         let (has_step, problem) = search.step()?;

@@ -243,9 +243,8 @@ fn name_of(kind: Kind, reading: &Reading) -> Option<String> {
 /// component of a force is all of it.
 fn name_one_coordinate(candidates: &mut [Candidate], columns: &[ColumnFacts]) {
     let is_component = |c: &Candidate| ["fx_N", "fy_N", "fz_N"].contains(&c.name.as_str()) && c.points < OWN_NAME;
-    let has_only =
-        |name: &str| candidates.iter().any(|c| c.name == name) && !candidates.iter().any(|c| c.name == "f_N");
-    if has_only("q_m") && candidates.iter().filter(|c| is_component(c)).count() == 1 {
+    let has_any = |name: &str| candidates.iter().any(|c| c.name == name);
+    if has_any("q_m") && !has_any("f_N") && candidates.iter().filter(|c| is_component(c)).count() == 1 {
         candidates.iter_mut().filter(|c| is_component(c)).for_each(|c| c.name = "f_N".into());
     }
     let has = |name: &str| candidates.iter().any(|c| c.name == name);

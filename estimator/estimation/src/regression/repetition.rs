@@ -8,7 +8,7 @@
 
 use super::linear::LinearFit;
 use super::long_run_variance::inflation;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -43,9 +43,15 @@ pub fn factors(fit: &LinearFit, columns: &[Vec<f64>], weights: Option<&[f64]>) -
     let residual = spectrum(&fit.residuals);
     let columns: Vec<Vec<Complex<f64>>> = columns.iter().map(|column| spectrum(column)).collect();
     let mut sums = Sums { variance: vec![0.0; p], power: vec![0.0; p], squares: vec![0.0; p] };
-    for (f, residual) in residual.iter().enumerate() {
-        let part = |of: fn(&Complex<f64>) -> f64| DVector::from_fn(p, |j, _| of(&columns[j][f]));
-        sums.add(&[part(|c| c.re), part(|c| c.im)], residual.norm_sqr(), &fit.normal_inverse, n as f64);
+    let (mut parts, mut influence) = (DMatrix::zeros(p, 2), DMatrix::zeros(p, 2));
+    // The other half of a real sequence's spectrum mirrors this one.
+    for (f, residual) in residual.iter().enumerate().take(size / 2 + 1) {
+        for (j, column) in columns.iter().enumerate() {
+            (parts[(j, 0)], parts[(j, 1)]) = (column[f].re, column[f].im);
+        }
+        fit.normal_inverse.mul_to(&parts, &mut influence);
+        let count = if f == 0 || f == size / 2 { 1.0 } else { 2.0 };
+        sums.add(&influence, parts.dot(&influence) / n as f64, residual.norm_sqr(), count);
     }
     (0..p).map(|j| sums.factor(j, fit.covariance[(j, j)], n as f64, size as f64)).collect()
 }
@@ -61,16 +67,14 @@ struct Sums {
 }
 
 impl Sums {
-    /// `regressors`: real and imaginary parts; `residual`: |r|².
-    fn add(&mut self, regressors: &[DVector<f64>; 2], residual: f64, inverse: &DMatrix<f64>, n: f64) {
-        let influence = regressors.each_ref().map(|part| inverse * part);
-        let leverage = regressors.iter().zip(&influence).map(|(x, a)| x.dot(a)).sum::<f64>() / n;
+    /// `influence`: real and imaginary parts, p x 2; `residual`: |r|²; `count` of equal frequencies.
+    fn add(&mut self, influence: &DMatrix<f64>, leverage: f64, residual: f64, count: f64) {
         let residual = residual / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE));
-        for (j, (re, im)) in influence[0].iter().zip(&influence[1]).enumerate() {
-            let power = re * re + im * im;
-            self.variance[j] += power * residual;
-            self.power[j] += power;
-            self.squares[j] += power * power;
+        for (j, parts) in influence.row_iter().enumerate() {
+            let power = parts.norm_squared();
+            self.variance[j] += count * power * residual;
+            self.power[j] += count * power;
+            self.squares[j] += count * power * power;
         }
     }
 

@@ -99,7 +99,7 @@ fn laid_out_anew(
         let made = long_table::wide(&all, &columns);
         let is_long = made.is_some();
         LaidOutAnew { text: Some(made.unwrap_or(all)), is_long, note: is_long.then_some(long_table::NOTE), ..none }
-    } else if let Some(found) = unit_cells::of(start) {
+    } else if let Some(found) = unit_cells::of(start, meta) {
         LaidOutAnew { text: Some(found.taken_out(&all()?)), units: found.units, ..none }
     } else {
         none

@@ -5,6 +5,7 @@ use super::cells::{Notation, number};
 use super::decimal::Decimal;
 use super::layout;
 use crate::written_units::{Written, parse};
+use haptics::recording::Meta;
 
 /// A table with units behind its numbers.
 pub struct UnitCells {
@@ -13,13 +14,21 @@ pub struct UnitCells {
     pub units: Vec<String>,
 }
 
+/// Columns whose cells are text, though it may look like a number with a unit: a label of `0"` is no length.
+const TEXTS: [&str; 2] = ["trial", "label"];
+
 /// The units behind the numbers of the later rows at the start of a text; none if all columns hold numbers or words.
-pub fn of(start: &[u8]) -> Option<UnitCells> {
+pub fn of(start: &[u8], meta: Option<&Meta>) -> Option<UnitCells> {
+    let stated = meta.into_iter().flat_map(|meta| {
+        TEXTS.iter().filter_map(|text| meta.columns.get(*text)).chain(meta.select.keys()).map(String::as_str)
+    });
+    let texts: Vec<&str> = TEXTS.into_iter().chain(stated).collect();
     // With decimal commas, a row may hold more commas than delimiters.
-    [b'|', b'\t', b';', b','].into_iter().find_map(|delimiter| with_delimiter(start, delimiter))
+    [b'|', b'\t', b';', b','].into_iter().find_map(|delimiter| with_delimiter(start, delimiter, &texts))
 }
 
-fn with_delimiter(start: &[u8], delimiter: u8) -> Option<UnitCells> {
+/// `texts`: names of the columns of text.
+fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCells> {
     let mut records = layout::records(start, delimiter, layout::LOOKED_AT);
     // The last one may be cut off.
     records.pop();
@@ -28,10 +37,9 @@ fn with_delimiter(start: &[u8], delimiter: u8) -> Option<UnitCells> {
     if later.len() < 2 || later.iter().any(|record| record.cells.len() != width) {
         return None;
     }
-    // A label of `0"` is no length.
     let is_text = |column: usize| {
         let mut cells = records.iter().filter_map(|record| record.cells.get(column));
-        cells.any(|cell| ["trial", "label"].contains(&cell.as_str()))
+        cells.any(|cell| texts.contains(&cell.as_str()))
     };
     let unit = |column: usize| {
         if is_text(column) {
@@ -90,4 +98,22 @@ fn parted(cell: &str) -> Option<(&str, &str)> {
 fn quoted(cell: &str, delimiter: u8) -> String {
     let needs_quotes = cell.contains(['"', '\n']) || cell.contains(char::from(delimiter));
     if needs_quotes { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROWS: &str = "t,wheel,place\n0,0\",1 mm\n1,1\",2 mm\n2,1\",3 mm\n3,2\",4 mm\n4,2\",5 mm\n5,2\"";
+
+    /// A label that looks like inches stays text if the sidecar says that it is one.
+    #[test]
+    fn columns_of_text_keep_their_marks() {
+        let found = of(ROWS.as_bytes(), None).expect("units");
+        assert_eq!(found.units, ["", "\"", "mm"]);
+        for stated in [r#"{"columns":{"trial":"wheel"}}"#, r#"{"select":{"wheel":["0\""]}}"#] {
+            let meta: Meta = serde_json::from_str(stated).expect("a sidecar");
+            assert_eq!(of(ROWS.as_bytes(), Some(&meta)).expect("units").units, ["", "", "mm"], "{stated}");
+        }
+    }
 }

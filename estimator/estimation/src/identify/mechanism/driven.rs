@@ -188,9 +188,8 @@ impl<'a> Solved<'a> {
         let terms = self.system.terms.iter().zip(&self.repeated);
         let (term, factor) = terms.filter(|(_, factor)| **factor > 1.0).max_by(|a, b| a.1.total_cmp(b.1))?;
         Some(format!(
-            "the residual repeats with the motion, so it is not noise: a rounded position, a late channel, or a force that the model \
-             does not contain does that; the error of {} is {factor:.1} times as large as noise would make it; vary the motion, and \
-             run the diagnosis",
+            "the residual repeats with the motion, as that of a rounded position, a late channel or a missing force does: the error \
+             of `{}` is {factor:.1} times as large as noise would make it; vary the motion",
             term.name(coordinate)
         ))
     }
