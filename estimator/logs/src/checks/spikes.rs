@@ -208,11 +208,27 @@ fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bo
     if there * back >= 0.0 || height < least || (values[end] - values[at - 1]).abs() > RETURN_SHARE * height {
         return false;
     }
+    let is_small = |step: f64| SPIKE_STEPS * step.abs() < height;
+    // The top of a slope has one at its side; a spike has a sample as far away as itself there only if that is another one.
+    let before = (at.saturating_sub(LONGEST + 2)..at - 1).map(|i| values[at - 1] - values[i]);
+    let after = (end + 1..(end + LONGEST + 2).min(values.len())).map(|i| values[end] - values[i]);
+    if !is_quiet(before, is_small) || !is_quiet(after, is_small) {
+        return false;
+    }
     let usual = usual_step(values, at, FORGIVEN);
-    // A force out of nothing may be a touch; a position that stands still does not leap.
-    let rest = usual > 0.0 || position || values[at - 1] != 0.0;
+    // A force out of nothing may be a touch; a position that stands still does not leap. Beside equal values, the smallest step of the
+    // channel may be a coarse one.
+    let rest = match usual > 0.0 {
+        true => true,
+        false => position || values[at - 1] != 0.0 && values.windows(2).any(|w| w[0] != w[1] && is_small(w[1] - w[0])),
+    };
     let is_alone = run.len() == 1 && height > SPIKE_STEPS * usual;
     rest && (is_alone || height > CLUSTER_STEPS * usual_step(values, at, FORGIVEN_IN_CLUSTERS))
+}
+
+/// True for a side of a spike with a sample near it, and for one without samples.
+fn is_quiet(mut steps: impl ExactSizeIterator<Item = f64>, is_small: impl Fn(f64) -> bool) -> bool {
+    steps.len() == 0 || steps.any(is_small)
 }
 
 /// Largest step around a sample, without the two steps at the sample itself and so many others, but at least the smallest
