@@ -25,6 +25,9 @@ const TICK_S: f64 = 1e-7;
 const DAYS: [(&str, std::ops::Range<f64>); 2] = [("1900", 2e4..8e4), ("year 0", 7.1e5..7.8e5)];
 /// Rates at which motion is measured, Hz.
 const RATES_HZ: std::ops::Range<f64> = 5.0..50_000.0;
+/// Rate below which a clock is doubted even if its stamps are no whole numbers, Hz. Choice: a hundredth of the slowest motion; creep and
+/// drift are recorded at 0.1 to 1 Hz.
+const SLOWEST_HZ: f64 = 0.05;
 /// Fewer stamps show no clock: they may count poses.
 const FEWEST_STAMPS: usize = 50;
 /// Length of a day, s.
@@ -240,12 +243,14 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
     Some(format!("counts {name} since {epoch}, not seconds: its times are seconds since the first row"))
 }
 
-/// Doubt about the unit of a clock that is too fast for a measurement of motion, or whose stamps are whole numbers and too slow.
+/// Doubt about the unit of a clock that is too fast for a measurement of motion, or too slow: far too slow unless its stamps are whole
+/// numbers.
 /// `stated_s`: seconds of the unit that the file states, 1 without one; `undone`: the scale in a sidecar that makes seconds of it.
 pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warning> {
     let is_whole = time.iter().all(|t| t.fract() == 0.0);
     // The usual step of a long recording takes a while: it is needed for few of them.
-    if time.len() < FEWEST_STAMPS || stated_s >= 1.0 && !is_whole {
+    let is_slow = || SLOWEST_HZ * (time[time.len() - 1] - time[0]) > time.len() as f64;
+    if time.len() < FEWEST_STAMPS || stated_s >= 1.0 && !is_whole && !is_slow() {
         return None;
     }
     let rate_hz = usual_step(time)?.recip();
@@ -261,13 +266,14 @@ pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warnin
         let suggested = json!({ "scale": { "t_s": undone } }).as_object().cloned();
         return Some(Warning { kind, column, text, suggested, ..Warning::default() });
     }
-    if !is_whole {
+    if !is_whole && !is_slow() {
         return None;
     }
     let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
     let text = format!(
-        "the times are whole numbers and run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \
+        "the times {}run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \
          {{\"t_s\": {unit:e}}} in the sidecar, and if they count samples, \"columns\": {{\"t_s\": null}} and \"rate_hz\"",
+        if is_whole { "are whole numbers and " } else { "" },
         shown(rate_hz),
         shown(rate_hz / unit)
     );

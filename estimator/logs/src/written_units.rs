@@ -177,8 +177,11 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
         return (quantity, &header[header.len() - symbol.len()..]);
     }
     let groups = bracketed(header);
+    // `position[a]` is that of a joint, `force[A]` a current.
+    let is_item = |group: &Bracketed<'a>, dimension| group.may_be_item && !wanted.is_empty() && group.inside.len() == 1 && !wanted.contains(&dimension);
     let is_read = |group: &&Bracketed<'a>| match parse(group.inside, wanted) {
         Written::Unknown => false,
+        Written::Known(dimension, _) if is_item(group, dimension) => false,
         _ if group.is_last => true,
         Written::Known(dimension, _) => dimension != Dimension::Other && !group.may_be_item,
         Written::Counts => false,
@@ -276,17 +279,20 @@ fn bracketed(header: &str) -> Vec<Bracketed<'_>> {
     opened.filter_map(group).collect()
 }
 
-/// True for a unit behind a mere blank, point or underscore. Numbers, single letters, and the words *in* and *min* are more
+/// Units that are words of names, too.
+const SHORT_WORDS: [&str; 9] = ["in", "min", "step", "inc", "digit", "bar", "amp", "amps", "day"];
+
+/// True for a unit behind a mere blank, point or underscore. Numbers, single letters, and words such as *in* and *bar* are more
 /// likely part of a name, unless they fit the quantity.
 fn is_suffix(text: &str, wanted: &[Dimension]) -> bool {
-    let is_short = text.len() == 1 || matches!(text.to_lowercase().as_str(), "in" | "min" | "step" | "inc" | "digit");
+    let is_short = text.len() == 1 || SHORT_WORDS.contains(&text.to_lowercase().as_str());
     let is_rate = ["_s", "/s", "s2"].iter().any(|end| text.ends_with(end));
     match parse(text, wanted) {
         Written::Known(dimension, _) if text.contains(|c: char| c.is_ascii_digit()) => {
-            is_rate && dimension != Dimension::Other
+            (is_rate || times(&tidied(text)).0 < 1.0) && dimension != Dimension::Other
         }
         Written::Known(dimension, _) if is_short => wanted.contains(&dimension),
-        Written::Known(dimension, _) => dimension != Dimension::Other,
+        Written::Known(..) => true,
         Written::Counts => !is_short,
         Written::Unknown => false,
     }

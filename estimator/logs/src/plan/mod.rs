@@ -277,7 +277,7 @@ impl Planner<'_> {
                 Written::Known(dimension, factor) if dimension == target.dimension => Ok(factor),
                 Written::Known(..) => Err(measures_else(&text)),
                 Written::Counts | Written::Unknown => {
-                    Err(self.unknown_unit(header, &text, name.split('_').next().unwrap_or(name)))
+                    Err(self.unknown_unit(header, &text, name))
                 }
             },
         }
@@ -287,8 +287,9 @@ impl Planner<'_> {
     fn note_doubtful_unit(&mut self, name: &str, target: Unit, column: usize) {
         let header = self.headers[column].as_str();
         let scaled = self.meta.scale.contains_key(name) || self.meta.scale.contains_key(header);
-        let word = header.rsplit_once(['_', ' ']).map_or("", |(_, word)| word);
-        let is_word = word.chars().count() > 1 && word.chars().all(char::is_alphabetic);
+        let word = header.rsplit_once(['_', ' ', '/']).map_or("", |(_, word)| word);
+        let is_unit = matches!(written_units::parse(word, &[]), Written::Known(..));
+        let is_word = (word.chars().count() > 1 || is_unit) && word.chars().all(char::is_alphabetic);
         if is_word && !scaled && target.factor == 1.0 && self.unit_text(column, &[target.dimension]).is_empty() {
             let note = format!("the name `{header}` states no known unit: its values are taken as {}", target.si);
             self.plan.notes.push(note);
@@ -305,11 +306,13 @@ impl Planner<'_> {
         if stated.is_empty() { written_units::in_header(&self.headers[column], wanted).1 } else { stated }.to_owned()
     }
 
-    fn unknown_unit(&self, column: &str, unit: &str, quantity: &str) -> LogError {
-        let dimensions = units::quantity_dimensions(quantity).unwrap_or(&[]);
+    /// `name`: one of the program's, or its quantity alone.
+    fn unknown_unit(&self, column: &str, unit: &str, name: &str) -> LogError {
+        let own = units::split(name).map(|(_, unit)| [unit.dimension]);
+        let dimensions = own.as_ref().map(<[_; 1]>::as_slice).or(units::quantity_dimensions(name)).unwrap_or(&[]);
         let name = match dimensions.first() {
-            Some(dimension) => format!("{quantity}_{}", units::si(*dimension)),
-            None => quantity.to_owned(),
+            Some(dimension) if own.is_none() => format!("{name}_{}", units::si(*dimension)),
+            _ => name.to_owned(),
         };
         LogError::UnknownUnit {
             column: column.to_owned(),

@@ -23,8 +23,11 @@ pub(super) fn tidied(text: &str) -> String {
     // Compatible forms of Unicode: `㎜` and `ｍｍ` are `mm`. The degree sign is none of them.
     let signs = [("°C", "degc"), ("℃", "degc"), ("°", "deg"), ("º", "deg")];
     let leveled: String = signs.into_iter().fold(leveled, |text, (from, to)| text.replace(from, to)).nfkc().collect();
-    let signs =
-        [("μ", "u"), ("\u{2212}", "-"), ("\u{2215}", "/"), ("\u{2044}", "/"), ("·", "."), ("⋅", "."), (" per ", "/")];
+    let signs = [
+        ("-force", "force"),
+        (" force", "force"),
+        ("μ", "u"), ("\u{2212}", "-"), ("\u{2215}", "/"), ("\u{2044}", "/"), ("·", "."), ("⋅", "."), (" per ", "/"),
+    ];
     signs.into_iter().fold(leveled, |text, (from, to)| text.replace(from, to))
 }
 

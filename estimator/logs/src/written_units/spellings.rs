@@ -26,7 +26,7 @@ pub(super) const OTHER: Exponents = [0, 0, 0, 0, 9];
 pub(super) type Atom = (&'static [&'static str], Exponents, f64);
 
 /// Units that take the prefixes of [`PREFIXES`].
-pub(super) const PREFIXED: [Atom; 9] = [
+pub(super) const PREFIXED: [Atom; 11] = [
     (&["m", "meter", "meters", "metre", "metres", "м", "米"], LENGTH, 1.0),
     (&["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden", "с", "秒"], TIME, 1.0),
     (&["rad", "radian", "radians", "рад", "弧度"], ANGLE, 1.0),
@@ -36,28 +36,32 @@ pub(super) const PREFIXED: [Atom; 9] = [
     (&["bar"], PRESSURE, 1e5),
     (&["V", "volt", "volts"], OTHER, 1.0),
     (&["A", "amp", "amps", "ampere"], OTHER, 1.0),
+    (&["deg"], ANGLE, TURN_RAD / 360.0),
+    (&["rpm"], TURN_RATE, TURN_RAD / 60.0),
 ];
 
-pub(super) const PLAIN: [Atom; 34] = [
+pub(super) const PLAIN: [Atom; 38] = [
     (&["in", "inch", "inches", "zoll", "\""], LENGTH, INCH_M),
     (&["ft", "foot", "feet"], LENGTH, 12.0 * INCH_M),
+    (&["yd", "yard", "yards"], LENGTH, 36.0 * INCH_M),
     (&["mil", "mils", "thou"], LENGTH, 1e-3 * INCH_M),
     (&["uin", "microinch"], LENGTH, 1e-6 * INCH_M),
     (&["micron", "microns"], LENGTH, 1e-6),
     (&["min", "minute", "minutes", "мин"], TIME, 60.0),
     (&["h", "hr", "hour", "hours"], TIME, 3600.0),
+    (&["day", "days"], TIME, 86_400.0),
     (&["micros"], TIME, 1e-6),
     (&["millis"], TIME, 1e-3),
     (&["nanos"], TIME, 1e-9),
-    (&["deg", "degs", "degree", "degrees", "grados", "град", "度"], ANGLE, TURN_RAD / 360.0),
+    (&["degs", "degree", "degrees", "grados", "град", "度"], ANGLE, TURN_RAD / 360.0),
     (&["gon"], ANGLE, TURN_RAD / 400.0),
     (&["arcmin"], ANGLE, TURN_RAD / 21_600.0),
     (&["arcsec"], ANGLE, TURN_RAD / 1_296_000.0),
     (&["rev", "revs", "revolution", "revolutions", "turn", "turns", "umdr", "об", "转"], ANGLE, TURN_RAD),
-    (&["gf", "pond"], FORCE, 1e-3 * GRAVITY_M_S2),
-    (&["kgf", "kp", "кгс"], FORCE, GRAVITY_M_S2),
-    (&["lbf", "lbsf"], FORCE, POUND_KG * GRAVITY_M_S2),
-    (&["ozf"], FORCE, POUND_KG / 16.0 * GRAVITY_M_S2),
+    (&["gf", "pond", "gramforce"], FORCE, 1e-3 * GRAVITY_M_S2),
+    (&["kgf", "kp", "kilogramforce", "кгс"], FORCE, GRAVITY_M_S2),
+    (&["lbf", "lbsf", "poundforce"], FORCE, POUND_KG * GRAVITY_M_S2),
+    (&["ozf", "ounceforce"], FORCE, POUND_KG / 16.0 * GRAVITY_M_S2),
     (&["klbf"], FORCE, 1e3 * POUND_KG * GRAVITY_M_S2),
     (&["pdl", "poundal", "poundals"], FORCE, POUND_KG * 12.0 * INCH_M),
     (&["dyn", "dyne", "dynes"], FORCE, 1e-5),
@@ -66,11 +70,13 @@ pub(super) const PLAIN: [Atom; 34] = [
     (&["oz", "ounce", "ounces"], MASS, POUND_KG / 16.0),
     (&["psi"], PRESSURE, POUND_KG * GRAVITY_M_S2 / (INCH_M * INCH_M)),
     (&["atm"], PRESSURE, 101_325.0),
-    (&["rpm"], TURN_RATE, TURN_RAD / 60.0),
     (&["rps"], TURN_RATE, TURN_RAD),
-    (&["dps"], TURN_RATE, TURN_RAD / 360.0),
+    (&["dps", "degps"], TURN_RATE, TURN_RAD / 360.0),
+    (&["radps"], TURN_RATE, 1.0),
     (&["mps"], SPEED, 1.0),
     (&["ips"], SPEED, INCH_M),
+    (&["kph", "kmh"], SPEED, 1.0 / 3.6),
+    (&["mph"], SPEED, 63_360.0 * INCH_M / 3600.0),
     (&["ipm"], SPEED, INCH_M / 60.0),
     (&["degc", "celsius", "K", "kelvin", "Hz", "hertz", "W", "watt"], OTHER, 1.0),
 ];
@@ -88,17 +94,18 @@ pub(super) const PREFIXES: [(&[&str], f64); 9] = [
 ];
 
 /// Numbers without a unit of their own.
-pub(super) const COUNTS: [&str; 16] = [
+pub(super) const COUNTS: [&str; 19] = [
     "count", "counts", "cts", "cnt", "tick", "ticks", "lsb", "raw", "adc", "digit", "digits", "step", "steps", "pulse",
-    "pulses", "inc",
+    "pulses", "inc", "px", "pixel", "pixels",
 ];
 
 /// Texts that mean a unit only for quantities of some dimensions.
-pub(super) const HABITS: [(&str, Dimension, f64); 8] = [
+pub(super) const HABITS: [(&str, Dimension, f64); 9] = [
     ("g", Dimension::Acceleration, GRAVITY_M_S2),
     ("G", Dimension::Acceleration, GRAVITY_M_S2),
     ("1/s", Dimension::AngularVelocity, 1.0),
     ("s-1", Dimension::AngularVelocity, 1.0),
+    ("min-1", Dimension::AngularVelocity, TURN_RAD / 60.0),
     ("1/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
     ("U/min", Dimension::AngularVelocity, TURN_RAD / 60.0),
     ("r/min", Dimension::AngularVelocity, TURN_RAD / 60.0),

@@ -82,6 +82,13 @@ fn units_are_read_as_people_write_them() {
         ("0.1 ms", Time, 1e-4),
         ("m s⁻²", Acceleration, 1.0),
         ("psi", Other, 6_894.757_293_168_361),
+        ("kilogram-force", Force, 9.806_65),
+        ("pound-force", Force, 4.448_221_615_260_5),
+        ("mdeg", Angle, TURN_RAD / 360_000.0),
+        ("yd", Length, 0.9144),
+        ("krpm", AngularVelocity, 1e3 * TURN_RAD / 60.0),
+        ("radps", AngularVelocity, 1.0),
+        ("mph", Velocity, 0.447_04),
     ] {
         let found = parse(text, &[]);
         assert!(close(found, dimension, factor), "{text}: {found:?}");
@@ -127,6 +134,11 @@ fn units_are_found_in_headers() {
         ("load.kN", "load", "kN"),
         ("Winkel [°]", "Winkel", "°"),
         ("load lbf", "load", "lbf"),
+        ("Load 0.1 N", "Load", "0.1 N"),
+        ("Load.kPa", "Load", "kPa"),
+        ("Load_bar", "Load_bar", ""),
+        ("Winkel/mdeg", "Winkel", "mdeg"),
+        ("Load_kilogram-force", "Load", "kilogram-force"),
         ("Load [stone]", "Load", "stone"),
         ("pos.x", "pos.x", ""),
         ("position[elbow]", "position[elbow]", ""),
