@@ -175,7 +175,9 @@ impl Draft {
             (row.unit, row.unit_stated) = unit_of(&row.facts, Some(&si));
             let same = row.own_unit().filter(|own| split.is_some_and(|(_, unit)| unit.dimension == own.dimension));
             let has_factor = self.meta.scale.contains_key(&si) || self.meta.scale.contains_key(source);
-            if let Some((_, unit)) = split.filter(|(_, unit)| unit.factor != 1.0 || has_factor || !row.unit_stated) {
+            // Without any unit in the file, the name's is read.
+            let is_open = |unit: &units::Unit| row.facts.unit_text(unit.dimension).is_empty() && !row.unit_stated;
+            if let Some((_, unit)) = split.filter(|(_, unit)| unit.factor != 1.0 || has_factor || is_open(unit)) {
                 row.unit = FileUnit::of_symbol(same.map_or(unit.symbol, |own| own.symbol));
             }
             row.take_factors(&self.meta, &si);

@@ -123,12 +123,14 @@ fn no_factor_of_a_stated_unit_is_guessed() {
     let log = table.load(&table.draft("{}").sidecar()).expect("loads").remove(0);
     assert!((log.channel("f_N").expect("a force")[0] - 0.02).abs() < 1e-12);
     let table = Table::new("Zeit [s],Weg [steps],Kraft [N]\n0,1000,2\n0.01,2000,3\n0.02,3000,4\n");
-    let mut draft = table.draft("{}");
-    assert!(draft.rows[1].needs_a_factor() && draft.sidecar().scale.is_empty());
-    assert!(table.load(&draft.sidecar()).is_err());
-    draft.rows[1].scale = 1e-5;
-    let log = table.load(&draft.sidecar()).expect("loads").remove(0);
-    assert!((log.channel("q_m").expect("a place")[0] - 0.01).abs() < 1e-12);
+    for sidecar in ["{}", r#"{"columns":{"t_s":"Zeit [s]","q_m":"Weg [steps]","f_N":"Kraft [N]"}}"#] {
+        let mut draft = table.draft(sidecar);
+        assert!(draft.rows[1].needs_a_factor() && draft.sidecar().scale.is_empty(), "{sidecar}");
+        assert!(table.load(&draft.sidecar()).is_err(), "{sidecar}");
+        draft.rows[1].scale = 1e-5;
+        let log = table.load(&draft.sidecar()).expect("loads").remove(0);
+        assert!((log.channel("q_m").expect("a place")[0] - 0.01).abs() < 1e-12, "{sidecar}");
+    }
 }
 
 /// Numbered objects are chosen from, and numbers of other things are not.
