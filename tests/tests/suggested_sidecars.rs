@@ -242,6 +242,25 @@ fn an_orientation_is_a_motion() {
         format!("{t:.3},1,0,0,0,{c},{},0,{s},{c},0,{s:.3},{c:.3},0,0,0", -s)
     }));
     assert!(!said.contains("recognized"), "{said}");
+    // Poses need no clock, and a frame in the names stays.
+    let poses = table("qx,qy,qz,qw,fx_base_N,fy_base_N,fz_base_N", |_, [t, ..]| {
+        let (s, c) = t.sin_cos();
+        format!("{s:.6},0,0,{c:.6},0.1,0.2,-9.8")
+    });
+    let said = suggest(&poses);
+    assert!(said.contains("there is nothing to add"), "{said}");
+}
+
+/// Runs whose rows take turns are told apart.
+#[test]
+fn runs_in_turns_are_runs() {
+    let rows = drawer(1500, 100.0);
+    let text = rows.windows(2).fold("run,t_s,q_m,f_N\n".to_owned(), |mut text, w| {
+        let ([t, place, push], [_, other, pull]) = (w[0], w[1]);
+        let _ = writeln!(text, "1,{t:.3},{place:.6},{push:.6}\n2,{t:.3},{other:.6},{pull:.6}");
+        text
+    });
+    is_the_drawer("in turns", &text, r#"{"task":"mechanism"}"#);
 }
 
 /// A problem names the sidecar that the user gave.

@@ -9,7 +9,7 @@ use estimator::log::units;
 use estimator::log::{
     ALTERNATION, LogError, NO_CLOCK, NO_KNOWN_COLUMN, UNIT, load, parse_sidecar, put_suggested, sidecar_path,
 };
-use estimator::signal::wrench;
+use estimator::signal::wrench::is_turned_sensor;
 use haptics::recording::{Recording, Suggested, Warning};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -114,7 +114,8 @@ impl Search<'_> {
                 let is_mute = warnings.clone().any(|w| [NO_KNOWN_COLUMN, NO_CLOCK].contains(&w.kind.as_str()))
                     || recordings.iter().any(|recording| !has_motion_and_force(recording));
                 let doubt = warnings.find(|w| w.suggested.is_some() && holds_for_all(w, &recordings));
-                let has_no_clock = recordings.iter().any(|r| r.time_s.is_none());
+                // Poses need no clock.
+                let has_no_clock = recordings.iter().any(|r| r.time_s.is_none() && !is_turned_sensor(r));
                 let has_step = is_mute && self.guess()?
                     || doubt.is_some_and(|doubt| self.settle(doubt))
                     || has_no_clock && !self.entries.contains_key("rate_hz") && self.take(&asked("rate_hz"));
@@ -147,12 +148,11 @@ fn has_motion_and_force(recording: &Recording) -> bool {
 }
 
 fn has_force(recording: &Recording) -> bool {
-    has_quantity(recording, &["f", "tau"])
+    is_turned_sensor(recording) || has_quantity(recording, &["f", "tau"])
 }
 
 fn has_motion(recording: &Recording) -> bool {
-    wrench::orientations(recording).is_some()
-        || has_quantity(recording, &["q", "dq", "ddq", "x", "y", "z", "v"])
+    is_turned_sensor(recording) || has_quantity(recording, &["q", "dq", "ddq", "x", "y", "z", "v"])
 }
 
 /// True for a recording with a channel of the program's whose quantity starts with one of these.
@@ -204,7 +204,8 @@ pub fn run(log: &Path, given: Option<&Path>) -> anyhow::Result<Output> {
         Err(_) => Suggested::new(),
     };
     let tried = tempfile::tempdir()?;
-    let mut search = Search { log, sidecar: &path, tried, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
+    let mut search =
+        Search { log, sidecar: &path, tried, entries: before.clone(), has_guessed: false, guesses: Vec::new() };
     let mut open = None;
     for _ in 0..ROUNDS {
         let (has_step, problem) = search.step()?;

@@ -24,6 +24,7 @@ const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_N_s_m", "N·s/m", 1.0),
     ("_N_m3", "N/mm³", 1e-9),
     ("_Nm_s", "N·m·s", 1.0),
+    ("_N_s", "N/s", 1.0),
     ("_N_m", "N/m", 1.0),
     ("_Nm", "N·m", 1.0),
     ("_m_s2", "m/s²", 1.0),
@@ -45,6 +46,8 @@ pub fn parameter(name: &str, value: Option<f64>) -> Quantity {
         .unwrap_or((name, "", 1.0));
     let size = value.unwrap_or(0.0).abs();
     let (unit, factor) = match unit {
+        // A viscous friction has the same letters.
+        "N·m·s" if stem.contains("drift") => ("N·m/s", 1.0),
         "g" if size >= 1.0 => ("kg", 1.0),
         "g·cm²" if size >= 1e-2 => ("kg·m²", 1.0),
         other => extreme(other, size).unwrap_or((other, factor)),

@@ -65,8 +65,14 @@ mod tests {
     #[test]
     fn a_clock_in_milliseconds_is_doubted_by_the_mass() {
         let of = |mass: f64| {
-            let quality =
-                Quality { rms: 0.01, heldout_rms: 0.01, heldout_relative: 0.01, heldout_share: 0.3, noise: None, unit: "N".into() };
+            let quality = Quality {
+                rms: 0.01,
+                heldout_rms: 0.01,
+                heldout_relative: 0.01,
+                heldout_share: 0.3,
+                noise: None,
+                unit: "N".into(),
+            };
             let parameters = vec![Parameter::identified("mechanism", "mass_kg", mass, 1e-3 * mass, 1000, "made")];
             let mut fit = Fit { parameters, quality: Some(quality), ..Fit::default() };
             doubt(&mut fit);

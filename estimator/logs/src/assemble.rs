@@ -184,7 +184,8 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
         notes.push(note(super::NO_KNOWN_COLUMN, None, text));
     }
-    if recording.time_s.is_none() {
+    // Poses need no clock.
+    if recording.time_s.is_none() && !is_turned_sensor(recording) {
         let text = "the log has no clock (no t_s column, no rate_hz in the sidecar): paths and forces can be used; \
                     velocities, viscous friction, inertia and delays cannot be known"
             .to_owned();

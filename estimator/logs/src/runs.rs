@@ -100,17 +100,22 @@ fn leave_out_broken_off(runs: &mut Vec<Run>) -> Option<String> {
     })
 }
 
-/// True if the clock starts again, or pauses, at half of the changes of the column, and without a clock.
+/// True if the clock starts again, stands still, or pauses at half of the changes of the column, if its values take turns, and without
+/// a clock.
 fn are_runs(groups: &[Run], plan: &Plan) -> bool {
     let Some(clock) = plan.time else { return true };
     let order = stretches(groups);
+    let rows: usize = groups.iter().map(|(_, group)| group.rows()).sum();
+    if rows < LEAST_ROWS * order.len() && order.len() > groups.len() {
+        return true;
+    }
     let usual =
         groups.iter().filter_map(|(_, group)| clock::usual_step(&group.columns[clock])).fold(f64::NAN, f64::min);
     let step = |a: &Stretch, b: &Stretch| {
         groups[b.group].1.columns[clock][b.first] - groups[a.group].1.columns[clock][a.end - 1]
     };
     let steps: Vec<f64> = order.windows(2).filter(|w| w[0].group != w[1].group).map(|w| step(&w[0], &w[1])).collect();
-    let breaks = steps.iter().filter(|step| !(0.0..=LONGEST_STEP * usual).contains(*step)).count();
+    let breaks = steps.iter().filter(|step| **step <= 0.0 || **step > LONGEST_STEP * usual).count();
     2 * breaks >= steps.len()
 }
 

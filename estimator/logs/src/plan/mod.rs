@@ -276,9 +276,7 @@ impl Planner<'_> {
             _ => match written_units::parse(&text, &wanted) {
                 Written::Known(dimension, factor) if dimension == target.dimension => Ok(factor),
                 Written::Known(..) => Err(measures_else(&text)),
-                Written::Counts | Written::Unknown => {
-                    Err(self.unknown_unit(header, &text, name))
-                }
+                Written::Counts | Written::Unknown => Err(self.unknown_unit(header, &text, name)),
             },
         }
     }

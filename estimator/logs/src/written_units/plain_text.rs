@@ -26,7 +26,13 @@ pub(super) fn tidied(text: &str) -> String {
     let signs = [
         ("-force", "force"),
         (" force", "force"),
-        ("μ", "u"), ("\u{2212}", "-"), ("\u{2215}", "/"), ("\u{2044}", "/"), ("·", "."), ("⋅", "."), (" per ", "/"),
+        ("μ", "u"),
+        ("\u{2212}", "-"),
+        ("\u{2215}", "/"),
+        ("\u{2044}", "/"),
+        ("·", "."),
+        ("⋅", "."),
+        (" per ", "/"),
     ];
     signs.into_iter().fold(leveled, |text, (from, to)| text.replace(from, to))
 }

@@ -20,20 +20,25 @@ fn scalar_first(turned: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 ///
 /// Of the residual, less than half must remain: a wrong reading leaves as much as the weight.
 pub fn better_reading(seen: &Observed, found: &Estimate) -> Option<String> {
+    let inverse = if seen.has_matrix {
+        "an orientation that turns from the base to the sensor (\"columns\": {\"r12\": \"r21\", \"r21\": \"r12\", \"r13\": \"r31\", \
+         \"r31\": \"r13\", \"r23\": \"r32\", \"r32\": \"r23\"})"
+    } else {
+        "an orientation that turns from the base to the sensor (\"sign\": {\"qx\": -1, \"qy\": -1, \"qz\": -1})"
+    };
     let readings: [(Reading, &str); 3] = [
         (|r| *r, ""),
-        (
-            |r| r.inverse(),
-            "an orientation that turns from the base to the sensor (\"sign\": {\"qx\": -1, \"qy\": -1, \"qz\": -1})",
-        ),
+        (|r| r.inverse(), inverse),
         (
             scalar_first,
             "a quaternion with its scalar first (\"columns\": {\"qw\": \"qx\", \"qx\": \"qy\", \"qy\": \"qz\", \"qz\": \"qw\"})",
         ),
     ];
     let is_other = |frame: WrenchFrame, words: &str| frame != found.frame || !words.is_empty();
-    let all =
-        [found.frame, found.frame.other()].into_iter().flat_map(|frame| readings.map(|(r, words)| (frame, r, words)));
+    let readings = readings.into_iter().take(if seen.has_matrix { 2 } else { 3 });
+    let all = [found.frame, found.frame.other()]
+        .into_iter()
+        .flat_map(|frame| readings.clone().map(move |(r, words)| (frame, r, words)));
     let rms = |(frame, reading, words): (WrenchFrame, Reading, &'static str)| {
         let rows = rows(seen, frame, &reading);
         (of_force(&rows, found.model, found.known_weight_n, 1, false).rms(), frame, words)
@@ -113,9 +118,14 @@ pub fn doubts(seen: &Observed, found: &Estimate) -> Vec<String> {
     said.extend(better);
     if let Some((weight, error)) = found.weight_n().filter(|(weight, error)| *weight < -SIGNIFICANT * error) {
         said.push(format!(
-            "the weight comes out at {} ± {}, below zero: the force has the other sign (\"sign\" in the sidecar), or another axis points up (\"up\")",
+            "the weight comes out at {} ± {}, below zero: the sensor states the opposite of the force{}, or another axis points up (\"up\")",
             amount(weight, "N"),
-            amount(error, "N")
+            amount(error, "N"),
+            if found.rms_nm.is_some() {
+                ", and most likely of the torque, so that its six columns need the \"sign\" -1 in the sidecar"
+            } else {
+                " (\"sign\" in the sidecar)"
+            }
         ));
     }
     if let Some((angle, error)) = tilt_rad(seen, found).filter(|_| is_fine && !is_unexplained(found)) {

@@ -34,6 +34,8 @@ pub struct Observed {
     pub frame: Option<WrenchFrame>,
     /// Names of the force columns.
     pub force_names: [String; 3],
+    /// True if the orientation is a matrix.
+    pub has_matrix: bool,
     /// Upward unit vector in the base frame.
     pub up: Vector3<f64>,
     /// Gravity, m/s².
@@ -119,6 +121,7 @@ pub fn observe(recording: &Recording) -> Result<Observed, EstimateError> {
         poses,
         frame: read.frame,
         force_names: read.force_names,
+        has_matrix: recording.channel("qw").is_none(),
         up: up(recording)?,
         gravity_m_s2: recording.meta.gravity(),
         known_weight_n: ["weight_N", "payload.weight_N"]
