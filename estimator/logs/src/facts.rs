@@ -232,6 +232,7 @@ pub fn up_not_honoured(recording: &Recording) -> Option<String> {
         Some(Task::Crank) => ("cranks are read with y up or -y up", matches!(up, "y" | "-y")),
         Some(Task::BlockStack) => ("blocks are read with y up", up == "y"),
         Some(Task::Barrel) => ("barrels are read with y up", up == "y"),
+        Some(Task::Needle) => ("needles are read in the plane of x and y", !matches!(up, "z" | "-z")),
         None if fingers => ("fingertips are read with y up", matches!(up, "y" | "-y")),
         _ => return None,
     };

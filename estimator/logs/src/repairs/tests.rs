@@ -324,3 +324,29 @@ fn a_velocity_alone_gives_the_position_with_its_drift() {
     let off = time.iter().zip(made).map(|(t, v)| (v - right(*t)).abs()).fold(0.0, f64::max);
     assert!(off < 1e-3 && slow.channel("q_m").is_some(), "{off}");
 }
+
+/// A source of any ratio to the logger's rate is told, and its values are moved to the rows.
+#[test]
+fn a_source_with_another_clock_is_moved_to_the_rows() {
+    for ratio in [1.3, 1.5, 2.7, 3.3, 7.3] {
+        let place = |t: f64| (6.0 * t).sin() + 0.3 * (17.0 * t).sin();
+        let rate_hz = 500.0;
+        let held = |row: usize| place((((row as f64 - 0.2) / ratio).floor() * ratio + 0.2) / rate_hz);
+        let rows = 5000;
+        let values = |of: &dyn Fn(usize) -> f64| (0..rows).map(of).collect::<Vec<f64>>();
+        let mut recording = Recording {
+            time_s: Some(values(&|row| row as f64 / rate_hz)),
+            channels: vec![channel("q_m", "m", values(&held)), channel("f_N", "N", values(&|row| (row as f64).sqrt()))],
+            ..Recording::default()
+        };
+        let said = held_samples::take_out(&mut recording).expect("held").text;
+        let rate = format!("{:.4} Hz", rate_hz / ratio);
+        assert!(said.contains(&rate[..4]), "{ratio}: {said}");
+        let time = recording.time_s.as_deref().expect("a clock");
+        let off = time.iter().zip(&recording.channels[0].values).map(|(t, value)| (value - place(*t)).abs());
+        // Half a row is 6e-3. Few ratios show all of the lag: of 1.5, a quarter of a row stays unknown.
+        let inner: Vec<f64> = off.skip(40).take(time.len() - 80).collect();
+        let rms = (inner.iter().map(|off| off * off).sum::<f64>() / inner.len() as f64).sqrt();
+        assert!(rms < 2e-3, "{ratio}: {rms}");
+    }
+}
