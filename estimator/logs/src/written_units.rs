@@ -212,14 +212,13 @@ fn without_brackets<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a 
         return (name.trim_end_matches(['_', ' ']), "%");
     }
     let is_unit = |text: &str| parse(text, wanted) != Written::Unknown;
-    let spoken = [" in ", " / ", "/", ", ", ",", "_in_", "|"].iter().find_map(|mark| {
-        let mut places = header.match_indices(mark);
-        places.find_map(|(at, _)| (at > 0 && is_unit(&header[at + mark.len()..])).then_some((at, at + mark.len())))
+    let spoken = [" in ", " / ", "/", ", ", ",", "_in_", "|"].iter().flat_map(|mark| {
+        let places = header.match_indices(mark).map(|(at, mark)| (at, at + mark.len()));
+        places.filter(|&(at, from)| at > 0 && is_unit(&header[from..]))
     });
-    let loose = || {
-        let mut places = header.match_indices(['_', ' ', '.', '-']);
-        places.find_map(|(at, _)| (at > 0 && is_suffix(&header[at + 1..], wanted)).then_some((at, at + 1)))
-    };
+    let is_loose = |text: &str| !text.starts_with("in ") && !text.starts_with("in_") && is_suffix(text, wanted);
+    let loose = header.match_indices(['_', ' ', '.', '-']).map(|(at, _)| (at, at + 1));
+    let loose = loose.filter(|&(at, from)| at > 0 && is_loose(&header[from..]));
     // `positionMm`: a capital behind a small letter begins a word.
     let joined = || {
         let pairs = header.char_indices().zip(header.char_indices().skip(1));
@@ -231,7 +230,8 @@ fn without_brackets<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a 
         let cuts: Vec<usize> = header.match_indices(['_', ' ', '.', '-']).map(|(at, _)| at).collect();
         cuts.windows(2).find_map(|cut| is_sign(&header[cut[0] + 1..cut[1]]).then_some((cut[0], cut[1])))
     };
-    let suffix = spoken.or_else(loose);
+    // The stroke in `speed mm/s` belongs to the unit: the longest text is the whole of it.
+    let suffix = spoken.chain(loose).min_by_key(|(_, from)| *from);
     let is_known = suffix.is_some_and(|(_, from)| matches!(parse(&header[from..], wanted), Written::Known(..)));
     if let Some((at, end)) = between().filter(|(at, _)| !is_known && *at > 0) {
         return (header[..at].trim(), &header[at + 1..end]);
@@ -288,7 +288,7 @@ const SHORT_WORDS: [&str; 9] = ["in", "min", "step", "inc", "digit", "bar", "amp
 /// likely part of a name, unless they fit the quantity.
 fn is_suffix(text: &str, wanted: &[Dimension]) -> bool {
     let is_short = text.len() == 1 || SHORT_WORDS.contains(&text.to_lowercase().as_str());
-    let is_rate = ["_s", "/s", "s2"].iter().any(|end| text.ends_with(end));
+    let is_rate = ["_s", "/s", "s2", "s^2", "s²"].iter().any(|end| text.ends_with(end));
     match parse(text, wanted) {
         Written::Known(dimension, _) if text.contains(|c: char| c.is_ascii_digit()) => {
             (is_rate || times(&tidied(text)).0 < 1.0) && dimension != Dimension::Other

@@ -61,7 +61,7 @@ impl Days {
 }
 
 /// Nanoseconds since the start of 1970 of a date with a time, or since midnight of a time alone: `2025-04-17T17:00:08.12Z`,
-/// `17.04.2025 17:00:08,12`, `4/17/25 5:00:08 PM`, `17:00:08.12`. A zone is left out of account but for its offset.
+/// `20250417T170008.12Z`, `17.04.2025 17:00:08,12`, `4/17/25 5:00:08 PM`, `17:00:08.12`. A zone is left out of account but for its offset.
 pub fn parse(text: &str) -> Option<i64> {
     with_date(text, Order::Usual).or_else(|| with_date(text, Order::Other)).or_else(|| of_day(text))
 }
@@ -72,7 +72,20 @@ fn with_date(text: &str, order: Order) -> Option<i64> {
     let rest = without_zone_name(rest);
     let (date, time) = rest.split_once(['T', ' '])?;
     let day_ns = day(date, order)?.checked_mul(DAY_S)?.checked_sub(offset_s)?.checked_mul(NS)?;
-    day_ns.checked_add(time_of_day(time.trim(), noon)?)
+    let time = time.trim();
+    let basic = || is_basic(date).then(|| basic_time(time)).flatten();
+    day_ns.checked_add(time_of_day(time, noon).or_else(basic)?)
+}
+
+/// True for a date of eight digits without marks, `20250417` (ISO 8601, basic format).
+fn is_basic(date: &str) -> bool {
+    date.len() == 8 && date.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// Nanoseconds since midnight of a time without colons, `170008.12`, as it stands behind such a date.
+fn basic_time(time: &str) -> Option<i64> {
+    let (hour, minute, second) = (time.get(..2)?, time.get(2..4)?, time.get(4..)?);
+    time_of_day(&format!("{hour}:{minute}:{second}"), None)
 }
 
 /// Nanoseconds since midnight of a time of the day without a date, or of a duration.
@@ -155,8 +168,8 @@ fn zone(text: &str) -> (&str, i64) {
     if let Some(rest) = text.strip_suffix(['Z', 'z']) {
         return (rest, 0);
     }
-    // A date has hyphens, too: the sign of a zone stands behind a colon.
-    let clock = text.find(':').unwrap_or(text.len());
+    // A date has hyphens, too: the sign of a zone stands behind a colon, or behind the T of a time without any.
+    let clock = text.find(':').or_else(|| text.find('T')).unwrap_or(text.len());
     let sign = text[clock..].rfind(['+', '-']).map(|at| clock + at);
     let parsed = sign.and_then(|at| {
         let digits: String = text[at + 1..].chars().filter(char::is_ascii_digit).collect();
@@ -189,9 +202,10 @@ fn month(text: &str) -> Option<i64> {
     i64::try_from(at + 1).ok()
 }
 
-/// Days since the start of 1970 of `2025-04-17`, `2025/04/17`, `17.04.2025`, `17-Apr-2025` or `4/17/2025`.
+/// Days since the start of 1970 of `2025-04-17`, `20250417`, `2025/04/17`, `17.04.2025`, `17-Apr-2025` or `4/17/2025`.
 fn day(date: &str, order: Order) -> Option<i64> {
-    let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
+    let basic = || vec![&date[..4], &date[4..6], &date[6..]];
+    let parts: Vec<&str> = if is_basic(date) { basic() } else { date.split(['-', '/', '.']).collect() };
     let [a, b, c] = parts.as_slice() else { return None };
     let number = |text: &str| text.parse::<i64>().ok().filter(|_| text.bytes().all(|b| b.is_ascii_digit()));
     let (year, month, day) = match () {
@@ -214,8 +228,8 @@ fn is_month_first(date: &str, order: Order) -> bool {
     if date.contains('/') { order == Order::Usual } else { date.contains('-') && order == Order::Other }
 }
 
-/// Nanoseconds since midnight of `17:00`, `17:00:08`, `17:00:08.123456` or `17:00:08:123`, and of minutes and seconds,
-/// `58:55.000`, as spreadsheets write them.
+/// Nanoseconds since midnight of `17:00`, `17:00:08`, `17:00:08.123456` or `17:00:08:123` (milliseconds, or micro- or nanoseconds
+/// in six or nine digits), and of minutes and seconds, `58:55.000`, as spreadsheets write them.
 fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
     let mut parts = time.split(':');
     let (first, next, last) = (parts.next()?, parts.next()?, parts.next());
@@ -226,7 +240,7 @@ fn time_of_day(time: &str, afternoon: Option<bool>) -> Option<i64> {
     let (second, fraction) = match (second.split_once(['.', ',']), parts.next()) {
         (Some(parted), None) => parted,
         (None, None) => (second, ""),
-        (None, Some(thousandths)) if thousandths.len() == 3 => (second, thousandths),
+        (None, Some(fraction)) if matches!(fraction.len(), 3 | 6 | 9) => (second, fraction),
         _ => return None,
     };
     let (hour, minute, second) = (whole(hour)?, whole(minute)?, whole(second)?);
@@ -277,6 +291,10 @@ mod tests {
             ("-00:00:05.000", -5 * NS),
             ("1 days 00:00:00.005000", DAY_S * NS + 5_000_000),
             ("17:00:08:120", (17 * 3600 + 8) * NS + 120_000_000),
+            ("17:00:08:120450", (17 * 3600 + 8) * NS + 120_450_000),
+            ("20250417T170008.120Z", base + 120_000_000),
+            ("20250417T190008.12+0200", base + 120_000_000),
+            ("20250417 17:00:08", base),
             ("1970-01-01T00:00:00", 0),
         ] {
             assert_eq!(parse(text), Some(ns), "{text}");
@@ -297,6 +315,11 @@ mod tests {
             "-1:00",
             "1:2:3:4",
             "1:2:3.5:400",
+            "17:00:08:12",
+            "20250417",
+            "20250417T1700",
+            "20251317T170008",
+            "170008.12",
         ] {
             assert_eq!(parse(text), None, "{text}");
         }
@@ -311,6 +334,12 @@ mod tests {
         let texts = ["03/04/2026 12:00", "13/04/2026", "04-13-2026", "03/03/2026", "2026/03/04", "03.04.2026", "12:00"];
         assert!(is_date("02-mai-2026") && !is_date("02-xyz-2026") && settles_order("2-Jan-2026") == Some(true));
         assert_eq!(texts.map(settles_order), [Some(false), Some(true), Some(true), None, None, None, None]);
-        assert!(is_date("2026-04-13") && !is_date("2026-04-13 12:00") && !is_date("12:00") && !is_date("1.2"));
+        assert!(
+            is_date("2026-04-13")
+                && is_date("20260413")
+                && !is_date("2026-04-13 12:00")
+                && !is_date("12:00")
+                && !is_date("1.2")
+        );
     }
 }

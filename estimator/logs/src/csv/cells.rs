@@ -53,7 +53,7 @@ fn respelled(cell: &[u8]) -> Option<Vec<u8>> {
     let text = text.strip_prefix("=\"").and_then(|text| text.strip_suffix('"')).unwrap_or(text);
     let in_brackets = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
     let negative = text.strip_suffix('-').or_else(|| text.strip_prefix(['-', '\u{2212}', '\u{2013}'])).or(in_brackets);
-    let (minus, digits) = negative.map_or(("", text), |digits| ("-", digits));
+    let (minus, digits) = negative.map_or(("", text.strip_prefix('+').unwrap_or(text)), |digits| ("-", digits));
     let is_digit = |c: char| c.is_ascii_digit();
     if digits == "\u{221e}" {
         return Some([minus, "inf"].concat().into_bytes());
@@ -267,6 +267,7 @@ mod tests {
             ("\u{2212}1.5e-3", -1.5e-3),
             ("1.00D+02", 100.0),
             ("-0.5d-1", -0.05),
+            ("+5.7D+02", 570.0),
             ("0.0167-", -0.0167),
             ("11'682.6", 11_682.6),
             ("1\u{2019}234\u{2019}567", 1_234_567.0),
@@ -293,6 +294,8 @@ mod tests {
             "0x1D",
             "1D2",
             "1.2.3",
+            "++1D+02",
+            "+-1",
         ] {
             assert_eq!(point(text), None, "{text}");
         }

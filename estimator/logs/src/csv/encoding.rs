@@ -17,9 +17,20 @@ pub fn of(start: &[u8]) -> Encoding {
     match start {
         [0xff, 0xfe, ..] => Encoding::Utf16(true),
         [0xfe, 0xff, ..] => Encoding::Utf16(false),
+        _ if is_utf16(start, true) => Encoding::Utf16(true),
+        _ if is_utf16(start, false) => Encoding::Utf16(false),
         _ if std::str::from_utf8(start).is_err_and(|error| error.error_len().is_some()) => Encoding::Latin1,
         _ => Encoding::Utf8,
     }
+}
+
+/// True for text in units of two bytes without a mark before it: most of them are printed signs of ASCII, and none is zero.
+fn is_utf16(start: &[u8], low_first: bool) -> bool {
+    let units = start.as_chunks::<2>().0;
+    let parts = units.iter().map(|[a, b]| if low_first { (*a, *b) } else { (*b, *a) });
+    let is_text = |(low, high): (u8, u8)| high > 0 || low >= 0x20 || matches!(low, b'\t' | b'\n' | b'\r');
+    let signs = parts.clone().filter(|(low, high)| *high == 0 && low.is_ascii()).count();
+    !units.is_empty() && 4 * signs >= 3 * units.len() && parts.clone().all(is_text)
 }
 
 /// The text as UTF-8.

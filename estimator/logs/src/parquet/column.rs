@@ -23,6 +23,8 @@ pub enum Meaning {
     Half,
     /// Points in time: this many of them make a second.
     Time(f64),
+    /// Times of the day and durations: this many of them make a second.
+    Clock(f64),
     /// Text.
     Text,
 }
@@ -44,11 +46,10 @@ pub fn meaning(column: &ColumnDescriptor) -> Result<Meaning, &'static str> {
         _ if decimal => Err("it holds decimals of more digits than a number has here"),
         (Type::FIXED_LEN_BYTE_ARRAY, Some(LogicalType::Float16)) if column.type_length() == 2 => Ok(Meaning::Half),
         (Type::INT96, _) => Ok(Meaning::Time(1e9)),
-        (Type::INT64, Some(LogicalType::Timestamp(of))) => Ok(Meaning::Time(match of.unit {
-            TimeUnit::MILLIS => 1e3,
-            TimeUnit::MICROS => 1e6,
-            TimeUnit::NANOS => 1e9,
-        })),
+        (Type::INT64, Some(LogicalType::Timestamp(of))) => Ok(Meaning::Time(per_second(of.unit))),
+        (Type::INT32 | Type::INT64, Some(LogicalType::Time(of))) => Ok(Meaning::Clock(per_second(of.unit))),
+        (Type::INT32, None) if converted == "TIME_MILLIS" => Ok(Meaning::Clock(1e3)),
+        (Type::INT64, None) if converted == "TIME_MICROS" => Ok(Meaning::Clock(1e6)),
         (Type::INT64, None) if converted == "TIMESTAMP_MILLIS" => Ok(Meaning::Time(1e3)),
         (Type::INT64, None) if converted == "TIMESTAMP_MICROS" => Ok(Meaning::Time(1e6)),
         (Type::INT32 | Type::INT64, Some(LogicalType::Integer(of))) if !of.is_signed => Ok(Meaning::Unsigned),
@@ -57,6 +58,14 @@ pub fn meaning(column: &ColumnDescriptor) -> Result<Meaning, &'static str> {
         (Type::BYTE_ARRAY, Some(LogicalType::String | LogicalType::Enum | LogicalType::Json)) => Ok(Meaning::Text),
         (Type::BYTE_ARRAY, None) if converted == "UTF8" => Ok(Meaning::Text),
         _ => Err("it holds bytes or a kind of number that is not known"),
+    }
+}
+
+fn per_second(unit: TimeUnit) -> f64 {
+    match unit {
+        TimeUnit::MILLIS => 1e3,
+        TimeUnit::MICROS => 1e6,
+        TimeUnit::NANOS => 1e9,
     }
 }
 
@@ -85,10 +94,14 @@ pub fn append(
     match (reader, meaning) {
         (ColumnReader::BoolColumnReader(r), _) => sink.numbers(r, |v| f64::from(u8::from(*v))),
         (ColumnReader::Int32ColumnReader(r), Meaning::Unsigned) => sink.numbers(r, |v| f64::from(v.cast_unsigned())),
-        (ColumnReader::Int32ColumnReader(r), Meaning::Scaled(by)) => sink.numbers(r, |v| f64::from(*v) / by),
+        (ColumnReader::Int32ColumnReader(r), Meaning::Scaled(by) | Meaning::Clock(by)) => {
+            sink.numbers(r, |v| f64::from(*v) / by)
+        }
         (ColumnReader::Int32ColumnReader(r), _) => sink.numbers(r, |v| f64::from(*v)),
         (ColumnReader::Int64ColumnReader(r), Meaning::Unsigned) => sink.numbers(r, |v| v.cast_unsigned() as f64),
-        (ColumnReader::Int64ColumnReader(r), Meaning::Scaled(by)) => sink.numbers(r, |v| *v as f64 / by),
+        (ColumnReader::Int64ColumnReader(r), Meaning::Scaled(by) | Meaning::Clock(by)) => {
+            sink.numbers(r, |v| *v as f64 / by)
+        }
         (ColumnReader::Int64ColumnReader(r), Meaning::Time(per_second)) => sink.numbers(r, |v| since(*v, per_second)),
         (ColumnReader::Int64ColumnReader(r), _) => sink.numbers(r, |v| *v as f64),
         (ColumnReader::Int96ColumnReader(r), Meaning::Time(per_second)) => {

@@ -1,5 +1,6 @@
 //! Parquet in and out, through the file format itself (no Arrow).
 
+mod arrow_schema;
 mod column;
 mod footer;
 mod guard;

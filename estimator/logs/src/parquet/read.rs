@@ -5,9 +5,10 @@ use super::list::{self, Items, List};
 use super::metadata::{self, SIDECAR, one_line};
 use super::shape::{self, Shape};
 use super::sums::Sums;
-use super::{footer, guard};
+use super::{arrow_schema, footer, guard};
 use crate::errors::LogError;
 use crate::raw::{Cells, Raw};
+use crate::units::Dimension;
 use crate::watch::Watch;
 use crate::{pages, room, units};
 use haptics::recording::{Labels, Warning};
@@ -55,7 +56,8 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
     }
     let reader = SerializedFileReader::new(file).map_err(|e| refused(&e, path))?;
     let facts = reader.metadata().file_metadata().clone();
-    let (mut fields, mut said) = fields(facts.schema_descr());
+    let arrow = arrow_schema::fields(&facts);
+    let (mut fields, mut said) = fields(facts.schema_descr(), &arrow);
     if fields.is_empty() {
         let why = said.first().map_or_else(|| "it has no columns".to_owned(), |w| w.text.clone());
         return Err(LogError::NoColumns { format: "Parquet", why, path: path.to_path_buf() });
@@ -73,7 +75,10 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
         Stop::Damaged(why) => damaged(why),
     })?;
     let mut raw = table(fields, &mut said);
-    let units = metadata::units(&facts);
+    let mut units = metadata::units(&facts);
+    for field in arrow.into_iter().filter(|field| !field.unit.is_empty()) {
+        units.entry(field.name).or_insert(field.unit);
+    }
     if !units.is_empty() {
         raw.units = raw.headers.iter().map(|name| units.get(name).cloned().unwrap_or_default()).collect();
     }
@@ -101,11 +106,16 @@ fn refused(error: &ParquetError, path: &Path) -> LogError {
 }
 
 /// The columns that are read, still without content, and notes about the others.
-fn fields(schema: &SchemaDescriptor) -> (Vec<Field>, Vec<Warning>) {
+fn fields(schema: &SchemaDescriptor, arrow: &[arrow_schema::Field]) -> (Vec<Field>, Vec<Warning>) {
     let (mut fields, mut said) = (Vec::new(), Vec::new());
     for (index, column) in schema.columns().iter().enumerate() {
         let name = column.path().string();
-        match column::meaning(column).and_then(|meaning| Ok((meaning, shape::of(schema, column)?))) {
+        let stated = arrow.iter().find(|field| field.name == name).and_then(|field| field.per_second);
+        let meaning = column::meaning(column).map(|meaning| match stated {
+            Some(per_second) if meaning == Meaning::Number => Meaning::Clock(per_second),
+            _ => meaning,
+        });
+        match meaning.and_then(|meaning| Ok((meaning, shape::of(schema, column)?))) {
             Ok((meaning, shape)) => {
                 let text = meaning == Meaning::Text;
                 let content = match (&shape.list, text) {
@@ -165,11 +175,15 @@ fn table(fields: Vec<Field>, said: &mut Vec<Warning>) -> Raw {
     raw
 }
 
-/// A point in time without a unit in its name becomes one in seconds.
+/// A time becomes one in seconds, whatever unit its name states.
 fn header(name: &str, meaning: Meaning) -> String {
     let name = metadata::index(name).unwrap_or(name);
     match meaning {
-        Meaning::Time(_) if units::split(name).is_none() => format!("{name}_s"),
+        Meaning::Time(_) | Meaning::Clock(_) => match units::split(name) {
+            Some((quantity, unit)) if unit.dimension == Dimension::Time => format!("{quantity}_s"),
+            Some(_) => name.to_owned(),
+            None => format!("{name}_s"),
+        },
         _ => name.to_owned(),
     }
 }

@@ -4,7 +4,8 @@ use crate::{LogError, load};
 use haptics::recording::Recording;
 use parquet::basic::Compression;
 use parquet::data_type::{
-    ByteArray, ByteArrayType, DataType, DoubleType, FixedLenByteArrayType, FloatType, Int32Type, Int96, Int96Type,
+    ByteArray, ByteArrayType, DataType, DoubleType, FixedLenByteArrayType, FloatType, Int32Type, Int64Type, Int96,
+    Int96Type,
 };
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
@@ -142,6 +143,22 @@ fn kinds_of_numbers_that_other_programs_write() {
     assert!(said(&log, "`facts.key_value.value` is not read: it holds a map"), "{:?}", log.warnings);
 }
 
+/// The type of a time states its unit, whatever its name says.
+#[test]
+fn times_of_the_day_are_seconds() {
+    let schema =
+        "message m { required int64 stamp_ms (TIME_MICROS); required int32 other (TIME_MILLIS); required double q_m; }";
+    let mut out = Out::new(schema, Compression::UNCOMPRESSED);
+    out.block(&[
+        &put::<Int64Type>((&[5_000_000, 5_010_000], None, None)),
+        &put::<Int32Type>((&[7, 9], None, None)),
+        &put::<DoubleType>((&[1.0, 2.0], None, None)),
+    ]);
+    let log = out.load(r#"{"columns": {"t_s": "stamp_ms"}}"#).expect("loads");
+    assert_eq!(log.time_s, Some(vec![5.0, 5.01]));
+    assert_eq!(log.channel("other_s"), Some([0.007, 0.009].as_slice()));
+}
+
 #[test]
 fn brotli_is_read_and_a_packing_that_is_not_is_no_damage() {
     let schema = "message m { required double t_s; required double q_m; }";
@@ -204,7 +221,7 @@ fn the_index_of_a_data_frame_is_a_clock() {
     }";
     let mut out = Out::new(schema, Compression::SNAPPY);
     let stamps = [1_744_902_008_000_000_i64, 1_744_902_008_005_000, 1_744_902_008_010_000];
-    let stamps = put::<parquet::data_type::Int64Type>((&stamps, None, None));
+    let stamps = put::<Int64Type>((&stamps, None, None));
     out.block(&[&put::<DoubleType>((&[1.0, 2.0, 4.0], None, None)), &stamps]);
     let log = out.load(r#"{"columns": {"t_s": "index_s"}}"#).expect("loads");
     let time = log.time_s.as_ref().expect("a clock");

@@ -173,6 +173,12 @@ fn units_are_found_in_headers() {
         ("tipMin", "tipMin", ""),
         ("Перемещение, мм", "Перемещение", "мм"),
         ("力(千牛)", "力", "千牛"),
+        ("Speed mm/s", "Speed", "mm/s"),
+        ("Speed_deg/s", "Speed", "deg/s"),
+        ("Speed, rad/s", "Speed", "rad/s"),
+        ("Acceleration mm/s^2", "Acceleration", "mm/s^2"),
+        ("Stroke / mm", "Stroke", "mm"),
+        ("Torque in lbf in", "Torque", "lbf in"),
     ] {
         assert_eq!(in_header(header, &[]), (name, unit), "{header}");
     }
