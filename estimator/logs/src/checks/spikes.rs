@@ -218,10 +218,8 @@ fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bo
     let usual = usual_step(values, at, FORGIVEN);
     // A force out of nothing may be a touch; a position that stands still does not leap. Beside equal values, the smallest step of the
     // channel may be a coarse one.
-    let rest = match usual > 0.0 {
-        true => true,
-        false => position || values[at - 1] != 0.0 && values.windows(2).any(|w| w[0] != w[1] && is_small(w[1] - w[0])),
-    };
+    let is_step = |w: &[f64]| w[0] != w[1] && is_small(w[1] - w[0]);
+    let rest = usual > 0.0 || position || values[at - 1] != 0.0 && values.windows(2).any(is_step);
     let is_alone = run.len() == 1 && height > SPIKE_STEPS * usual;
     rest && (is_alone || height > CLUSTER_STEPS * usual_step(values, at, FORGIVEN_IN_CLUSTERS))
 }
