@@ -61,10 +61,9 @@ pub fn recordings(
         }
     }
     if let Some(empty) = windows.iter().find(|window| !used.contains(window)) {
-        let (first, last) = span_s.unwrap_or_default();
-        let window = runs::shown(*empty);
-        let why = format!("no sample lies in its window of time ({window}): the log runs from {first} to {last} s");
-        return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
+        let (first_s, last_s) = span_s.unwrap_or_default();
+        let (window, path) = (runs::shown(*empty), path.to_path_buf());
+        return Err(LogError::EmptyWindow { window, first_s, last_s, path });
     }
     Ok(recordings)
 }
@@ -169,6 +168,7 @@ fn note(kind: &str, column: Option<&str>, text: String) -> Warning {
 /// Notes for the reader about the table itself.
 fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) -> Vec<Warning> {
     let mut notes: Vec<Warning> = plan.notes.iter().map(|n| note("columns", None, n.clone())).collect();
+    notes.extend(table.notes.iter().map(|text| note("gap", None, text.clone())));
     let named = |c: usize| !headers[c].is_empty() && !plan.select.iter().any(|w| w.column == c);
     for &column in table.text_columns.iter().filter(|&&c| named(c)) {
         let name = &headers[column];

@@ -1,6 +1,6 @@
 //! Conversion of a container's columns to the common table of all formats: selection, trials, labels, units.
 
-use super::errors::LogError;
+use super::errors::{LogError, MAP_ANOTHER};
 use super::plan::{Plan, Use};
 use super::raw::{Cells, Raw};
 use super::table::{Group, Table};
@@ -13,21 +13,21 @@ use std::path::{Path, PathBuf};
 const SHOWN_VALUES: usize = 6;
 
 /// Makes the table as `plan` says.
-pub fn table(mut raw: Raw, plan: &Plan, path: &Path) -> Result<Table, LogError> {
+pub fn table(raw: &mut Raw, plan: &Plan, path: &Path) -> Result<Table, LogError> {
     if raw.rows() == 0 {
         return Err(LogError::HeaderOnly { path: path.to_path_buf() });
     }
-    let rows = selected(&raw, plan, path)?;
+    let rows = selected(raw, plan, path)?;
     let mut table = Table::default();
-    fingerprint(&raw, plan, &mut table);
-    let groups = groups(&raw, plan, &rows);
-    let uses = usable(&raw, plan, &groups, &mut table, path)?;
+    fingerprint(raw, plan, &mut table);
+    let groups = groups(raw, plan, &rows);
+    let uses = usable(raw, plan, &groups, &mut table, path)?;
     if plan.trial.is_none() && plan.select.is_empty() {
-        table.groups.push((None, whole(&mut raw, plan, &uses)));
+        table.groups.push((None, whole(raw, plan, &uses)));
         return Ok(table);
     }
     for (trial, members) in groups {
-        let mut group = Group::new(vec![Vec::new(); uses.len()], labels(&raw, plan, &members));
+        let mut group = Group::new(vec![Vec::new(); uses.len()], labels(raw, plan, &members));
         for (column, factor) in uses.iter().enumerate().filter_map(|(c, u)| Some((c, (*u)?))) {
             let value = |&row: &usize| number(&raw.columns[column], row) * factor;
             group.columns[column] = members.iter().map(value).collect();
@@ -168,6 +168,7 @@ fn usable(
             line: 0,
             column: raw.headers[column].clone(),
             what,
+            advice: MAP_ANOTHER,
             path: PathBuf::from(path),
         }),
     }

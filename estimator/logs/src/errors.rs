@@ -1,13 +1,19 @@
 //! Errors of reading a log: one sentence each, the problem first and the path last.
 
+mod words;
+
 use haptics::text_file::one_line as plain;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use words::{chosen, columns_advice, mapped_instead, place, stated_factor, unit_fault};
 
-/// Fault of a unit: it is not known, or not stated.
-fn unit_fault(unit: &str) -> String {
-    if unit.is_empty() { "states no unit".to_owned() } else { format!("has the unknown unit `{}`", plain(unit)) }
-}
+/// Advice about a cell that is not like the others.
+pub const CORRECT_CELL: &str = "correct that cell or remove the row";
+/// Advice about a column without numbers, and about a cell of a container, which nobody corrects.
+pub const MAP_ANOTHER: &str = "map another column in the sidecar, or record that channel again";
+/// Advice about a clock without numbers.
+pub const WRITE_TIMES: &str =
+    "no row has a number or a known time there: write times as seconds or as 2026-03-04T23:59:55.123";
 
 /// Error that kept a log from being loaded. Nothing is half-loaded: the result is a recording or one of these.
 #[derive(Debug, thiserror::Error)]
@@ -170,7 +176,7 @@ pub enum LogError {
     },
     /// The first line holds numbers.
     #[error(
-        "the first line holds numbers instead of column names; put a header line such as `t_s,x_m,y_m` above it: {path}",
+        "the first line holds numbers instead of column names; put a header line such as `t_s,x_m,y_m` above it, or map the columns by their places in the sidecar: \"columns\": {{\"t_s\": \"column 1\", \"q_m\": \"column 2\"}}: {path}",
         path = path.display()
     )]
     NoHeader {
@@ -238,7 +244,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A name in metres above a unit row in millimetres, or a similar contradiction.
-    #[error("the name of the column `{column}` says {named} and its stated unit is `{stated}`; give its factor to SI with \"scale\" in the sidecar: {path}", column = plain(column), stated = plain(stated), path = path.display())]
+    #[error("the name of the column `{column}` says {named} and its stated unit is `{shown}`; state the factor that holds in the sidecar: {entry}: {path}", column = plain(column), shown = plain(stated), entry = stated_factor(column, (named, stated), *factor), path = path.display())]
     TwoUnits {
         /// The file's name.
         column: String,
@@ -246,11 +252,13 @@ pub enum LogError {
         named: &'static str,
         /// Unit in the file's row of units, in its metadata, or behind its numbers.
         stated: String,
+        /// SI value of that unit over the SI value of the name's; none if they measure different things.
+        factor: Option<f64>,
         /// The file.
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), advice = cell_advice(*line), column = plain(column), what = plain(what), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), column = plain(column), what = plain(what), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -260,6 +268,8 @@ pub enum LogError {
         column: String,
         /// Content of the cell.
         what: String,
+        /// The way out.
+        advice: &'static str,
         /// The file.
         path: PathBuf,
     },
@@ -343,6 +353,18 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// A window of time without samples.
+    #[error("no sample lies in the window of time ({window}): the log runs from {first_s} to {last_s} s; state another --from-s or --to-s, or correct the window in the sidecar: {path}", path = path.display())]
+    EmptyWindow {
+        /// The window, in words.
+        window: String,
+        /// First time of the log, s.
+        first_s: f64,
+        /// Its last time, s.
+        last_s: f64,
+        /// The log.
+        path: PathBuf,
+    },
     /// The sidecar is faulty.
     #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", why = plain(why), path = path.display())]
     Sidecar {
@@ -359,42 +381,4 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-}
-
-/// Choice among two columns, as an entry of the sidecar.
-fn chosen(column: &str, choice: Option<&str>) -> String {
-    let entry = |choice: &str| format!(", like {{\"{}\": \"{}\"}}", plain(column), plain(choice));
-    choice.map_or(String::new(), entry)
-}
-
-/// Entries of `columns`, at the end of a sentence.
-fn mapped_instead(columns: &BTreeMap<String, String>) -> String {
-    let entry = |(name, header): (&String, &String)| format!("\"{}\": \"{}\"", plain(name), plain(header));
-    let entries: Vec<String> = columns.iter().map(entry).collect();
-    if entries.is_empty() {
-        return String::new();
-    }
-    format!("; for a motion along one line, state \"columns\": {{{}}} in the sidecar", entries.join(", "))
-}
-
-/// `row 3 (line 4)`, or without the line where the format has none.
-fn place(row: usize, line: u64) -> String {
-    if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
-}
-
-/// Advice about a container without columns of numbers.
-fn columns_advice(format: &str) -> &'static str {
-    match format {
-        "MATLAB" => "save vectors of equal length, one of them the time, with save('log.mat', ..., '-v7')",
-        _ => "export the log with JSON, protobuf or ROS 2 messages, or as CSV",
-    }
-}
-
-/// Advice about a cell: nobody corrects one of a container, which has no lines.
-fn cell_advice(line: u64) -> &'static str {
-    if line == 0 {
-        "map another column in the sidecar, or record that channel again"
-    } else {
-        "correct that cell or remove the row"
-    }
 }

@@ -252,10 +252,16 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     plan.take_stamps(&dialect.headers, &dialect.first, meta);
     plan.take_fraction_of_stamps(&dialect.headers);
     plan.give_clocks(&dialect.clocks);
+    plan.note_spare(&dialect.headers, meta);
     let mut read = csv::read(path, &dialect, &plan, size, watch);
     // A day above 12 anywhere in the file settles the order of day and month.
     if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {
         read = csv::read(path, &dialect, &plan, size, watch).or(read);
+    }
+    while let Err(error) = &read
+        && plan.leave_out(error, &dialect.headers, meta)
+    {
+        read = csv::read(path, &dialect, &plan, size, watch);
     }
     let mut table = read?;
     second_clocks::take_time(&mut table, &mut plan, meta, &dialect.headers);
@@ -273,7 +279,14 @@ fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Ve
     plan.origin = raw.origin_ns.filter(|_| plan.time == Some(0)).map(|ns| Origin { ns, is_dated: true });
     let days = text_clock::take(&mut raw, &mut plan, &resolved, path)?;
     plan.notes.extend(plan::Plan::doubt_about_dates(days));
-    let mut table = columnar::table(raw, &plan, path)?;
+    let mut read = columnar::table(&mut raw, &plan, path);
+    while let Err(error) = &read
+        && plan.leave_out(error, &headers, &resolved)
+    {
+        read = columnar::table(&mut raw, &plan, path);
+    }
+    drop(raw);
+    let mut table = read?;
     second_clocks::take_time(&mut table, &mut plan, &resolved, &headers);
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }
@@ -311,5 +324,7 @@ fn admissible_size(path: &Path) -> Result<u64, LogError> {
 
 #[cfg(test)]
 mod formats_tests;
+#[cfg(test)]
+mod table_tests;
 #[cfg(test)]
 mod tests;

@@ -12,6 +12,7 @@ impl LogError {
             // The values may show the unit.
             Self::UnknownUnit { unit, .. } if unit.is_empty() => return None,
             Self::UnknownUnit { name, column, .. } => json!({ "columns": { name: column }, "scale": { name: null } }),
+            Self::TwoUnits { column, .. } => json!({ "scale": { column: null } }),
             Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
             Self::DuplicateColumn { column, choice: Some(choice), .. } => json!({ "columns": { column: choice } }),
             Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),

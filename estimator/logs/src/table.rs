@@ -26,6 +26,8 @@ pub struct Table {
     pub gappy_columns: Vec<usize>,
     /// Needed columns that have values in some rows only: each has a clock of its own.
     pub sparse_columns: Vec<usize>,
+    /// Sentences about rows that were left out.
+    pub notes: Vec<String>,
     /// Order of day and month in the dates.
     pub days: Days,
     /// Contents of every trial, also of those not selected.
@@ -68,6 +70,20 @@ impl Group {
         made.note_place(0, row, line);
         for &(index, line, row) in self.lines.iter().filter(|(index, ..)| (first + 1..end).contains(index)) {
             made.note_place(index - first, row, line);
+        }
+        made
+    }
+
+    /// The rows for which this holds, with their places.
+    pub fn filtered(&self, is_kept: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.rows()).filter(|row| is_kept(*row)).collect();
+        let part = |values: &Vec<f64>| kept.iter().filter_map(|row| values.get(*row)).copied().collect();
+        let has_labels = !self.labels.is_empty();
+        let labels = if has_labels { self.labels.gathered(kept.iter().copied()) } else { Labels::default() };
+        let mut made = Self::new(self.columns.iter().map(part).collect(), labels);
+        for (index, &old) in kept.iter().enumerate() {
+            let (row, line) = self.place(old);
+            made.note_place(index, row, line);
         }
         made
     }

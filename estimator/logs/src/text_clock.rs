@@ -1,7 +1,7 @@
 //! Time columns of text in a container: times of the calendar or of the day become seconds.
 
 use super::csv::calendar::{self, Days, Form};
-use super::errors::LogError;
+use super::errors::{LogError, MAP_ANOTHER};
 use super::plan::{Plan, Use};
 use super::raw::{Cells, Raw};
 use haptics::recording::Meta;
@@ -23,6 +23,7 @@ pub fn take(raw: &mut Raw, plan: &mut Plan, meta: &Meta, path: &Path) -> Result<
         line: 0,
         column: raw.headers[column].clone(),
         what: format!("`{}` is not a time like the others", raw.columns[column].text(row)),
+        advice: MAP_ANOTHER,
         path: path.to_path_buf(),
     })?;
     raw.columns[column] = Cells::Numbers(values);

@@ -38,16 +38,38 @@ impl Marks {
         };
         let (before, after) = (&digits[..at], &digits[at + 1..]);
         let decimals = after.split(['e', 'E']).next().unwrap_or(after);
-        if !is_digits(&before.replace(['.', ','], "")) || !is_digits(decimals) {
+        let mark = usize::from(digits.as_bytes()[at] == b',');
+        let mut groups = before.split(['.', ',']);
+        let first = groups.next().unwrap_or_default();
+        let mut is_long = false;
+        let are_groups = groups.all(|group| {
+            is_long = true;
+            group.len() == 3 && is_digits(group)
+        });
+        if !is_digits(first) || !are_groups || !is_digits(decimals) {
+            return;
+        }
+        if is_long {
+            self.add_groups(first, (before, decimals), mark);
             return;
         }
         // Three digits may be a thousand, but not behind a zero, nor behind more than three others.
-        let is_alone = !before.contains(['.', ',']);
-        let is_certain =
-            decimals.len() != 3 || is_alone && (before.starts_with('0') || !(1..=3).contains(&before.len()));
-        let mark = usize::from(digits.as_bytes()[at] == b',');
+        let is_certain = decimals.len() != 3 || first.starts_with('0') || !(1..=3).contains(&first.len());
         let counts = if is_certain { &mut self.certain } else { &mut self.groups };
         counts[mark] += 1;
+    }
+
+    /// Adds a number with several marks. The last one is decimal if it is another than those before it; marks that are all
+    /// alike stand between thousands.
+    fn add_groups(&mut self, first: &str, (before, decimals): (&str, &str), mark: usize) {
+        let of = |mark: usize| ['.', ','][mark];
+        let between = usize::from(before.contains(of(1)));
+        if !(1..=3).contains(&first.len()) || before.contains(of(1 - between)) || between == mark && decimals.len() != 3
+        {
+            return;
+        }
+        self.certain[1 - between] += 1;
+        self.groups[between] += 1;
     }
 
     /// The mark that stands between thousands: numbers below a thousand have none, and no other number has another count of digits
@@ -97,6 +119,10 @@ mod tests {
         assert_eq!(of(&[&["0.000", "12"]]), (Decimal::Point, false));
         assert_eq!(of(&[&["0.5", "0,5"]]), (Decimal::Either, true));
         assert_eq!(of(&[&["1.234", "12"]]), (Decimal::Either, false));
+        assert_eq!(of(&[&["-33.904,582", "1.234"]]), (Decimal::Comma, true));
+        assert_eq!(of(&[&["1,234,567", "12"]]), (Decimal::Point, true));
+        // Dates and versions are no numbers.
+        assert_eq!(of(&[&["14.03.2026", "1.2.3", "0,5"]]), (Decimal::Comma, false));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::dialect::Dialect;
 use super::part::{Fault, Part};
-use crate::errors::LogError;
+use crate::errors::{CORRECT_CELL, LogError, MAP_ANOTHER, WRITE_TIMES};
 use crate::pages;
 use crate::plan::{Plan, Use};
 use crate::preview::Preview;
@@ -16,6 +16,16 @@ const SHOWN_VALUES: usize = 6;
 
 /// Fewer values than this are no samples of a slower clock.
 const LEAST_VALUES: usize = 8;
+
+/// Meaning of cells without a value.
+enum Blanks {
+    /// The column has a clock of its own, or no such cell.
+    OfASlowerClock,
+    /// Samples were lost.
+    Few,
+    /// The table is faulty.
+    Faulty,
+}
 
 /// Takes parts in any order and keeps those that are early.
 #[derive(Debug)]
@@ -164,7 +174,12 @@ impl<'a> Join<'a> {
                 }
             }
             Fault::Cell(column, what) => {
-                LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, path }
+                let advice = match () {
+                    () if self.dialect.body.holds_values(column) => CORRECT_CELL,
+                    () if Some(column) == self.plan.time => WRITE_TIMES,
+                    () => MAP_ANOTHER,
+                };
+                LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, advice, path }
             }
         }
     }
@@ -185,34 +200,65 @@ impl<'a> Join<'a> {
         Ok(self.table)
     }
 
-    /// A needed column without a value in many rows has a clock of its own; one without a value in a few rows is faulty.
+    /// A needed column without a value in many rows has a clock of its own. Rows are left out if few of them lack a value.
+    /// A clock, a column with hardly a value, and rows without a clock need each.
     fn settle_blanks(&mut self) -> Result<(), LogError> {
         let is_needed = |c: &usize| matches!(self.plan.uses[*c], Use::Number { required: true, .. });
         let (needed, others): (Vec<usize>, Vec<usize>) = self.table.gappy_columns.iter().partition(|c| is_needed(c));
-        let is_time = |column: usize| Some(column) == self.plan.time && !self.plan.has_pairs();
         let mut worst: Option<(usize, u64, usize)> = None;
+        let mut holes = vec![Vec::new(); self.table.groups.len()];
         for &column in &needed {
-            let blanks = |group: &Group| group.columns[column].iter().filter(|v| is_missing(**v)).count();
-            let is_sparse = |group: &Group| {
-                let (all, blanks) = (group.columns[column].len(), blanks(group));
-                // Pairs of time and value side by side have lengths of their own.
-                let trails = || group.columns[column].iter().rev().take(blanks).all(|v| is_missing(*v));
-                let is_shorter = self.plan.has_pairs() && all - blanks >= LEAST_VALUES && trails();
-                let is_slower = self.dialect.is_long || 3 * blanks >= all;
-                blanks == 0 || is_shorter || all - blanks >= LEAST_VALUES && is_slower
-            };
-            let groups = self.table.groups.iter().map(|(_, group)| group);
-            for group in groups.filter(|group| is_time(column) || !is_sparse(group)) {
-                let first = group.columns[column].iter().position(|v| is_missing(*v));
-                let place = first.map(|first| group.place(first));
-                let earlier = place.filter(|(row, _)| worst.is_none_or(|(other, ..)| *row < other));
-                worst = earlier.map(|(row, line)| (row, line, column)).or(worst);
+            for ((_, group), holes) in self.table.groups.iter().zip(&mut holes) {
+                match self.blanks(group, column) {
+                    Blanks::OfASlowerClock => {}
+                    Blanks::Few => holes.push(column),
+                    Blanks::Faulty => {
+                        let first = group.columns[column].iter().position(|v| is_missing(*v));
+                        let place = first.map(|first| group.place(first));
+                        let earlier = place.filter(|(row, _)| worst.is_none_or(|(other, ..)| *row < other));
+                        worst = earlier.map(|(row, line)| (row, line, column)).or(worst);
+                    }
+                }
             }
+        }
+        if let Some((row, line, column)) = worst {
+            return Err(self.sentence(row, line, Fault::Cell(column, "the cell is empty".to_owned())));
         }
         self.table.gappy_columns = others;
         self.table.sparse_columns = needed;
-        let fault = |column| Fault::Cell(column, "the cell is empty".to_owned());
-        worst.map_or(Ok(()), |(row, line, column)| Err(self.sentence(row, line, fault(column))))
+        for ((_, group), holes) in self.table.groups.iter_mut().zip(holes).filter(|(_, holes)| !holes.is_empty()) {
+            let lacks = |row: &usize| holes.iter().any(|column| is_missing(group.columns[*column][*row]));
+            let first = (0..group.rows()).find(lacks).map_or(0, |first| group.place(first).0);
+            let kept = group.filtered(|row| !lacks(&row));
+            let names: Vec<String> = holes.iter().map(|c| format!("`{}`", self.dialect.headers[*c])).collect();
+            let (count, names) = (group.rows() - kept.rows(), names.join(", "));
+            self.table
+                .notes
+                .push(format!("{count} row(s) without a value of {names}, from row {first} on, are left out"));
+            *group = kept;
+        }
+        Ok(())
+    }
+
+    /// Meaning of the cells without a value that a needed column has in a group of rows.
+    fn blanks(&self, group: &Group, column: usize) -> Blanks {
+        let values = &group.columns[column];
+        let blanks = values.iter().filter(|v| is_missing(**v)).count();
+        let has_values = values.len() - blanks >= LEAST_VALUES;
+        let has_pairs = self.plan.has_pairs();
+        if blanks == 0 {
+            return Blanks::OfASlowerClock;
+        }
+        if Some(column) == self.plan.time && !has_pairs || !has_values {
+            return Blanks::Faulty;
+        }
+        // Pairs of time and value side by side have lengths of their own.
+        let trails = || values.iter().rev().take(blanks).all(|v| is_missing(*v));
+        match () {
+            () if self.dialect.is_long || 3 * blanks >= values.len() || has_pairs && trails() => Blanks::OfASlowerClock,
+            () if self.plan.time.is_some() && !has_pairs && !self.plan.spare.contains(&column) => Blanks::Few,
+            () => Blanks::Faulty,
+        }
     }
 
     fn nothing_selected(&self) -> LogError {

@@ -4,7 +4,7 @@
 //! last line of the table's width above the first row of numbers, unless that one holds nothing but units.
 
 use super::cells::{Cells, Notation, number, record_end};
-use super::encoding;
+use super::{calendar, encoding};
 use crate::written_units::{self, Written};
 
 /// Records at the start of a file that are looked at.
@@ -49,11 +49,12 @@ fn is_rule(record: &[u8]) -> bool {
     record.iter().all(|b| matches!(b, b'-' | b'=' | b'|' | b'+' | b':' | b' ' | b'\t')) && record.contains(&b'-')
 }
 
-/// Columns of numbers of a table.
+/// Columns of numbers and of times of a table.
 #[derive(Debug, Default)]
 pub struct Body {
     width: usize,
     numeric: Vec<usize>,
+    times: Vec<usize>,
 }
 
 impl Body {
@@ -70,7 +71,19 @@ impl Body {
             numbers > 0 && (numbers + blanks) as f64 >= MOSTLY * rows.len() as f64
         };
         let numeric: Vec<usize> = (0..width).filter(holds).collect();
-        (!numeric.is_empty()).then_some(Self { width, numeric })
+        let has_times = |c: &usize| !numeric.contains(c) && rows.iter().all(|r| is_time(&r.cells[*c]));
+        let times = (0..width).filter(has_times).collect();
+        (!numeric.is_empty()).then_some(Self { width, numeric, times })
+    }
+
+    /// False if most rows have no number and no time in a column.
+    pub fn holds_values(&self, column: usize) -> bool {
+        self.width == 0 || self.numeric.contains(&column) || self.times.contains(&column)
+    }
+
+    /// Share of the columns that hold numbers or times.
+    pub fn share(&self) -> f64 {
+        (self.numeric.len() + self.times.len()) as f64 / self.width.max(1) as f64
     }
 
     /// True for a record with numbers in more than half of the columns of numbers.
@@ -79,6 +92,13 @@ impl Body {
         cells.len() == self.width
             && 2 * self.numbers(record, notation) > self.numeric.len()
             && self.numeric.iter().any(|c| is_number(&cells[*c], notation))
+    }
+
+    /// The text with which a record begins in a column of numbers or times.
+    fn label<'a>(&self, record: &'a Record, notation: Notation) -> Option<&'a str> {
+        let (at, cell) = record.cells.iter().enumerate().find(|(_, cell)| !cell.is_empty())?;
+        let has_values = self.numeric.contains(&at) || self.times.contains(&at);
+        (has_values && !is_number(cell, notation) && !is_time(cell)).then_some(cell)
     }
 
     /// Number of the columns of numbers in which a record has one, or a blank.
@@ -90,6 +110,10 @@ impl Body {
 
 fn is_number(cell: &str, notation: Notation) -> bool {
     number(cell.as_bytes(), notation).is_some()
+}
+
+fn is_time(cell: &str) -> bool {
+    calendar::parse(cell).is_some() || calendar::is_date(cell)
 }
 
 /// Header and first row among the records.
@@ -155,7 +179,23 @@ fn units_below_names(records: &[Record], first: usize, may_be_names: impl Fn(usi
     };
     let holds = |k: usize| k > 0 && holds_units(&records[k].cells) && may_be_names(k - 1);
     let above_remarks = || first.checked_sub(2).filter(|&k| holds(k) && is_complete(k - 1) && may_be_names(k + 1));
-    Some(first - 1).filter(|&k| holds(k)).or_else(above_remarks)
+    // One unit that is not known makes no name of the others.
+    let most = |k: usize| {
+        k > 0
+            && states_units(&records[k].cells)
+            && may_be_names(k - 1)
+            && is_complete(k - 1)
+            && !states_units(&records[k - 1].cells)
+    };
+    Some(first - 1).filter(|&k| holds(k) || most(k)).or_else(above_remarks)
+}
+
+/// Layout of rows without names above them; `None` if the first record is no row.
+pub fn without_names(records: &[Record], notation: Notation) -> Option<Layout> {
+    let body = Body::of(records, notation)?;
+    let are_rows = records.iter().take(2).all(|record| body.is_row(record, notation));
+    let names = vec![String::new(); body.width];
+    are_rows.then_some(Layout { names, header: None, units: None, first: 0, width: body.width, body })
 }
 
 /// Layout of rows below a comment with their names, as `NumPy` writes them.
@@ -198,13 +238,31 @@ fn holds_units(cells: &[String]) -> bool {
     texts.peek().is_some() && texts.all(|cell| is_unit(cell))
 }
 
-/// Start of a summary behind the last row, bytes, and its number of records: text that begins where numbers stood.
+/// True if half of the texts or more are known units.
+fn states_units(cells: &[String]) -> bool {
+    let texts: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
+    let known = texts.iter().filter(|cell| matches!(written_units::parse(cell, &[]), Written::Known(..))).count();
+    known > 0 && 2 * known >= texts.len()
+}
+
+/// True for a record whose first text begins with a word.
+pub fn begins_with_word(record: &Record) -> bool {
+    let text = record.cells.iter().find(|cell| !cell.is_empty()).map_or("", String::as_str);
+    text.chars().take(2).filter(|c| c.is_alphabetic()).count() == 2
+}
+
+/// Start of a summary behind the last row, bytes, and its number of records: text that begins where numbers stood, such as
+/// `End of test` and `Mean,0.1,2.5`.
 /// `tail`: the last bytes of the file, from a line's start on.
 pub fn summary(tail: &[u8], body: &Body, notation: Notation) -> Option<(usize, usize)> {
     let records = records(tail, notation.delimiter, usize::MAX);
-    let last = records.iter().rposition(|r| body.is_row(r, notation))?;
+    // Numbers of a summary stand behind a word for them; a row with a fault has none.
+    let is_summary = |record: &Record| body.label(record, notation).is_some() && begins_with_word(record);
+    let last = records.iter().rposition(|r| body.is_row(r, notation) && !is_summary(r))?;
     let behind = &records[last + 1..];
-    let begins = behind.first()?.cells.iter().position(|cell| !cell.is_empty())?;
-    let is_text = !is_number(&behind[0].cells[begins], notation) && body.numeric.contains(&begins);
+    let named = behind.iter().filter(|r| body.is_row(r, notation));
+    let names: Vec<&str> = named.filter_map(|r| body.label(r, notation)).collect();
+    let is_repeated = names.iter().enumerate().any(|(at, name)| names[..at].contains(name));
+    let is_text = body.label(behind.first()?, notation).is_some() && !is_repeated;
     (is_text && behind.len() <= SUMMARY).then(|| (records[last].end + 1, behind.len()))
 }

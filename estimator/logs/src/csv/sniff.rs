@@ -4,8 +4,10 @@ use super::cells::{Cells, Notation, number, record_end};
 use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
+use super::layout::Layout;
 use super::{above, calendar, labview, layout, long_table, serial_log, unit_cells};
 use crate::errors::LogError;
+use crate::raw::place_of;
 use crate::{format, stated_rate};
 use haptics::recording::Meta;
 use std::fs::File;
@@ -49,7 +51,7 @@ pub fn sniff(path: &Path, meta: Option<&Meta>) -> Result<Dialect, LogError> {
     notes.extend(made.note.map(str::to_owned));
     text = made.text.or(text);
     start = text.as_deref().map_or(start, beginning);
-    let mut found = dialect(&start, path)?;
+    let mut found = dialect(&start, meta, path)?;
     found.name_columns();
     let above = String::from_utf8_lossy(&start[..(found.start as usize).min(start.len())]);
     found.rate = above.lines().find_map(|line| Some((line.to_owned(), stated_rate::of_line(line)?)));
@@ -132,7 +134,8 @@ fn is_binary(start: &[u8], encoding: Encoding) -> bool {
     !matches!(encoding, Encoding::Utf16(_)) && start.iter().any(is_control)
 }
 
-pub(super) fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
+/// Notation and layout by the beginning of a text. `meta`: the sidecar, if it is known.
+pub(super) fn dialect(start: &[u8], meta: Option<&Meta>, path: &Path) -> Result<Dialect, LogError> {
     let not_a_table = |why: &str| LogError::NotATable { why: why.to_owned(), path: path.to_path_buf() };
     if let Some(what) = format::foreign(start) {
         return Err(not_a_table(what));
@@ -158,7 +161,7 @@ pub(super) fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
         }
         (at, line) = (end + 1, line + 1);
     };
-    if let Some(found) = laid_out(&text[at..], &text[..at], stated, delimiter_of(header_line)) {
+    if let Some(found) = laid_out(&text[at..], &text[..at], (stated, delimiter_of(header_line)), meta) {
         let before = (start.len() - text.len() + at) as u64;
         return Ok(Dialect { start: before + found.start, line: line + found.line, ..found });
     }
@@ -190,56 +193,123 @@ fn stated_delimiter(line: &[u8]) -> Option<u8> {
     if let [one] = sign { Some(*one) } else { line.len().eq(&4).then_some(b'\t') }
 }
 
-/// Header, units and first row as the rows of numbers show them; places count from the start of `text`. `comments`: those above.
-fn laid_out(text: &[u8], comments: &[u8], stated: Option<u8>, of_first_line: u8) -> Option<Dialect> {
+/// Header, units and first row as the rows of numbers show them; places count from the start of `text`. `comments`: those
+/// above. The delimiter is that which leaves numbers in the largest share of the columns.
+fn laid_out(
+    text: &[u8],
+    comments: &[u8],
+    (stated, of_first_line): (Option<u8>, u8),
+    meta: Option<&Meta>,
+) -> Option<Dialect> {
     let candidates = match stated {
         Some(delimiter) => vec![delimiter],
         None => vec![of_first_line, b'\t', b';', b',', b'|'],
     };
-    candidates.into_iter().find_map(|delimiter| {
-        let mut records = layout::records(text, delimiter, layout::LOOKED_AT);
-        // The last record may have been cut off.
-        if text.len() + 3 >= SNIFF_BYTES && records.last().is_some_and(|r| r.end == text.len()) {
-            records.pop();
-        }
-        let (mut decimal, mut grouped) = Decimal::of(records.iter().map(|record| record.cells.as_slice()));
-        if delimiter == b',' && decimal == Decimal::Either {
-            // A comma in quotes stands for thousands, unless some cell shows decimals behind it.
-            decimal = Decimal::Point;
-            grouped =
-                records[records.len() / 2..].iter().any(|record| record.cells.iter().any(|cell| cell.contains(',')));
-        }
-        let notation = Notation { delimiter, decimal };
-        let found = layout::of(&records, notation).or_else(|| layout::below_comment(&records, comments, notation));
-        let found = found.filter(|found| found.width > 1 || stated.is_some())?;
-        let first = &records[found.first];
-        let mut dialect = Dialect {
-            notation,
-            headers: found.names,
-            units: found.units.map_or_else(Vec::new, |k| units_of(&records[k], first)),
-            first: first.cells.clone(),
-            start: first.start as u64,
-            line: first.line,
-            body: found.body,
-            ..Dialect::default()
-        };
-        dialect.note_decimals(grouped);
-        if dialect.units.is_empty()
-            && let Some((units, comment)) = above::units(comments, &dialect.headers, delimiter)
+    let mut best: Option<Dialect> = None;
+    for delimiter in candidates {
+        let share = best.as_ref().map_or(0.0, |found| found.body.share());
+        if share < 1.0
+            && let Some(found) = divided(text, comments, (delimiter, stated.is_some()), meta)
+            && found.body.share() > share
         {
-            dialect.units = units;
-            dialect.notes.push(format!("the units are those of the comment `{comment}`"));
+            best = Some(found);
         }
-        let lines = &records[..found.header.unwrap_or(0)];
-        dialect.notes.extend(lines.iter().find_map(|line| above::factors(&line.cells, found.width, notation)));
-        take_upper_names(&mut dialect.headers, &records[..found.header.unwrap_or(0)]);
-        let header = found.header.map_or(0, |k| records[k].line);
-        let unread = header.saturating_sub(u64::from(found.units.is_some_and(|k| Some(k) < found.header)));
-        if unread > 0 {
-            dialect.notes.push(format!("{unread} line(s) above the header are not read"));
-        }
-        Some(dialect)
-    })
+    }
+    best
+}
+
+/// Layout of a text whose cells this delimiter divides. A table of one column may have one that is stated.
+fn divided(text: &[u8], comments: &[u8], (delimiter, is_stated): (u8, bool), meta: Option<&Meta>) -> Option<Dialect> {
+    let mut records = layout::records(text, delimiter, layout::LOOKED_AT);
+    // The last record may have been cut off.
+    if text.len() + 3 >= SNIFF_BYTES && records.last().is_some_and(|r| r.end == text.len()) {
+        records.pop();
+    }
+    let mapped = Mapped::of(meta);
+    let (mut notation, mut grouped) = notation_of(&records, comments, delimiter);
+    let mut found = mapped.layout(&records, comments, notation);
+    // Another table may stand above the one that the sidecar maps.
+    let has_names = |found: &Layout| mapped.are_in(&found.names);
+    if !found.as_ref().is_some_and(has_names)
+        && let Some(header) = records.iter().position(|record| mapped.are_in(&record.cells))
+    {
+        records.drain(..header);
+        (notation, grouped) = notation_of(&records, comments, delimiter);
+        found = mapped.layout(&records, comments, notation);
+    }
+    let found = found.filter(|found| found.width > 1 || is_stated)?;
+    let first = &records[found.first];
+    let mut dialect = Dialect {
+        notation,
+        headers: found.names,
+        units: found.units.map_or_else(Vec::new, |k| units_of(&records[k], first)),
+        first: first.cells.clone(),
+        start: first.start as u64,
+        line: first.line,
+        body: found.body,
+        ..Dialect::default()
+    };
+    dialect.note_decimals(grouped);
+    if dialect.units.is_empty()
+        && let Some((units, comment)) = above::units(comments, &dialect.headers, delimiter)
+    {
+        dialect.units = units;
+        dialect.notes.push(format!("the units are those of the comment `{comment}`"));
+    }
+    let lines = &records[..found.header.unwrap_or(0)];
+    dialect.notes.extend(lines.iter().find_map(|line| above::factors(&line.cells, found.width, notation)));
+    take_upper_names(&mut dialect.headers, lines);
+    let header = found.header.map_or(0, |k| records[k].line);
+    let unread = header.saturating_sub(u64::from(found.units.is_some_and(|k| Some(k) < found.header)));
+    if unread > 0 {
+        dialect.notes.push(format!("{unread} line(s) above the header are not read"));
+    }
+    Some(dialect)
+}
+
+/// Names of the file's columns that the sidecar maps.
+struct Mapped<'a>(Vec<&'a str>);
+
+impl<'a> Mapped<'a> {
+    fn of(meta: Option<&'a Meta>) -> Self {
+        let sources = meta.into_iter().flat_map(|meta| meta.columns.values());
+        Self(sources.map(String::as_str).filter(|source| !source.is_empty()).collect())
+    }
+
+    /// True if there are such names and all of them are among these.
+    fn are_in(&self, names: &[String]) -> bool {
+        !self.0.is_empty() && self.0.iter().all(|mapped| names.iter().any(|name| name == mapped))
+    }
+
+    /// Layout of records. Columns that are mapped by their places only need no names above them.
+    fn layout(&self, records: &[layout::Record], comments: &[u8], notation: Notation) -> Option<Layout> {
+        let is_by_place = !self.0.is_empty() && self.0.iter().all(|mapped| place_of(mapped).is_some());
+        let unnamed = is_by_place.then(|| layout::without_names(records, notation)).flatten();
+        let named = || layout::of(records, notation).or_else(|| layout::below_comment(records, comments, notation));
+        unnamed.or_else(named)
+    }
+}
+
+/// Marks between and within the numbers of the rows, and true if marks stand between thousands or both are decimal. Lines above
+/// and below the rows say nothing about them: a date or a version has points of its own.
+fn notation_of(records: &[layout::Record], comments: &[u8], delimiter: u8) -> (Notation, bool) {
+    let later = &records[records.len() / 2..];
+    let is_worded = 2 * later.iter().filter(|record| layout::begins_with_word(record)).count() > later.len();
+    let marks = |rows: &[layout::Record]| {
+        let rows = rows.iter().filter(|record| layout::begins_with_word(record) == is_worded);
+        Decimal::of(rows.map(|record| record.cells.as_slice()))
+    };
+    let guess = Notation { delimiter, decimal: marks(later).0 };
+    let found = layout::of(records, guess).or_else(|| layout::below_comment(records, comments, guess));
+    let rows = &records[found.map_or(0, |found| found.first)..];
+    let (decimal, grouped) = marks(rows);
+    if delimiter != b',' || decimal != Decimal::Either {
+        return (Notation { delimiter, decimal }, grouped);
+    }
+    // A comma in quotes stands for thousands, unless some cell shows decimals behind it.
+    let notation = Notation { delimiter, decimal: Decimal::Point };
+    let is_grouped = |cell: &String| cell.contains(',') && number(cell.as_bytes(), notation).is_some();
+    (notation, rows.iter().any(|record| record.cells.iter().any(is_grouped)))
 }
 
 /// Gives a column without a name the names that stand above it, as in a table of several levels: `stage.position`.

@@ -2,13 +2,16 @@
 
 mod clock_column;
 mod own_names;
+mod pairs;
 mod second_clocks;
 mod selection;
+mod spare;
 mod time_parts;
 
 pub use selection::{Wanted, counts_runs};
 
 pub use clock_column::is_clock;
+pub use pairs::PAIRS;
 pub use second_clocks::{SecondClock, TIMES, is_like_a_clock, words};
 
 use super::csv::calendar::Form;
@@ -20,22 +23,6 @@ use super::written_units::{self, Written};
 use haptics::recording::Meta;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
-
-/// Columns that are of no use without each other; a log that has one of a pair must have both.
-pub const PAIRS: [(&str, &str); 12] = [
-    ("x_m", "y_m"),
-    ("fx_N", "fy_N"),
-    ("qb_rad", "qt_rad"),
-    ("x1_m", "y1_m"),
-    ("x2_m", "y2_m"),
-    ("fx1_N", "fy1_N"),
-    ("fx2_N", "fy2_N"),
-    ("qb1_rad", "qt1_rad"),
-    ("qb2_rad", "qt2_rad"),
-    ("x1_m", "x2_m"),
-    ("fx1_N", "fx2_N"),
-    ("qb1_rad", "qb2_rad"),
-];
 
 /// Use of one column of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +89,8 @@ pub struct Plan {
     pub watched: Vec<usize>,
     /// Columns that tell the trials of the file apart: `trial` and those of `select`.
     pub trial_keys: Vec<usize>,
+    /// Columns that the log can do without.
+    pub spare: Vec<usize>,
     /// Sentences for the reader.
     pub notes: Vec<String>,
 }
@@ -370,26 +359,6 @@ impl Planner<'_> {
                 .notes
                 .push(format!("the sidecar gives a scale or sign for `{key}`, which the file does not have"));
         }
-    }
-
-    /// Vectors must be complete: half a position or half a force is of no use.
-    fn complete(&self) -> Result<(), LogError> {
-        let target = |name: &str| self.plan.targets.iter().find(|t| t.name == name);
-        let halves = PAIRS.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
-        let mut halves = halves.filter(|(there, absent)| target(there).is_some() && target(absent).is_none());
-        let Some((there, absent)) = halves.clone().next() else { return Ok(()) };
-        let mut error = self.missing(absent, format!("`{there}` is there and needs it"));
-        if let LogError::MissingColumn { instead, .. } = &mut error {
-            let name = |half: &str| match half {
-                "x_m" | "y_m" => Some("q_m"),
-                "fx_N" | "fy_N" => Some("f_N"),
-                _ => None,
-            };
-            let one =
-                |(there, _): (&str, &str)| Some((name(there)?.to_owned(), self.headers[target(there)?.column].clone()));
-            **instead = halves.by_ref().filter_map(one).collect();
-        }
-        Err(error)
     }
 
     fn watch(&mut self) {

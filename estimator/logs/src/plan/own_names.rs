@@ -98,27 +98,31 @@ impl Planner<'_> {
     /// decides by a scale or by a unit of its own (`q_mm`).
     pub(super) fn name_and_unit_agree(&self, name: &str, column: usize) -> Result<(), LogError> {
         let (header, stated) = (&self.headers[column], self.stated(column));
+        let is_text = stated.contains(char::is_alphanumeric);
         let by_user = |(key, source): (&String, &String)| {
             source == header && units::split(key).is_some_and(|(_, unit)| unit.factor != 1.0)
         };
         let is_decided = self.meta.scale.contains_key(name)
             || self.meta.scale.contains_key(header)
             || self.meta.columns.iter().any(by_user);
-        let Some((_, named)) = units::split(header).filter(|_| !stated.is_empty() && !is_decided) else {
+        let Some((quantity, named)) = units::split(header).filter(|_| is_text && !is_decided) else {
             return Ok(());
         };
         match written_units::parse(stated, &[named.dimension]) {
+            _ if named.dimension == Dimension::Other => Ok(()),
             Written::Known(dimension, factor)
-                if dimension == named.dimension && (factor / named.factor - 1.0).abs() > 1e-9 =>
+                if dimension == named.dimension && (factor / named.factor - 1.0).abs() <= 1e-9 =>
             {
-                Err(LogError::TwoUnits {
-                    column: header.clone(),
-                    named: named.symbol,
-                    stated: stated.to_owned(),
-                    path: self.path.to_path_buf(),
-                })
+                Ok(())
             }
-            _ => Ok(()),
+            Written::Known(dimension, factor) => Err(LogError::TwoUnits {
+                column: header.clone(),
+                named: named.symbol,
+                stated: stated.to_owned(),
+                factor: (dimension == named.dimension).then(|| factor / named.factor),
+                path: self.path.to_path_buf(),
+            }),
+            Written::Counts | Written::Unknown => Err(self.unknown_unit(header, stated, quantity)),
         }
     }
 
@@ -193,7 +197,7 @@ fn part_of_orientation(header: &str) -> Option<String> {
 
 /// Kinds of motion that a name of the program belongs to: a coordinate along a line or about an axis, a tool, two tips, and
 /// the joints of one finger or two. None for others.
-fn forms(name: &str) -> &'static [u8] {
+pub(super) fn forms(name: &str) -> &'static [u8] {
     let Some((quantity, unit)) = units::split(name) else { return &[] };
     let stem = quantity.trim_end_matches(['1', '2']);
     let fingered = stem.len() < quantity.len();

@@ -1,0 +1,83 @@
+//! Columns that a log can do without. A fault in one of them refuses no file.
+
+use super::own_names::forms;
+use super::{Plan, Use, canonical};
+use crate::errors::LogError;
+use crate::units::{self, Dimension};
+use haptics::recording::{Meta, Task};
+
+/// Forces of a mechanism beside its coordinates.
+const MECHANISMS: [(&str, &str); 2] = [("q_m", "f_N"), ("q_rad", "tau_Nm")];
+
+impl Plan {
+    /// Notes the columns that the log can do without.
+    pub fn note_spare(&mut self, headers: &[String], meta: &Meta) {
+        let columns = self.targets.iter().filter(|target| self.left_out_with(&target.name, headers, meta).is_some());
+        self.spare = columns.map(|target| target.column).collect();
+    }
+
+    /// Leaves the column of a faulty cell out, with those that are of no use without it. False if the log needs it.
+    pub fn leave_out(&mut self, error: &LogError, headers: &[String], meta: &Meta) -> bool {
+        let LogError::BadCell { row, column, what, .. } = error else { return false };
+        let Some(faulty) = self.targets.iter().find(|target| headers[target.column] == *column) else { return false };
+        let Some((columns, why)) = self.left_out_with(&faulty.name, headers, meta) else { return false };
+        let names: Vec<&str> = columns.iter().map(|column| headers[*column].as_str()).collect();
+        let names = format!("`{}` {}", names.join("`, `"), if names.len() == 1 { "is" } else { "are" });
+        self.notes.push(format!("{names} not used, since {why}: row {row}, column `{column}`: {what}"));
+        for column in &columns {
+            self.uses[*column] = Use::Ignore;
+        }
+        self.targets.retain(|target| !columns.contains(&target.column));
+        self.watched.retain(|column| !columns.contains(column));
+        true
+    }
+
+    /// Columns that are left out with a channel, and the reason; none if the log needs it, or if the sidecar mentions one of them.
+    fn left_out_with(&self, name: &str, headers: &[String], meta: &Meta) -> Option<(Vec<usize>, &'static str)> {
+        let (is_spare, why) = self.test_of_spare(name, meta)?;
+        let spare = || self.targets.iter().filter(|target| is_spare(&target.name));
+        let is_stated = spare().any(|target| is_mentioned(&target.name, &headers[target.column], meta));
+        (!is_stated).then(|| (spare().map(|target| target.column).collect(), why))
+    }
+
+    /// Test for the names that can be left out with this one, and the reason; none if it is needed. Rates follow from
+    /// positions. Beside the position and force of a mechanism, another motion belongs to another task.
+    fn test_of_spare(&self, name: &str, meta: &Meta) -> Option<(impl Fn(&str) -> bool + use<>, &'static str)> {
+        let has = |name: &str| self.targets.iter().any(|target| target.name == name);
+        let own = forms(name);
+        let kind = rate(name).filter(|(_, position)| has(position)).map(|(kind, _)| kind);
+        let is_for_mechanism = meta.task.is_none_or(|task| task == Task::Mechanism);
+        let is_other = own.iter().any(|form| *form > 1) && is_for_mechanism;
+        if kind.is_none() && !(is_other && MECHANISMS.iter().any(|(q, f)| has(q) && has(f))) {
+            return None;
+        }
+        let is_spare = move |other: &str| match kind {
+            Some(kind) => forms(other) == own && rate(other).is_some_and(|(other, _)| other == kind),
+            None => forms(other).iter().any(|form| *form > 1),
+        };
+        Some((
+            is_spare,
+            if kind.is_some() { "the position shows its rates" } else { "the motion of a mechanism stands beside" },
+        ))
+    }
+}
+
+/// Sign of a velocity or an acceleration, and the name of the position that it is a derivative of.
+fn rate(name: &str) -> Option<(&'static str, String)> {
+    let (quantity, unit) = units::split(name)?;
+    let si = match unit.dimension {
+        Dimension::Velocity | Dimension::Acceleration => "m",
+        Dimension::AngularVelocity | Dimension::AngularAcceleration => "rad",
+        _ => return None,
+    };
+    let (kind, position) = ["ddq", "dq", "v"].iter().find_map(|kind| Some((*kind, quantity.strip_prefix(kind)?)))?;
+    let stem = if kind == "v" { "" } else { "q" };
+    Some((kind, format!("{stem}{position}_{si}")))
+}
+
+/// True if the sidecar speaks of a column.
+fn is_mentioned(name: &str, header: &String, meta: &Meta) -> bool {
+    let is_key = |key: &String| key == header || canonical(key) == name;
+    let mut keys = meta.columns.keys().chain(meta.scale.keys()).chain(meta.sign.keys()).chain(meta.clocks.keys());
+    keys.any(is_key) || meta.columns.values().any(|source| source == header)
+}
