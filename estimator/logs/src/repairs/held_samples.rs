@@ -12,8 +12,8 @@ const REGULAR: f64 = 0.8;
 const QUANTA: f64 = 3.0;
 /// Distance between changes, rows, from which one row more or less is as regular.
 const LOOSE_FROM: f64 = 4.0;
-/// Least ratio of the rates. Choice: below it, one row in five repeats, as slow parts of a motion do, too.
-const LEAST_RATIO: f64 = 1.25;
+/// Least ratio of the rates. Choice: at 1.25, one row in five repeats, as parts of a real toss do, too.
+const LEAST_RATIO: f64 = 1.4;
 /// Least ratio of a channel that is interpolated. Choice: bends of noise in neighbouring rows count as one, and come 2 to 2.5 rows apart.
 const LEAST_INTERPOLATED: f64 = 2.75;
 /// Number of changes in a row that take their time together: repeats by chance spread far more.
