@@ -208,6 +208,23 @@ fn seconds_called_milliseconds_are_told() {
     }
 }
 
+/// Microseconds with fractions make a rate that no motion is recorded at.
+#[test]
+fn microseconds_with_fractions_are_told() {
+    let file =
+        table("t_s,q_m,f_N", |_, [t, place, push]| format!("{:.3},{:.9},{push:.6}", 1e6 * t + 0.37, 1e-3 * place));
+    mended("microseconds", &file);
+}
+
+/// A speed with a fault is left out: the position shows it.
+#[test]
+fn a_faulty_speed_is_left_out() {
+    let file = table("t_s,q_m,dq_m_s,f_N", |at, [t, place, push]| {
+        format!("{t:.3},{:.9},{},{push:.6}", 1e-3 * place, if at == 40 { "NaN" } else { "0.1" })
+    });
+    mended("a speed", &file);
+}
+
 /// A share of a range is no torque: its factor is asked for.
 #[test]
 fn the_factor_of_a_percentage_is_asked_for() {

@@ -1,6 +1,7 @@
 //! Values that no object has that a hand or a machine moves: a unit of the file is wrong.
 
 use foundation::estimate::Fit;
+use foundation::words::CLOCK_UNITS;
 
 /// Least and largest size of parameters in SI units, by their names.
 /// Choice: from a grain of sand to a locomotive. A wrong prefix of the time alone changes a mass by a million.
@@ -13,8 +14,6 @@ const LEAST_ACCELERATION: f64 = 0.01;
 const LARGEST_ACCELERATION: f64 = 1e3;
 /// Names of the inertias of mechanisms.
 const INERTIAS: [&str; 2] = ["mass_kg", "inertia_kg_m2"];
-/// Units that a clock may count in place of seconds, s.
-const CLOCKS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
 
 /// A sentence if all of the force would hardly accelerate the identified inertia, with the unit of the times that makes it plausible.
 fn slow_motion(fit: &Fit) -> Option<String> {
@@ -26,7 +25,7 @@ fn slow_motion(fit: &Fit) -> Option<String> {
         return None;
     }
     let is_plausible = |unit: f64| (LEAST_ACCELERATION..LARGEST_ACCELERATION).contains(&(acceleration / (unit * unit)));
-    let (clock, unit) = CLOCKS.into_iter().find(|(_, unit)| is_plausible(*unit))?;
+    let (clock, unit) = CLOCK_UNITS.into_iter().find(|(_, unit)| is_plausible(*unit))?;
     Some(format!(
         "{} {} comes out at {value:.1e}: the force accelerates that by {acceleration:.0e} {} at most, too slowly to be seen; if the times \
          are {clock}, state \"scale\": {{\"t_s\": {unit:e}}} in the sidecar, and it is {:.3e}",

@@ -1,5 +1,8 @@
 //! Quantities as people write them.
 
+/// Names and lengths, s, of the units that a clock may count in place of seconds.
+pub const CLOCK_UNITS: [(&str, f64); 3] = [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
+
 /// Prefix, with its factor, that keeps a number of this size readable: `(1e-3, "m")` for 13 mN.
 ///
 /// Only SI units that take a prefix in front have one (`N`, `m`, `N m`, `m/s`); lengths and speeds have none above 1.

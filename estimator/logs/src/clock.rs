@@ -3,11 +3,12 @@
 use super::csv::calendar;
 use super::errors::LogError;
 use super::mcap::resample;
-use super::origin::{EPOCHS, Origin, STAMP_UNITS};
+use super::origin::{EPOCHS, Origin};
 use super::plan::{Plan, Use};
 use super::raw::{Cells, is_missing};
 use super::row_order;
 use super::table::Group;
+use foundation::words::CLOCK_UNITS;
 use haptics::recording::{Labels, Meta, Warning};
 use serde_json::json;
 use std::path::Path;
@@ -132,7 +133,7 @@ fn origin(time: &[f64], clock: Use) -> Option<Origin> {
 /// Name and length, s, of the unit of stamps since 1970 that can be no seconds.
 fn stamp_unit(first: f64, factor: f64) -> Option<(&'static str, f64)> {
     let is_large = first.abs() >= NO_SECONDS && factor == 1.0 && !is_tick(first);
-    STAMP_UNITS.into_iter().find(|(_, unit)| is_large && EPOCHS.contains(&(first * unit)))
+    CLOCK_UNITS.into_iter().find(|(_, unit)| is_large && EPOCHS.contains(&(first * unit)))
 }
 
 /// True for a stamp in ticks of 100 ns, which the reader converts.
@@ -248,9 +249,10 @@ fn without_epoch(time: &mut [f64], factor: f64) -> Option<String> {
 /// `stated_s`: seconds of the unit that the file states, 1 without one; `undone`: the scale in a sidecar that makes seconds of it.
 pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warning> {
     let is_whole = time.iter().all(|t| t.fract() == 0.0);
+    let is_far_too_slow = time.first().zip(time.last()).is_some_and(|(a, b)| SLOWEST_HZ * (b - a) > time.len() as f64);
+    let may_be_slow = is_whole || is_far_too_slow;
     // The usual step of a long recording takes a while: it is needed for few of them.
-    let is_slow = || SLOWEST_HZ * (time[time.len() - 1] - time[0]) > time.len() as f64;
-    if time.len() < FEWEST_STAMPS || stated_s >= 1.0 && !is_whole && !is_slow() {
+    if time.len() < FEWEST_STAMPS || stated_s >= 1.0 && !may_be_slow {
         return None;
     }
     let rate_hz = usual_step(time)?.recip();
@@ -266,10 +268,10 @@ pub fn unit_doubt(time: &[f64], (stated_s, undone): (f64, f64)) -> Option<Warnin
         let suggested = json!({ "scale": { "t_s": undone } }).as_object().cloned();
         return Some(Warning { kind, column, text, suggested, ..Warning::default() });
     }
-    if !is_whole && !is_slow() {
+    if !may_be_slow {
         return None;
     }
-    let (name, unit) = STAMP_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
+    let (name, unit) = CLOCK_UNITS.into_iter().find(|(_, unit)| RATES_HZ.contains(&(rate_hz / unit)))?;
     let text = format!(
         "the times {}run at {} Hz; as {name} they run at {} Hz: if they are, state \"scale\": \
          {{\"t_s\": {unit:e}}} in the sidecar, and if they count samples, \"columns\": {{\"t_s\": null}} and \"rate_hz\"",

@@ -169,6 +169,7 @@ fn usable(
             column: raw.headers[column].clone(),
             what,
             advice: MAP_ANOTHER,
+            spare: Box::default(),
             path: PathBuf::from(path),
         }),
     }

@@ -5,7 +5,7 @@ mod words;
 use haptics::text_file::one_line as plain;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use words::{chosen, columns_advice, mapped_instead, place, stated_factor, unit_fault};
+use words::{cell_advice, chosen, columns_advice, mapped_instead, place, stated_factor, unit_fault};
 
 /// Advice about a cell that is not like the others.
 pub const CORRECT_CELL: &str = "correct that cell or remove the row";
@@ -258,7 +258,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), column = plain(column), what = plain(what), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), column = plain(column), what = plain(what), advice = cell_advice(advice, spare), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -270,6 +270,8 @@ pub enum LogError {
         what: String,
         /// The way out.
         advice: &'static str,
+        /// Names of the program of the columns that the log can do without, that of the cell among them.
+        spare: Box<[String]>,
         /// The file.
         path: PathBuf,
     },

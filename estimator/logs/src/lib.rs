@@ -258,12 +258,8 @@ fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Ve
     if matches!(read, Err(LogError::BadCell { .. })) && plan.turn_dates(&dialect.first) {
         read = csv::read(path, &dialect, &plan, size, watch).or(read);
     }
-    while let Err(error) = &read
-        && plan.leave_out(error, &dialect.headers, meta)
-    {
-        read = csv::read(path, &dialect, &plan, size, watch);
-    }
-    let mut table = read?;
+    let again = |plan: &plan::Plan| csv::read(path, &dialect, plan, size, watch);
+    let mut table = plan.without_spare((&dialect.headers, meta), read, again)?;
     second_clocks::take_time(&mut table, &mut plan, meta, &dialect.headers);
     let mut said: Vec<Warning> = dialect.notes.iter().map(|text| note("layout", text.clone())).collect();
     said.extend(dialect.rate.iter().map(|(line, rate_hz)| stated_rate::doubt(line, *rate_hz)));
@@ -279,14 +275,9 @@ fn finish(mut raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Ve
     plan.origin = raw.origin_ns.filter(|_| plan.time == Some(0)).map(|ns| Origin { ns, is_dated: true });
     let days = text_clock::take(&mut raw, &mut plan, &resolved, path)?;
     plan.notes.extend(plan::Plan::doubt_about_dates(days));
-    let mut read = columnar::table(&mut raw, &plan, path);
-    while let Err(error) = &read
-        && plan.leave_out(error, &headers, &resolved)
-    {
-        read = columnar::table(&mut raw, &plan, path);
-    }
+    let read = columnar::table(&mut raw, &plan, path);
+    let mut table = plan.without_spare((&headers, &resolved), read, |plan| columnar::table(&mut raw, plan, path))?;
     drop(raw);
-    let mut table = read?;
     second_clocks::take_time(&mut table, &mut plan, &resolved, &headers);
     assemble::recordings(table, &plan, meta, path, &headers, said)
 }

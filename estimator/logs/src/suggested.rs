@@ -16,6 +16,10 @@ impl LogError {
             Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
             Self::DuplicateColumn { column, choice: Some(choice), .. } => json!({ "columns": { column: choice } }),
             Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),
+            Self::BadCell { spare, .. } if !spare.is_empty() => {
+                let left_out = spare.iter().map(|name| (name.clone(), Value::Null));
+                json!({ "columns": left_out.collect::<Suggested>() })
+            }
             // Another order of the rows would go with them.
             Self::Time { goes_back: true, .. } => return None,
             Self::Time { rate_hz, .. } => json!({ "columns": { "t_s": null }, "rate_hz": rate_hz }),

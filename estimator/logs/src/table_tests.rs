@@ -183,14 +183,19 @@ fn spare_columns_refuse_no_file() {
         format!("t_s,q_um,f_mN,{names}\n{}", (0..60).map(row).collect::<String>())
     };
     let speed = table("dq_m_s", &|row| if row == 7 { "NaN".to_owned() } else { row.to_string() });
-    let one = holds("a rate", &speed, "{}", 60);
+    let mapped = r#"{"columns": {"f_N": "f_mN"}}"#;
+    let one = holds("a rate", &speed, mapped, 60);
     assert!(one.channel("dq_m_s").is_none() && says(&one, "`dq_m_s` is not used"), "{:?}", one.warnings);
+    // Nobody said which columns are meant: the way out is shown.
+    let error = read(&speed, "{}").expect_err("a known column");
+    assert!(error.contains(r#"leave the column out: "columns": {"dq_m_s": null}"#), "{error}");
+    holds("left out", &speed, r#"{"columns": {"dq_m_s": null}}"#, 60);
     assert!(read(&speed, r#"{"scale": {"dq_m_s": 2}}"#).expect_err("mentioned").contains("`NaN`"));
     let tool = |faulty: &'static str| {
         table("x_m,y_m", &move |row| if row < 3 { faulty.to_owned() } else { format!("{row},{row}") })
     };
     for faulty in [",", "NaN,1", "none,1"] {
-        let one = holds(faulty, tool(faulty), r#"{"task": "mechanism"}"#, 60);
+        let one = holds(faulty, tool(faulty), &mapped.replace("{\"columns", "{\"task\": \"mechanism\", \"columns"), 60);
         assert!(says(&one, "`x_m`, `y_m` are not used"), "{faulty}: {:?}", one.warnings);
     }
     assert!(read(tool("NaN,1"), r#"{"task": "needle"}"#).expect_err("needed").contains("`NaN`"));

@@ -179,7 +179,8 @@ pub fn in_header<'a>(header: &'a str, wanted: &[Dimension]) -> (&'a str, &'a str
     let groups = bracketed(header);
     // `position[a]` is that of a joint, `force[A]` a current.
     let is_item = |group: &Bracketed<'a>, dimension| {
-        group.may_be_item && !wanted.is_empty() && group.inside.len() == 1 && !wanted.contains(&dimension)
+        let is_joint = group.inside.len() == 1 && product(group.inside, Case::Kept).is_none();
+        group.may_be_item && is_joint && !wanted.contains(&dimension)
     };
     let is_read = |group: &&Bracketed<'a>| match parse(group.inside, wanted) {
         Written::Unknown => false,

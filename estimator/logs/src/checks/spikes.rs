@@ -5,6 +5,7 @@ use super::profile::Profile;
 use crate::units;
 use foundation::signal::wrench::is_turned_sensor;
 use haptics::recording::{Channel, Recording, Span, Warning};
+use std::cell::LazyCell;
 use std::ops::Range;
 
 /// Distance of a value from the others, in multiples of their spread, from which it is no measurement.
@@ -156,6 +157,8 @@ fn spikes(values: &[f64], position: bool, least: f64) -> Vec<usize> {
         return Vec::new();
     }
     let steps = values.len() - 1;
+    // Most channels need no look at all of their steps.
+    let quantum = LazyCell::new(|| smallest_step(values));
     let mut found = Vec::new();
     for first in (0..steps).step_by(AROUND) {
         let block = &values[first..(first + AROUND + 1).min(values.len())];
@@ -177,7 +180,9 @@ fn spikes(values: &[f64], position: bool, least: f64) -> Vec<usize> {
             if size < floor || size <= 0.0 || found.last().is_some_and(|last| *last >= at) {
                 continue;
             }
-            let fits = |length: &usize| at + length - 1 < steps && is_spike(values, at..at + length, position, floor);
+            let fits = |length: &usize| {
+                at + length - 1 < steps && is_spike(values, at..at + length, (position, floor), &quantum)
+            };
             if let Some(length) = (1..=LONGEST).find(fits) {
                 found.extend(at..at + length);
             }
@@ -200,8 +205,18 @@ fn steps_of(block: &[f64; AROUND + 1]) -> (f64, f64) {
     (sums.iter().sum(), largest.into_iter().fold(0.0, f64::max))
 }
 
-/// True if the samples `run` leap away together, and the next one is back.
-fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bool {
+/// Smallest step of a channel that is not zero; infinite without one.
+fn smallest_step(values: &[f64]) -> f64 {
+    values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
+}
+
+/// True if the samples `run` leap away together by `least` or more, and the next one is back. `quantum`: smallest step of the channel.
+fn is_spike(
+    values: &[f64],
+    run: Range<usize>,
+    (position, least): (bool, f64),
+    quantum: &LazyCell<f64, impl FnOnce() -> f64>,
+) -> bool {
     let (at, end) = (run.start, run.end);
     let (there, back) = (values[at] - values[at - 1], values[end] - values[end - 1]);
     let height = there.abs().min(back.abs());
@@ -218,8 +233,7 @@ fn is_spike(values: &[f64], run: Range<usize>, position: bool, least: f64) -> bo
     let usual = usual_step(values, at, FORGIVEN);
     // A force out of nothing may be a touch; a position that stands still does not leap. Beside equal values, the smallest step of the
     // channel may be a coarse one.
-    let is_step = |w: &[f64]| w[0] != w[1] && is_small(w[1] - w[0]);
-    let rest = usual > 0.0 || position || values[at - 1] != 0.0 && values.windows(2).any(is_step);
+    let rest = usual > 0.0 || position || values[at - 1] != 0.0 && is_small(**quantum);
     let is_alone = run.len() == 1 && height > SPIKE_STEPS * usual;
     rest && (is_alone || height > CLUSTER_STEPS * usual_step(values, at, FORGIVEN_IN_CLUSTERS))
 }
@@ -255,4 +269,39 @@ fn felt_elsewhere(recording: &Recording, channel: &Channel, at: usize) -> bool {
         let leap = (values[at] - values[at - 1]).abs().max((values[at + 1] - values[at]).abs());
         leap > FELT_STEPS * usual_step(values, at, FORGIVEN)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AT: usize = 150;
+
+    /// A slow force with some samples from [`AT`] on replaced.
+    fn with(samples: &[f64]) -> Vec<f64> {
+        let mut values: Vec<f64> = (0..300_u32).map(|i| -1.0 + 1e-3 * f64::from(i % 7)).collect();
+        values[AT..AT + samples.len()].copy_from_slice(samples);
+        values
+    }
+
+    #[test]
+    fn a_spike_stands_alone_and_the_top_of_a_slope_does_not() {
+        let found = |values: &[f64]| spikes(values, false, 0.01);
+        assert_eq!(found(&with(&[1.0])), [AT]);
+        assert_eq!(found(&with(&[1.0, 1.01])), [AT, AT + 1]);
+        // Two with one sample between them.
+        assert_eq!(found(&with(&[1.0, -1.0, 1.0])), [AT, AT + 2]);
+        assert_eq!(found(&with(&[-0.7, -0.4, 0.0, -0.45, -0.75])), [0; 0]);
+    }
+
+    #[test]
+    fn a_flicker_of_the_smallest_step_is_no_spike() {
+        let coarse = |quiet: f64| {
+            let mut values: Vec<f64> = (0..300_u32).map(|i| 4.0 + f64::from(i / 100) * quiet).collect();
+            values[AT] += 1.0;
+            values
+        };
+        assert_eq!(spikes(&coarse(1.0), false, 0.01), [0; 0]);
+        assert_eq!(spikes(&coarse(0.1), false, 0.01), [AT]);
+    }
 }

@@ -179,7 +179,8 @@ impl<'a> Join<'a> {
                     () if Some(column) == self.plan.time => WRITE_TIMES,
                     () => MAP_ANOTHER,
                 };
-                LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, advice, path }
+                let (column, spare) = (self.dialect.headers[column].clone(), Box::default());
+                LogError::BadCell { row, line, column, what, advice, spare, path }
             }
         }
     }

@@ -37,6 +37,15 @@ pub(super) fn columns_advice(format: &str) -> &'static str {
     }
 }
 
+/// Advice about a cell, with the entry of a sidecar that leaves its column out, if the log can do without it.
+pub(super) fn cell_advice(advice: &str, spare: &[String]) -> String {
+    let entries: Vec<String> = spare.iter().map(|name| format!("\"{}\": null", plain(name))).collect();
+    if entries.is_empty() {
+        return advice.to_owned();
+    }
+    format!("{advice}, or leave the column out: \"columns\": {{{}}} in the sidecar", entries.join(", "))
+}
+
 /// Entry of a sidecar for a column whose name and stated unit disagree. `factor`: SI value of the stated unit over that of the
 /// name's.
 pub(super) fn stated_factor(column: &str, (named, stated): (&str, &str), factor: Option<f64>) -> String {

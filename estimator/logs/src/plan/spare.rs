@@ -1,4 +1,4 @@
-//! Columns that a log can do without. A fault in one of them refuses no file.
+//! Columns that a log can do without: a fault in one of them need not refuse the file.
 
 use super::own_names::forms;
 use super::{Plan, Use, canonical};
@@ -16,20 +16,44 @@ impl Plan {
         self.spare = columns.map(|target| target.column).collect();
     }
 
-    /// Leaves the column of a faulty cell out, with those that are of no use without it. False if the log needs it.
-    pub fn leave_out(&mut self, error: &LogError, headers: &[String], meta: &Meta) -> bool {
-        let LogError::BadCell { row, column, what, .. } = error else { return false };
-        let Some(faulty) = self.targets.iter().find(|target| headers[target.column] == *column) else { return false };
-        let Some((columns, why)) = self.left_out_with(&faulty.name, headers, meta) else { return false };
+    /// The outcome of reading. A faulty column that the log can do without is left out, with those that are of no use without it, if
+    /// the sidecar maps others: what is not mapped is not needed. Otherwise, the error says how to leave it out. `first`: the
+    /// outcome with all columns.
+    pub fn without_spare<T>(
+        &mut self,
+        (headers, meta): (&[String], &Meta),
+        first: Result<T, LogError>,
+        mut read: impl FnMut(&Self) -> Result<T, LogError>,
+    ) -> Result<T, LogError> {
+        let mut outcome = first;
+        while let Err(error) = &mut outcome {
+            let LogError::BadCell { row, column, what, spare, .. } = error else { break };
+            let faulty = self.targets.iter().find(|target| headers[target.column] == *column);
+            let Some((columns, why)) = faulty.and_then(|one| self.left_out_with(&one.name, headers, meta)) else {
+                break;
+            };
+            if meta.columns.is_empty() {
+                let targets = self.targets.iter().filter(|target| columns.contains(&target.column));
+                *spare = targets.map(|target| target.name.clone()).collect();
+                break;
+            }
+            let fault = format!("row {row}, column `{column}`: {what}");
+            self.leave_out(&columns, headers, &format!("{why}: {fault}"));
+            outcome = read(self);
+        }
+        outcome
+    }
+
+    /// Leaves columns out, and says why.
+    fn leave_out(&mut self, columns: &[usize], headers: &[String], why: &str) {
         let names: Vec<&str> = columns.iter().map(|column| headers[*column].as_str()).collect();
         let names = format!("`{}` {}", names.join("`, `"), if names.len() == 1 { "is" } else { "are" });
-        self.notes.push(format!("{names} not used, since {why}: row {row}, column `{column}`: {what}"));
-        for column in &columns {
+        self.notes.push(format!("{names} not used, since {why}"));
+        for column in columns {
             self.uses[*column] = Use::Ignore;
         }
         self.targets.retain(|target| !columns.contains(&target.column));
         self.watched.retain(|column| !columns.contains(column));
-        true
     }
 
     /// Columns that are left out with a channel, and the reason; none if the log needs it, or if the sidecar mentions one of them.

@@ -145,6 +145,8 @@ fn units_are_found_in_headers() {
         ("Load 0.1 N", "Load", "0.1 N"),
         ("Load.kPa", "Load", "kPa"),
         ("Load_bar", "Load_bar", ""),
+        ("position[a]", "position[a]", ""),
+        ("force[A]", "force", "A"),
         ("Winkel/mdeg", "Winkel", "mdeg"),
         ("Load_kilogram-force", "Load", "kilogram-force"),
         ("Load [stone]", "Load", "stone"),
