@@ -167,7 +167,7 @@ fn usable(
             row: row + 1,
             line: 0,
             column: raw.headers[column].clone(),
-            what,
+            what: what.into(),
             advice: MAP_ANOTHER,
             spare: Box::default(),
             path: PathBuf::from(path),

@@ -267,7 +267,7 @@ pub enum LogError {
         /// Column.
         column: String,
         /// Content of the cell.
-        what: String,
+        what: Box<str>,
         /// The way out.
         advice: &'static str,
         /// Names of the program of the columns that the log can do without, that of the cell among them.

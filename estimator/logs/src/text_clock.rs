@@ -22,7 +22,7 @@ pub fn take(raw: &mut Raw, plan: &mut Plan, meta: &Meta, path: &Path) -> Result<
         row: row + 1,
         line: 0,
         column: raw.headers[column].clone(),
-        what: format!("`{}` is not a time like the others", raw.columns[column].text(row)),
+        what: format!("`{}` is not a time like the others", raw.columns[column].text(row)).into(),
         advice: MAP_ANOTHER,
         spare: Box::default(),
         path: path.to_path_buf(),

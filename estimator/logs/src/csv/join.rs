@@ -180,7 +180,7 @@ impl<'a> Join<'a> {
                     () => MAP_ANOTHER,
                 };
                 let (column, spare) = (self.dialect.headers[column].clone(), Box::default());
-                LogError::BadCell { row, line, column, what, advice, spare, path }
+                LogError::BadCell { row, line, column, what: what.into(), advice, spare, path }
             }
         }
     }
