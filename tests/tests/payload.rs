@@ -122,6 +122,47 @@ fn two_orientations_show_no_error_and_no_weight() {
     assert_eq!(weight.expect("reported")["identified"], false, "{fit}");
 }
 
+/// The entries that a doubt about the orientation states lead to the weight.
+#[test]
+fn a_transposed_matrix_is_told_with_the_entries_that_mend_it() {
+    let names = "r11,r12,r13,r21,r22,r23,r31,r32,r33,fx_sensor_N,fy_sensor_N,fz_sensor_N";
+    let mut text = format!("{names}\n");
+    for row in poses(NAMES, &ROUND, 0.0).lines().skip(1) {
+        let v: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        let [x, y, w] = [v[0], v[1], v[3]];
+        // Of a turn about x or y; from the base to the sensor.
+        let matrix = [
+            [1.0 - 2.0 * y * y, 0.0, -2.0 * y * w],
+            [0.0, 1.0 - 2.0 * x * x, 2.0 * x * w],
+            [2.0 * y * w, -2.0 * x * w, 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        let cells = matrix.concat().into_iter().chain(v[4..7].iter().copied());
+        text.push_str(&cells.map(|v| format!("{v:.6}")).collect::<Vec<_>>().join(","));
+        text.push('\n');
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = written(folder.path(), "poses.csv", &text);
+    let said = json(&["fit", &log])["warnings"][0].as_str().expect("a doubt").to_owned();
+    let entries = said.split_once("(\"columns\": ").and_then(|(_, rest)| rest.split_once(')')).expect("entries").0;
+    written(folder.path(), "poses.meta.json", &format!("{{\"columns\": {entries}}}"));
+    let fit = json(&["fit", &log]);
+    assert!((value(&fit, "weight_N") - 8.0).abs() < 1e-4, "{fit}");
+}
+
+/// A sensor that states the opposite of force and torque.
+#[test]
+fn a_reversed_sensor_is_told_with_all_of_its_columns() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = written(folder.path(), "poses.csv", &poses(NAMES, &ROUND, 0.0));
+    let signs = |sign: i8| {
+        let names = NAMES.split(',').skip(4).map(|name| format!("\"{name}\": {sign}"));
+        format!("{{\"sign\": {{{}}}}}", names.collect::<Vec<_>>().join(", "))
+    };
+    written(folder.path(), "poses.meta.json", &signs(-1));
+    let fit = json(&["fit", &log]);
+    assert!(value(&fit, "weight_N") < -7.0 && fit["warnings"].to_string().contains("its six columns"), "{fit}");
+}
+
 #[test]
 fn what_changed_is_named_and_one_orientation_leaves_it_open() {
     let folder = tempfile::tempdir().expect("a folder");

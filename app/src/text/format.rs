@@ -209,6 +209,10 @@ mod tests {
         assert_eq!(parameter("mass_kg", Some(0.035)).unit, "g");
         assert_eq!(parameter("mass_kg", Some(95.1)).unit, "kg");
         assert_eq!(parameter("viscous_N_s_m", None).unit, "N·s/m");
+        assert_eq!(
+            (parameter("force_drift_x_N_s", None).unit, parameter("torque_drift_x_Nm_s", None).unit),
+            ("N/s", "N·m/s")
+        );
         let hardening = parameter("hardening_N_m3", Some(1.5e6));
         assert_eq!(
             (hardening.label.as_str(), hardening.unit, hardening.factor * 1.5e6),

@@ -65,6 +65,7 @@ fn an_axis_that_would_be_ignored_is_refused() {
     assert_eq!(up(&["x1_m"], r#"{"task": "crank", "up": "-y"}"#), None);
     assert_eq!(up(&["q_rad"], r#"{"up": "none"}"#), None);
     assert_eq!(up(&["x_m", "y_m", "z_m"], r#"{"up": "z"}"#), None);
+    assert!(up(&["x_m", "y_m", "z_m"], r#"{"task": "needle", "up": "z"}"#).is_some_and(|t| t.contains("needles")));
 }
 
 #[test]
