@@ -41,10 +41,11 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     found
 }
 
-/// Channels that are equal over the whole recording, at least one of them without a name of the program's. A force or a
-/// torque of the program's is the one that was not measured: a position is often recorded twice.
+/// Channels that are equal, at least one of them without a name of the program's: over the whole recording, or a force some samples
+/// later. A force or a torque of the program's is the one that was not measured: a position is often recorded twice.
 fn copies_beside(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Vec<Warning> {
     let channels = &recording.channels;
+    let is_force = |k: usize| known.contains(&k) && matches!(channels[k].unit.as_str(), "N" | "Nm");
     let mut first_of: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut found = Vec::new();
     for k in (0..channels.len()).filter(|&k| !profiles[k].is_constant() && moves(&channels[k].values)) {
@@ -54,20 +55,41 @@ fn copies_beside(recording: &Recording, profiles: &[Profile], known: &[usize]) -
         if first == k || is_told || channels[first].values != channels[k].values {
             continue;
         }
-        let is_force = |k: usize| known.contains(&k) && matches!(channels[k].unit.as_str(), "N" | "Nm");
         let (copy, source) = if is_force(first) { (first, k) } else { (k, first) };
-        found.push(Warning {
-            kind: "copied-channel".to_owned(),
-            column: Some(channels[copy].name.clone()),
-            spans: vec![Span { first: 0, end: recording.len() }],
-            text: format!(
-                "{} is the same as {} over the whole recording: one of the two was not measured; do not use it",
-                channels[copy].name, channels[source].name
-            ),
-            ..Warning::default()
-        });
+        let whole = Span { first: 0, end: recording.len() };
+        found.push(copied_from(recording, [copy, source].map(|k| &channels[k]), "the same as", whole));
+    }
+    for force in (0..channels.len()).filter(|&k| is_force(k)) {
+        let others = (0..channels.len()).filter(|k| !known.contains(k));
+        let late = others.filter_map(|k| Some((k, delayed(&channels[k].values, &channels[force].values)?)));
+        let late = late.filter(|(_, (delay, _))| *delay != 0);
+        let pair = |k: usize| [force, k].map(|k| &channels[k]);
+        found.extend(late.map(|(k, (delay, span))| copied_from(recording, pair(k), &in_words(delay), span)));
     }
     found
+}
+
+/// The warning about a channel that is a copy of another one. `how`: words such as *the same as*.
+fn copied_from(recording: &Recording, [copy, source]: [&Channel; 2], how: &str, span: Span) -> Warning {
+    let [copy, source] = [copy, source].map(|channel| channel.name.as_str());
+    let stretch = if span.end - span.first == recording.len() {
+        "over the whole recording".to_owned()
+    } else {
+        format!("from {} on, over {} samples", place(recording, span.first), span.end - span.first)
+    };
+    Warning {
+        kind: "copied-channel".to_owned(),
+        column: Some(copy.to_owned()),
+        spans: vec![span],
+        text: format!("{copy} is {how} {source} {stretch}: one of the two was not measured; do not use it"),
+        ..Warning::default()
+    }
+}
+
+/// Words for a copy that is some samples late; early, if they are negative.
+fn in_words(delay: isize) -> String {
+    let (count, order) = (delay.unsigned_abs(), if delay > 0 { "late" } else { "early" });
+    format!("the same, {count} samples {order}, as")
 }
 
 /// Samples either side of a place that tell how lively a channel is there.
@@ -184,33 +206,15 @@ impl Pairs {
 /// `other` as a copy of `one`: equal, equal but later, or scaled and shifted with the same noise.
 fn copy(recording: &Recording, one: &Channel, other: &Channel, equal: &[usize]) -> Option<Warning> {
     let (a, b) = (one.values.as_slice(), other.values.as_slice());
-    let warning = |span: Span, how: &str| Warning {
-        kind: "copied-channel".to_owned(),
-        column: Some(other.name.clone()),
-        spans: vec![span],
-        text: format!(
-            "{} is {how} {} from {} on, over {} samples: one of the two was not measured; do not use it",
-            other.name,
-            one.name,
-            place(recording, span.first),
-            span.end - span.first
-        ),
-        ..Warning::default()
+    let (span, how) = if let Some(span) = equal_stretch(a, b, equal) {
+        (span, "the same as".to_owned())
+    } else if let Some((delay, span)) = delayed(a, b) {
+        (span, in_words(delay))
+    } else {
+        let (factor, offset) = same_noise(a, b)?;
+        (Span { first: 0, end: b.len() }, format!("to all digits {factor:.6} times, plus {offset:.4},"))
     };
-    if let Some(span) = equal_stretch(a, b, equal) {
-        return Some(warning(span, "the same as"));
-    }
-    if let Some((delay, span)) = delayed(a, b) {
-        let how = if delay > 0 {
-            format!("the same, {delay} samples late, as")
-        } else {
-            format!("the same, {} samples early, as", -delay)
-        };
-        return Some(warning(span, &how));
-    }
-    let (factor, offset) = same_noise(a, b)?;
-    let how = format!("to all digits {factor:.6} times, plus {offset:.4},");
-    Some(warning(Span { first: 0, end: b.len() }, &how))
+    Some(copied_from(recording, [other, one], &how, span))
 }
 
 /// The longest segment in which `a` and `b` are equal and move, out of those that hold one of `probes`.

@@ -26,8 +26,8 @@ const CLUSTER_STEPS: f64 = 20.0;
 const WORTH_A_LOOK: f64 = 2.5;
 /// Another channel that leaps by this many times its usual step at the same sample has felt the same blow.
 const FELT_STEPS: f64 = 2.0;
-/// Largest number of samples of a spike: junk falls on two neighbours now and then.
-const LONGEST: usize = 2;
+/// Largest number of samples of a spike: junk falls on two or three neighbours now and then.
+const LONGEST: usize = 3;
 /// Largest distance to which a spike comes back, as a share of its height.
 const RETURN_SHARE: f64 = 0.3;
 /// Least height of a spike, as a share of the channel's usual range.
@@ -289,6 +289,7 @@ mod tests {
         let found = |values: &[f64]| spikes(values, false, 0.01);
         assert_eq!(found(&with(&[1.0])), [AT]);
         assert_eq!(found(&with(&[1.0, 1.01])), [AT, AT + 1]);
+        assert_eq!(found(&with(&[1.0, 1.01, 0.99])), [AT, AT + 1, AT + 2]);
         // Two with one sample between them.
         assert_eq!(found(&with(&[1.0, -1.0, 1.0])), [AT, AT + 2]);
         assert_eq!(found(&with(&[-0.7, -0.4, 0.0, -0.45, -0.75])), [0; 0]);

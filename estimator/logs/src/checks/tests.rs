@@ -102,6 +102,18 @@ fn millimetres_read_as_metres_are_doubted_by_their_speed() {
 }
 
 #[test]
+fn a_force_that_repeats_another_channel_later_is_no_force() {
+    let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
+    let source = wave(2000);
+    let force = (0..2000).map(|i| source[usize::saturating_sub(i, 30)]).collect();
+    let other = (0..2000).map(|i| (f64::from(i) * 0.03).cos() + 1e-3 * (f64::from(i) * 23.1).sin()).collect();
+    let channels = vec![channel("q_m", other), channel("f_N", force), channel("command", source)];
+    let found = warnings(&recording(time, channels));
+    assert_eq!(kinds(&found), ["copied-channel"]);
+    assert!(found[0].text.starts_with("f_N is the same, 30 samples late, as command from 0.03"), "{}", found[0].text);
+}
+
+#[test]
 fn stuck_channels_are_found_and_rest_is_not_one() {
     let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
     let mut force = wave(1000);

@@ -38,6 +38,56 @@ fn named(parts: &[String], headers: &[String]) -> Vec<String> {
     headers.iter().map(|header| of(header).map_or_else(String::new, |(_, unit)| (*unit).to_owned())).collect()
 }
 
+/// Words for a unit in the name of a fact.
+const UNIT_WORDS: [&str; 4] = ["units", "unit", "einheiten", "einheit"];
+/// Words for a conversion of counts.
+const COUNTS: [&str; 7] = ["counts per", "count per", "per count", "counts/", "/count", "1 count ", "lsb"];
+
+/// Units that lines such as `Load units: kN` state for columns by their names, and sentences about them, about units of other
+/// quantities, and about conversions of counts. `lines`: those above the names; `units`: texts that are known already.
+pub fn facts<'a>(
+    lines: impl Iterator<Item = &'a str>,
+    headers: &[String],
+    units: &mut Vec<String>,
+    delimiter: u8,
+) -> Vec<String> {
+    let mut said = Vec::new();
+    for line in lines.map(|line| line.trim_start_matches(['#', ' ']).trim()) {
+        let mut parts = line.splitn(2, [':', '=', char::from(delimiter)]).map(|part| part.trim().trim_matches('"'));
+        let (Some(key), Some(value)) = (parts.next(), parts.next()) else { continue };
+        let of = of_unit(&key.to_lowercase());
+        if let (Some(of), Written::Known(_, factor)) = (of, parse(value, &[])) {
+            units.resize(headers.len(), String::new());
+            let is_open = |k: &usize| units[*k].is_empty() && in_header(&headers[*k], &[]).1.is_empty();
+            let open: Vec<usize> = (0..headers.len()).filter(is_open).collect();
+            if let Some(&column) = open.iter().find(|k| headers[**k].eq_ignore_ascii_case(&of)) {
+                value.clone_into(&mut units[column]);
+                said.push(format!("the unit of `{}` is that of the line `{line}` above the names", headers[column]));
+            } else if !open.is_empty() && factor != 1.0 {
+                said.push(format!(
+                    "the line `{line}` above the names states a unit, and no column without a unit has that name: if a mapped \
+                     column is in it, state its factor to SI units with \"scale\" in the sidecar"
+                ));
+            }
+        } else if COUNTS.iter().any(|words| line.to_lowercase().contains(words))
+            && line.contains(|c: char| c.is_ascii_digit())
+        {
+            said.push(format!(
+                "the line `{line}` above the names states a conversion of counts, and the values are taken as they stand: if \
+                 they are counts, state their factor to SI units with \"scale\" in the sidecar"
+            ));
+        }
+    }
+    said
+}
+
+/// The quantity in the name of a fact about its unit: `load` of `Load units` and of `LOAD_UNIT`.
+fn of_unit(key: &str) -> Option<String> {
+    let words = key.split([' ', '_', '-', '.']).filter(|word| !word.is_empty());
+    let (units, of): (Vec<&str>, Vec<&str>) = words.partition(|word| UNIT_WORDS.contains(word));
+    (!units.is_empty() && !of.is_empty()).then(|| of.join(" "))
+}
+
 /// A sentence about a line with a factor for each column: nobody knows if they have been applied.
 pub fn factors(cells: &[String], width: usize, notation: Notation) -> Option<String> {
     let (label, values) = cells.split_at_checked(cells.len().saturating_sub(width).max(1))?;
@@ -76,6 +126,30 @@ mod tests {
         let headers = ["t (s)", "q (m)", "f"].map(str::to_owned);
         let found = units(b"# ms, mm, kN\n", &headers, b',').map(|(found, _)| found);
         assert_eq!(found, Some(["", "", "kN"].map(str::to_owned).to_vec()));
+    }
+
+    #[test]
+    fn facts_above_the_names_state_units_and_conversions() {
+        let headers = ["Time (s)", "Extension (mm)", "Load"].map(str::to_owned);
+        for (line, unit, word) in [
+            ("Load units: kN", "kN", "is that of the line"),
+            ("#LOAD_UNIT=kgf", "kgf", "is that of the line"),
+            ("Load Unit,lbf", "lbf", "is that of the line"),
+            ("Force Units: kN", "", "states a unit"),
+            ("Force Units: N", "", ""),
+            ("Counts per Unit Force: 320.0", "", "conversion of counts"),
+            ("# load cell: 1 count = 0.005 N", "", "conversion of counts"),
+            ("Sample count: 2000", "", ""),
+            ("Operator: N", "", ""),
+        ] {
+            let mut units = Vec::new();
+            let said = facts(std::iter::once(line), &headers, &mut units, b',');
+            assert_eq!(units.get(2).map_or("", String::as_str), unit, "{line}");
+            assert!(
+                said.len() == usize::from(!word.is_empty()) && said.iter().all(|text| text.contains(word)),
+                "{said:?}"
+            );
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::errors::LogError;
 use crate::raw::place_of;
 use crate::{format, stated_rate};
 use haptics::recording::Meta;
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
@@ -257,6 +258,13 @@ fn divided(text: &[u8], comments: &[u8], (delimiter, is_stated): (u8, bool), met
         dialect.notes.push(format!("the units are those of the comment `{comment}`"));
     }
     let lines = &records[..found.header.unwrap_or(0)];
+    if meta.is_none_or(|meta| meta.scale.is_empty()) {
+        let comments = String::from_utf8_lossy(comments);
+        let lines = lines.iter().map(|line| String::from_utf8_lossy(&text[line.start..line.end]));
+        let lines: Vec<Cow<'_, str>> = comments.lines().map(Cow::from).chain(lines).collect();
+        let facts = above::facts(lines.iter().map(AsRef::as_ref), &dialect.headers, &mut dialect.units, delimiter);
+        dialect.notes.extend(facts);
+    }
     dialect.notes.extend(lines.iter().find_map(|line| above::factors(&line.cells, found.width, notation)));
     take_upper_names(&mut dialect.headers, lines);
     let header = found.header.map_or(0, |k| records[k].line);

@@ -1,17 +1,21 @@
-//! Cells with a unit behind their number (`3.7 mm`), as dashboards and spreadsheets write them. A column that has the same one in
-//! every row is one of numbers.
+//! Cells with a unit behind their number (`3.7 mm`), as dashboards and spreadsheets write them, and numbers with their unit in the
+//! next cell (`3.7,mm`), as force gauges do. A column that has the same one in every row is one of numbers.
 
 use super::cells::{Notation, number};
 use super::decimal::Decimal;
 use super::layout;
+use crate::units::Dimension;
 use crate::written_units::{Written, parse};
 use haptics::recording::Meta;
+use std::borrow::Cow;
 
 /// A table with units behind its numbers.
 pub struct UnitCells {
     delimiter: u8,
     /// Unit of each column; empty for a column without one.
     pub units: Vec<String>,
+    /// True for a column whose unit stands in the next one.
+    in_next: Vec<bool>,
 }
 
 /// Columns whose cells are text, though it may look like a number with a unit: a label of `0"` is no length.
@@ -41,9 +45,18 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
         let mut cells = records.iter().filter_map(|record| record.cells.get(column));
         cells.any(|cell| texts.contains(&cell.as_str()))
     };
+    let is_unit_column = |column: usize| {
+        let name = records[0].cells.get(column).map_or("", String::as_str).to_lowercase();
+        let is_same = |record: &layout::Record| record.cells[column] == later[0].cells[column];
+        let is_named = ["unit", "einheit"].iter().any(|word| name.contains(word)) || is_mechanical(&name);
+        is_named && is_mechanical(&later[0].cells[column]) && later.iter().all(is_same)
+    };
+    let is_number = |column: usize| later.iter().all(|record| is_number(&record.cells[column]));
+    let in_next = (0..width).map(|column| column + 1 < width && is_unit_column(column + 1) && is_number(column));
+    let in_next: Vec<bool> = in_next.collect();
     let unit = |column: usize| {
-        if is_text(column) {
-            return None;
+        if is_text(column) || in_next[column] {
+            return in_next[column].then(|| later[0].cells[column + 1].clone());
         }
         let mut units = later.iter().map(|record| &record.cells[column]).filter(|cell| !cell.is_empty());
         let (_, unit) = parted(units.next()?)?;
@@ -51,7 +64,7 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
         (is_known && units.all(|cell| parted(cell).is_some_and(|(_, other)| other == unit))).then(|| unit.to_owned())
     };
     let units: Vec<String> = (0..width).map(|column| unit(column).unwrap_or_default()).collect();
-    let found = UnitCells { delimiter, units };
+    let found = UnitCells { delimiter, units, in_next };
     let is_one = found.with_units().next().is_some() && !records.iter().any(|record| found.has_other_units(record));
     is_one.then_some(found)
 }
@@ -63,9 +76,18 @@ impl UnitCells {
 
     /// True for a row of numbers with units of which one is not that of its column.
     fn has_other_units(&self, record: &layout::Record) -> bool {
-        let unit_of = |column: usize| record.cells.get(column).and_then(|cell| parted(cell)).map(|(_, unit)| unit);
+        let unit_of = |column: usize| self.parted(record, column).map(|(_, unit)| unit);
         self.with_units().all(|(column, _)| unit_of(column).is_some())
             && self.with_units().any(|(column, own)| unit_of(column) != Some(own))
+    }
+
+    /// A number of a record and its unit.
+    fn parted<'r>(&self, record: &'r layout::Record, column: usize) -> Option<(&'r str, &'r str)> {
+        let cell = record.cells.get(column)?;
+        if self.in_next.get(column) == Some(&true) {
+            return Some((cell.as_str(), record.cells.get(column + 1)?.as_str())).filter(|(cell, _)| is_number(cell));
+        }
+        parted(cell)
     }
 
     /// The text without these units. A cell with another one stays, and is refused later.
@@ -75,9 +97,14 @@ impl UnitCells {
             plain.extend_from_slice(&text[at..record.start]);
             for (column, cell) in record.cells.iter().enumerate() {
                 let own = self.units.get(column).map_or("", String::as_str);
-                let number = parted(cell).filter(|(_, unit)| !own.is_empty() && *unit == own);
+                let number = self.parted(&record, column).filter(|_| !own.is_empty());
+                let cell = match number {
+                    Some((number, unit)) if unit == own => Cow::from(number),
+                    Some((number, unit)) => Cow::from(format!("{number} {unit}")),
+                    None => Cow::from(cell),
+                };
                 plain.extend((column > 0).then_some(self.delimiter));
-                plain.extend_from_slice(quoted(number.map_or(cell, |(number, _)| number), self.delimiter).as_bytes());
+                plain.extend_from_slice(quoted(&cell, self.delimiter).as_bytes());
             }
             at = record.end;
         }
@@ -90,8 +117,16 @@ impl UnitCells {
 fn parted(cell: &str) -> Option<(&str, &str)> {
     let end = cell.rfind(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','))? + 1;
     let (digits, unit) = (&cell[..end], cell[end..].trim());
-    let notation = Notation { decimal: Decimal::Either, ..Notation::default() };
-    (!unit.is_empty() && number(digits.as_bytes(), notation).is_some()).then_some((digits, unit))
+    (!unit.is_empty() && is_number(digits)).then_some((digits, unit))
+}
+
+fn is_number(cell: &str) -> bool {
+    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() }).is_some()
+}
+
+/// True for the unit of a length, an angle, a force, or another mechanical quantity.
+fn is_mechanical(text: &str) -> bool {
+    matches!(parse(text, &[]), Written::Known(dimension, _) if dimension != Dimension::Other)
 }
 
 /// A cell as a record holds it: in quotes if a delimiter or a quote is part of it.
@@ -105,6 +140,16 @@ mod tests {
     use super::*;
 
     const ROWS: &str = "t,wheel,place\n0,0\",1 mm\n1,1\",2 mm\n2,1\",3 mm\n3,2\",4 mm\n4,2\",5 mm\n5,2\"";
+
+    #[test]
+    fn a_unit_in_the_next_cell_is_that_of_the_number() {
+        let text = b"t_s,force,force_unit,flag\n0,1.5,kN,N\n1,1.6,kN,N\n2,1.7,kN,N\n3,1.8,kN,N\n4,1900,N,N\n";
+        let found = of(text, None).expect("units");
+        assert_eq!(found.units, ["", "kN", "", ""]);
+        let plain = String::from_utf8(found.taken_out(text)).expect("text");
+        assert!(plain.contains("3,1.8,kN,N\n") && plain.contains("4,1900 N,N,N\n"), "{plain}");
+        assert!(of(b"t_s,force,flag\n0,1,N\n1,2,N\n2,3,N\n3,4,N\n", None).is_none());
+    }
 
     /// A label that looks like inches stays text if the sidecar says that it is one.
     #[test]

@@ -76,6 +76,9 @@ impl Gathered {
     /// Takes the variables of a file, or the fields of a structure.
     fn fields(&mut self, fields: Vec<(String, Value)>, around: &str, place: u64) {
         let beside = Beside::of(&fields);
+        if let Some((name, why)) = &beside.unclear {
+            self.leave_out(&join(around, name), why.clone());
+        }
         let is_signals = |(name, value): &(String, Value)| name == "signals" && is_list_of_signals(value);
         let has_time = fields.iter().any(|(name, _)| name == "time");
         for (name, value) in fields {

@@ -1,6 +1,7 @@
 //! Names and units of columns that stand in variables or fields of their own, beside the numbers.
 
 use super::value::Value;
+use crate::written_units::{Written, parse};
 
 /// Words that a list of names has in its own name: `colheaders`, `labels`, `varnames`.
 const WORDS: [&str; 7] = ["name", "label", "column", "header", "channel", "signal", "variable"];
@@ -12,6 +13,8 @@ pub struct Beside {
     names: Vec<(String, Vec<String>)>,
     /// Name of a matrix, a vector or a column, and the texts of the units: one, or one a column.
     units: Vec<(String, Vec<String>)>,
+    /// List of units that could belong to any columns, with the reason for which it is not used.
+    pub unclear: Option<(String, String)>,
     /// Variables or fields that have been understood.
     pub used: Vec<String>,
 }
@@ -65,6 +68,13 @@ impl Beside {
         }
         if self.units.len() > before {
             self.used.push(name.to_owned());
+        } else if let Some(texts) = value.texts().filter(|texts| texts.iter().all(|unit| is_known(unit))) {
+            let why = format!(
+                "it states {} and not for which columns; state factors to SI units with \"scale\" in the sidecar",
+                texts.join(", ")
+            );
+            self.unclear = Some((name.to_owned(), why));
+            self.used.push(name.to_owned());
         }
     }
 
@@ -86,6 +96,10 @@ impl Beside {
 
 fn is_unit(name: &str) -> bool {
     name.eq_ignore_ascii_case("units") || name.eq_ignore_ascii_case("unit")
+}
+
+fn is_known(unit: &str) -> bool {
+    matches!(parse(unit, &[]), Written::Known(..))
 }
 
 /// True for more than one number.

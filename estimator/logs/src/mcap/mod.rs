@@ -16,6 +16,7 @@ mod repeats;
 pub mod resample;
 mod rosmsg;
 mod schema;
+mod schema_units;
 mod source;
 mod stamps;
 mod stated_units;
@@ -178,6 +179,12 @@ impl<'a> Reading<'a> {
             self.channels.insert(channel.id, known);
             return;
         }
+        let units = match &decoder {
+            Decoder::Json => self.schemas.get(&channel.schema_id).map(|(.., schema)| schema_units::of_json(schema)),
+            Decoder::Cdr(types) => Some(schema_units::of_ros(types)),
+            _ => None,
+        };
+        let units = units.unwrap_or_default();
         let own = channel.metadata.get(COLUMNS).and_then(|text| serde_json::from_str(text).ok());
         self.channels.insert(channel.id, self.sources.len());
         self.sources.push(Source {
@@ -185,6 +192,7 @@ impl<'a> Reading<'a> {
             decoder,
             topic,
             messages: 0,
+            units,
             own,
             clockless: channel.metadata.contains_key(CLOCKLESS),
             shown: 0,

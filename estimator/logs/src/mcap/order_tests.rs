@@ -217,6 +217,19 @@ fn a_unit_beside_a_value_is_used() {
 }
 
 #[test]
+fn a_unit_in_the_schema_is_used() {
+    let schema = br#"{"properties": {"pos": {"type": "number", "unit": "mm"}, "load": {"description": "load in kN"}}}"#;
+    let mut out = Out::new(None);
+    let topic = out.channel("/press", "json", ("Press", "jsonschema", schema));
+    for row in 0..60 {
+        out.put(topic, row * 4_000_000, format!(r#"{{"pos": {row}, "load": {row}}}"#).as_bytes());
+    }
+    let log = out.load(r#"{"columns": {"q_m": "pos", "f_N": "load"}}"#).expect("loads");
+    let last = |name: &str| log.channel(name).and_then(<[f64]>::last).copied().expect("a value");
+    assert!((last("q_m") - 0.059).abs() < 1e-12 && (last("f_N") - 59_000.0).abs() < 1e-6);
+}
+
+#[test]
 fn a_number_that_counts_since_1970_is_a_stamp() {
     for (name, unit_ns) in [("timestamp", 1_000_000_u64), ("timestamp_us", 1_000), ("stamp", 1_000_000_000)] {
         let mut out = Out::new(None);

@@ -66,7 +66,8 @@ pub fn of(sources: Vec<Source>, meta: &Meta, notes: &mut Vec<Warning>, path: &Pa
         all_stamps.push(usable_stamps(source, &meta, notes));
     }
     forget_repeated(&mut split);
-    let units: Vec<Vec<String>> = split.iter_mut().map(|source| stated_units::take(&mut source.topic)).collect();
+    let units: Vec<Vec<String>> =
+        split.iter_mut().map(|source| stated_units::take(&mut source.topic, &source.units)).collect();
     let mut parts: Vec<Part> = Vec::new();
     let names = names::of(&split);
     for (((source, names), units), stamps_ns) in split.into_iter().zip(names).zip(units).zip(all_stamps) {
@@ -134,6 +135,7 @@ fn by_kind(mut source: Source, notes: &mut Vec<Warning>) -> Vec<Source> {
             decoder: Decoder::Json,
             messages: topic.log_ns.len() as u64,
             topic,
+            units: source.units.clone(),
             own: None,
             clockless: source.clockless,
             shown: 0,

@@ -66,6 +66,14 @@ pub struct Field {
     pub kind: Kind,
     /// Number of values.
     pub count: Count,
+    /// Text behind it in its line.
+    pub comment: String,
+}
+
+impl Field {
+    fn new(name: String, kind: Kind, count: Count) -> Self {
+        Self { name, kind, count, comment: String::new() }
+    }
 }
 
 /// All messages of a schema, by full name `package/Name`.
@@ -86,7 +94,8 @@ impl Definitions {
         let mut name = found.root.clone();
         let mut fields = Vec::new();
         for line in text.lines() {
-            let line = line.split('#').next().unwrap_or("").trim();
+            let (line, comment) = line.split_once('#').unwrap_or((line, ""));
+            let line = line.trim();
             if line.len() > 2 && line.bytes().all(|b| b == b'=') {
                 continue;
             }
@@ -95,7 +104,7 @@ impl Definitions {
             } else if !line.is_empty()
                 && let Some(field) = field(line, &name)?
             {
-                fields.push(field);
+                fields.push(Field { comment: comment.trim().to_owned(), ..field });
             }
         }
         found.messages.insert(name, fields);
@@ -111,8 +120,7 @@ impl Definitions {
     /// Some writers leave the two built-in messages out.
     fn add_time(&mut self) {
         for (name, seconds) in [("Time", Primitive::I32), ("Duration", Primitive::I32)] {
-            let part =
-                |name: &str, kind| Field { name: name.to_owned(), kind: Kind::Primitive(kind), count: Count::One };
+            let part = |name: &str, kind| Field::new(name.to_owned(), Kind::Primitive(kind), Count::One);
             self.messages
                 .entry(format!("builtin_interfaces/{name}"))
                 .or_insert_with(|| vec![part("sec", seconds), part("nanosec", Primitive::U32)]);
@@ -146,7 +154,7 @@ fn field(line: &str, message: &str) -> Result<Option<Field>, String> {
             (kind, Count::Fixed(size.strip_suffix(']').and_then(|n| n.parse().ok()).ok_or_else(unclear)?))
         }
     };
-    Ok(Some(Field { name, kind: resolve(kind, message), count }))
+    Ok(Some(Field::new(name, resolve(kind, message), count)))
 }
 
 fn resolve(kind: &str, message: &str) -> Kind {

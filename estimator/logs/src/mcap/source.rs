@@ -1,5 +1,6 @@
 //! One topic of a file, and how its messages are read.
 
+use super::schema_units::Units;
 use super::topic::Topic;
 use super::{protobuf, rosmsg};
 use haptics::recording::Warning;
@@ -20,6 +21,8 @@ pub(super) struct Source {
     pub(super) decoder: Decoder,
     pub(super) topic: Topic,
     pub(super) messages: u64,
+    /// Units that its schema states.
+    pub(super) units: Units,
     /// Our own column names by field, in files that we wrote.
     pub(super) own: Option<HashMap<String, String>>,
     pub(super) clockless: bool,

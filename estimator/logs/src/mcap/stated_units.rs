@@ -1,5 +1,6 @@
-//! Units that messages state in a field of their own: `{"value": 3.1, "unit": "lbf"}`.
+//! Units that messages state in a field of their own, `{"value": 3.1, "unit": "lbf"}`, or in their schema.
 
+use super::schema_units::{self, Units};
 use super::topic::Topic;
 use crate::plan::is_like_a_clock;
 use crate::raw::Cells;
@@ -10,9 +11,9 @@ fn parted(field: &str) -> (&str, &str) {
     field.rsplit_once('.').unwrap_or(("", field))
 }
 
-/// Texts of the units of the topic's columns. A field that states the same known unit throughout is taken out, if one
+/// Texts of the units of the topic's columns; `in_schema`: those of the schema. A field that states the same known unit throughout is taken out, if one
 /// number without a unit stands beside it.
-pub fn take(topic: &mut Topic) -> Vec<String> {
+pub fn take(topic: &mut Topic, in_schema: &Units) -> Vec<String> {
     let mut found: Vec<(String, String, String)> = Vec::new();
     for (field, cells) in topic.fields.iter().zip(&topic.columns) {
         let ((part, name), Cells::Text(texts)) = (parted(field), cells) else { continue };
@@ -31,6 +32,7 @@ pub fn take(topic: &mut Topic) -> Vec<String> {
         }
     }
     topic.forget(|field| found.iter().any(|(_, unit, _)| unit == field));
-    let unit = |field: &String| found.iter().find(|(of, ..)| of == field).map_or("", |(.., unit)| unit).to_owned();
+    let stated = |field: &String| found.iter().find(|(of, ..)| of == field).map(|(.., unit)| unit.clone());
+    let unit = |field: &String| stated(field).unwrap_or_else(|| schema_units::of(in_schema, field).to_owned());
     topic.fields.iter().map(unit).collect()
 }

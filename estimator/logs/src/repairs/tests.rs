@@ -59,6 +59,24 @@ fn wrapped_angles_are_put_together() {
 }
 
 #[test]
+fn an_angle_that_turns_by_more_than_a_quarter_in_a_sample_is_put_together() {
+    let mut fast = swing(4000);
+    let whole: Vec<f64> = (0..4000).map(|i| 400.0 * (0.0065 * f64::from(i)).sin()).collect();
+    fast.channels[0].values = whole.iter().map(|angle| angle.rem_euclid(std::f64::consts::TAU)).collect();
+    assert_eq!(kinds(&repair(&mut fast)), ["wrapped-angle"]);
+    assert!(fast.channels[0].values.iter().zip(&whole).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn a_scale_that_starts_anew_goes_on() {
+    let mut scale = swing(4000);
+    let whole: Vec<f64> = (0..4000).map(|i| 0.02 + 0.31 * (0.004 * f64::from(i)).sin().powi(2)).collect();
+    scale.channels[0] = channel("q_m", "m", whole.iter().map(|place| place.rem_euclid(0.1)).collect());
+    assert_eq!(kinds(&repair(&mut scale)), ["wrapped-counter"]);
+    assert!(scale.channels[0].values.iter().zip(&whole).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
 fn rows_of_a_stuck_sensor_are_left_out() {
     for k in 0..2 {
         let (mut stuck, whole) = (swing(4000), swing(4000));

@@ -49,6 +49,10 @@ fn leaps(channel: &Channel) -> Vec<usize> {
     if high - low > ONE_TURN || high - low < TAU - NEAR_A_TURN {
         return Vec::new();
     }
-    let leap = |i: &usize| ((channel.values[*i] - channel.values[*i - 1]).abs() - TAU).abs() < NEAR_A_TURN;
-    (1..channel.values.len()).filter(leap).collect()
+    let step = |i: usize| (channel.values[i] - channel.values[i - 1]).abs();
+    // One clear leap shows that the angle wraps. From then on, the shorter way is the one that was turned.
+    if !(1..channel.values.len()).any(|i| (step(i) - TAU).abs() < NEAR_A_TURN) {
+        return Vec::new();
+    }
+    (1..channel.values.len()).filter(|i| step(*i) > PI).collect()
 }

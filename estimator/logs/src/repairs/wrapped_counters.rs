@@ -8,6 +8,8 @@ use haptics::recording::{Channel, Recording, Span, Warning};
 const BITS: [i32; 5] = [12, 14, 16, 24, 32];
 /// Least bits of a force's: dry friction of 2 N that reverses fills 12 bits of 1 mN, and a converter of few bits stops at its ends.
 const BITS_OF_FORCE: i32 = 16;
+/// Lengths of scales that start anew, in decades.
+const ROUND: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
 /// Least share of a counter's range that its values fill if it ran over.
 const FILLED: f64 = 0.9;
 /// Usual step of a force in one sample, as a share of the range. Dry friction that reverses makes larger ones.
@@ -70,10 +72,15 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
     if leaps.is_empty() {
         return None;
     }
-    let unit = unit(values)?;
+    let unit = unit(values);
+    if is_force && unit.is_none() {
+        return None;
+    }
     let fits = |range: &f64| span < *range && span >= FILLED * range;
     let least = if is_force { BITS_OF_FORCE } else { 0 };
-    let range = BITS.into_iter().filter(|bits| *bits >= least).map(|bits| unit * 2_f64.powi(bits)).find(fits)?;
+    let binary = BITS.into_iter().filter(|bits| *bits >= least).filter_map(|bits| Some(unit? * 2_f64.powi(bits)));
+    let unit = unit.unwrap_or(0.0);
+    let range = binary.chain(round_range(span).filter(|_| !is_force)).find(fits)?;
     // A force counts from an end of its range, or from the middle; the origin of a position may have been moved.
     let begins_at = |start: f64| low >= start - 0.5 * unit && high < start + range + 0.5 * unit;
     if is_force && ![0.0, -0.5 * range, -range].into_iter().any(begins_at) {
@@ -91,6 +98,12 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
     let is_smooth = leaps.iter().filter(|leap| goes_on(leap)).count() as f64 >= share * leaps.len() as f64;
     let is_counter = is_smooth && ends as f64 <= MOST_AT_ENDS * values.len() as f64;
     is_counter.then_some((range, leaps))
+}
+
+/// The smallest round number above a span: the length of a scale that starts anew.
+fn round_range(span: f64) -> Option<f64> {
+    let decade = 10_f64.powf(span.log10().floor());
+    ROUND.into_iter().map(|round| round * decade).find(|range| *range > span)
 }
 
 /// Greatest common divisor of the differences of successive values; none if they have none but rounding.

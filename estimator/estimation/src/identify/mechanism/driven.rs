@@ -83,7 +83,7 @@ impl<'a> Solved<'a> {
     ) -> Result<Self, EstimateError> {
         let swing = if can_hang && seen.fitted == BASE { Swing::of(raws, pieces, known)? } else { None };
         if swing.is_none() {
-            seen.fitted.extend(pieces.iter().any(|piece| piece.zero_step.is_some()).then_some(Term::ZeroStep));
+            seen.fitted.extend(pieces.iter().any(|piece| !piece.zero_steps.is_empty()).then_some(Term::ZeroStep));
             seen.fitted.extend(pieces.iter().any(|piece| piece.is_late).then_some(Term::Delay));
         }
         let gravity = match &swing {

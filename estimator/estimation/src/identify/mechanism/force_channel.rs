@@ -6,7 +6,7 @@ use super::parameter_change::{self, Change};
 use super::parameters::{Known, Term};
 use super::regress::System;
 use super::signals::Piece;
-use super::zero_step::{self, OF_POWER};
+use super::zero_step::{self, OF_POWER, ZeroStep};
 use crate::identify::limits::{LEAST_SEGMENT_ROWS, SIGNIFICANT};
 use crate::zero_jumps;
 use foundation::words::amount;
@@ -30,21 +30,14 @@ pub fn take_defects_out(
     let change = parameter_change::change(pieces, &terms, known);
     // Two fits also describe a step or a stretch, and leave as much as these.
     let is_change = |rms: f64| change.is_some_and(|change| change.rms[1].powi(2) < (1.0 - OF_POWER) * rms.powi(2));
-    let step = zero_step::zero_step(pieces, &terms, known);
-    if let Some(step) = step.filter(|step| !is_change(step.residual_beside(pieces, &terms, known))) {
+    let steps = zero_step::zero_steps(pieces, &terms, known);
+    let stepped = (!steps.is_empty()).then(|| zero_step::with_steps(&steps, pieces, &terms, known));
+    if let Some((stepped, _)) = stepped.filter(|(_, rms)| !is_change(*rms)) {
         if of.meta.repairs(TARE_STEP) {
-            for piece in pieces.iter_mut() {
-                piece.zero_step = Some(step);
-            }
+            pieces.clone_from_slice(&stepped);
             terms.push(Term::ZeroStep);
         }
-        said.push(format!(
-            "the force of {} jumps by {} at {:.2} s and stays, as after a tare or a knock of its sensor; {}",
-            of.name,
-            amount(step.size, if is_linear { "N" } else { "N m" }),
-            step.time_s,
-            zero_jumps::fate(of, TARE_STEP, "step")
-        ));
+        said.push(jumps(&steps, of, is_linear));
     }
     // Near a step, its edge remains in the residual.
     if said.is_empty() {
@@ -71,6 +64,18 @@ pub fn take_defects_out(
         ));
     }
     said
+}
+
+/// Words for steps of the zero.
+fn jumps(steps: &[ZeroStep], of: &Recording, is_linear: bool) -> String {
+    let unit = if is_linear { "N" } else { "N m" };
+    let each = steps.iter().map(|step| format!("by {} at {:.2} s", amount(step.size, unit), step.time_s));
+    format!(
+        "the force of {} jumps {} and stays, as after a tare or a knock of its sensor; {}",
+        of.name,
+        each.collect::<Vec<_>>().join(" and "),
+        zero_jumps::fate(of, TARE_STEP, if steps.len() > 1 { "staircase" } else { "step" })
+    )
 }
 
 /// Leaves the stretch out in which the force does not belong to the motion, unless the sidecar forbids it; a sentence about it.

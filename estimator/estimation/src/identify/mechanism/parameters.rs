@@ -1,6 +1,7 @@
 //! The terms of the base model: the law, the name of the parameter, and the regressor of each.
 
 use super::signals::Piece;
+use super::zero_step::force_at;
 use foundation::signal::derive::central_differences;
 use haptics::law::{
     Coordinate, CoulombFriction, EccentricMass, ForceBias, Inertia, Law, MAX_PARAMETERS, Motion, ReturnSpring,
@@ -29,7 +30,7 @@ pub enum Term {
     GravityCosine,
     /// A spring: only ever a rival of the gravity moment.
     Spring,
-    /// The step of a segment's force channel, in shares of [`Piece::zero_step`]: 1 if its size is right.
+    /// The steps of a segment's force channel, in shares of [`Piece::zero_steps`]: 1 if their sizes are right.
     ZeroStep,
     /// The time by which the force lags behind the motion, s, where [`Piece::is_late`].
     Delay,
@@ -104,7 +105,7 @@ impl Term {
     pub fn column(self, piece: &Piece) -> Vec<f64> {
         match self {
             Self::ZeroStep => {
-                let force = |time_s| piece.zero_step.map_or(0.0, |step| step.force_at(time_s));
+                let force = |time_s| force_at(&piece.zero_steps, time_s);
                 return piece.filter(&piece.times_s().map(force).collect::<Vec<f64>>());
             }
             Self::Delay if piece.is_late => {

@@ -81,7 +81,7 @@ pub struct Piece {
     /// Filtered force, N or N m.
     pub force: Option<Vec<f64>>,
     /// Step of the force channel's zero somewhere in the recording.
-    pub zero_step: Option<ZeroStep>,
+    pub zero_steps: Vec<ZeroStep>,
     /// True if the force was late: a lag was taken out of it.
     pub is_late: bool,
     /// Standard deviation of the noise left on the filtered force, N or N m, as expected of fast noise.
@@ -299,7 +299,7 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64, known: Option<(f64, b
             .as_ref()
             .map_or(0.0, |force| derived_noise(even.noise(&force[first..end]), rate_hz, choice.cutoff_hz, 0)),
         force: raw_force.as_ref().map(|f| low_pass(f, rate_hz, choice.cutoff_hz)),
-        zero_step: None,
+        zero_steps: Vec::new(),
         is_late: false,
         usable: (0..n).map(|i| i >= edge && i + edge < n && !saturated[i]).collect(),
         period_s: even.period_s,
