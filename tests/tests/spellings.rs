@@ -305,7 +305,7 @@ fn units_in_other_places_are_read() {
     assert!(read[0].warnings.iter().any(|w| w.text.contains("`Time` states no unit: its times are taken as seconds")));
 }
 
-/// Dashboards and spreadsheets write a unit behind each number. One that changes from row to row is refused.
+/// Dashboards and spreadsheets write a unit behind each number. One that measures something else is refused.
 #[test]
 fn units_behind_numbers_are_those_of_their_column() {
     let table = |delimiter: &str, comma: bool| {
@@ -320,8 +320,17 @@ fn units_behind_numbers_are_those_of_their_column() {
     for (delimiter, comma) in [(",", false), (";", true), ("\t", false)] {
         is_the_drawer(delimiter, table(delimiter, comma), mapped);
     }
-    let mixed = table(",", false).replacen(" mm", " m", 700);
-    let refused = File::new(mixed, mapped).load().expect_err("two units");
+    let scaled = |[t, place, push]: [f64; 3]| {
+        if place.abs() < 0.01 {
+            format!("{t:.2} s,{:.3} mm,{push:.4} N\n", 1e3 * place)
+        } else {
+            format!("{t:.2} s,{:.4} cm,{:.4} mN\n", 1e2 * place, 1e3 * push)
+        }
+    };
+    let scaled: String = drawer(1500, 100.0).into_iter().map(scaled).collect();
+    is_the_drawer("units by size", format!("Time,Position,Force\n{scaled}"), mapped);
+    let mixed = table(",", false).replacen(" mm", " N", 700);
+    let refused = File::new(mixed, mapped).load().expect_err("two quantities");
     assert!(refused.contains("holds a unit, which belongs into the name of the column"), "{refused}");
 }
 

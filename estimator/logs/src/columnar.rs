@@ -3,9 +3,11 @@
 use super::errors::{LogError, MAP_ANOTHER};
 use super::plan::{Plan, Use};
 use super::raw::{Cells, Raw};
+use super::suggested::entry;
 use super::table::{Group, Table};
 use csv::ByteRecord;
 use haptics::recording::Labels;
+use serde_json::json;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -17,12 +19,13 @@ pub fn table(raw: &mut Raw, plan: &Plan, path: &Path) -> Result<Table, LogError>
     if raw.rows() == 0 {
         return Err(LogError::HeaderOnly { path: path.to_path_buf() });
     }
-    let rows = selected(raw, plan, path)?;
+    let mut rows = selected(raw, plan, path)?;
     let mut table = Table::default();
+    leave_missing_out(raw, plan, &mut rows, &mut table);
     fingerprint(raw, plan, &mut table);
     let groups = groups(raw, plan, &rows);
     let uses = usable(raw, plan, &groups, &mut table, path)?;
-    if plan.trial.is_none() && plan.select.is_empty() {
+    if plan.trial.is_none() && rows.len() == raw.rows() {
         table.groups.push((None, whole(raw, plan, &uses)));
         return Ok(table);
     }
@@ -109,6 +112,22 @@ fn selected(raw: &Raw, plan: &Plan, path: &Path) -> Result<Vec<usize>, LogError>
     Ok(rows)
 }
 
+/// Leaves out the rows in which a needed column holds a text that stands for no measurement.
+fn leave_missing_out(raw: &Raw, plan: &Plan, rows: &mut Vec<usize>, table: &mut Table) {
+    let needed = plan.uses.iter().zip(&raw.columns).zip(&raw.headers);
+    for ((wanted, cells), header) in needed.filter(|_| !plan.missing.is_empty()) {
+        if !matches!(wanted, Use::Number { required: true, .. }) {
+            continue;
+        }
+        let before = rows.len();
+        let is_out = |row: usize| !number(cells, row).is_finite() && plan.is_missing(cells.text(row).trim());
+        rows.retain(|row| !is_out(*row));
+        if rows.len() < before {
+            table.notes.push(format!("{} row(s) without a value of `{header}` are left out", before - rows.len()));
+        }
+    }
+}
+
 /// Rows by trial, in the order in which the trials first appear.
 fn groups(raw: &Raw, plan: &Plan, rows: &[usize]) -> Vec<(Option<String>, Vec<usize>)> {
     let Some(column) = plan.trial else { return vec![(None, rows.to_vec())] };
@@ -163,15 +182,20 @@ fn usable(
     }
     match worst {
         None => Ok(uses),
-        Some((row, column, what)) => Err(LogError::BadCell {
-            row: row + 1,
-            line: 0,
-            column: raw.headers[column].clone(),
-            what: what.into(),
-            advice: MAP_ANOTHER,
-            spare: Box::default(),
-            path: PathBuf::from(path),
-        }),
+        Some((row, column, what)) => {
+            let word = raw.columns[column].text(row);
+            let is_word = !word.is_empty() && !word.contains(|c: char| c.is_ascii_digit());
+            let mend = is_word.then(|| Box::new(entry("missing", json!([word.trim()]))));
+            Err(LogError::BadCell {
+                row: row + 1,
+                line: 0,
+                column: raw.headers[column].clone(),
+                what: what.into(),
+                advice: MAP_ANOTHER,
+                mend,
+                path: PathBuf::from(path),
+            })
+        }
     }
 }
 

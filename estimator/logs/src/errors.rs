@@ -2,10 +2,11 @@
 
 mod words;
 
+use haptics::recording::Suggested;
 use haptics::text_file::one_line as plain;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use words::{cell_advice, chosen, columns_advice, mapped_instead, place, stated_factor, unit_fault};
+use words::{cell_advice, chosen, columns_advice, mapped_instead, place, stated_factor, unequal_advice, unit_fault};
 
 /// Advice about a cell that is not like the others.
 pub const CORRECT_CELL: &str = "correct that cell or remove the row";
@@ -258,7 +259,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), column = plain(column), what = plain(what), advice = cell_advice(advice, spare), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; {advice}: {path}", at = place(*row, *line), column = plain(column), what = plain(what), advice = cell_advice(advice, mend.as_deref()), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -270,13 +271,13 @@ pub enum LogError {
         what: Box<str>,
         /// The way out.
         advice: &'static str,
-        /// Names of the program of the columns that the log can do without, that of the cell among them.
-        spare: Box<[String]>,
+        /// Entries of a sidecar that leave out such rows, or columns that the log can do without.
+        mend: Option<Box<Suggested>>,
         /// The file.
         path: PathBuf,
     },
     /// A row of another length.
-    #[error("{at} has {found} cells and the header has {expected}; the line may be cut off: complete or remove it: {path}", at = place(*row, *line), path = path.display())]
+    #[error("{at} has {found} cells and the header has {expected}; {advice}: {path}", at = place(*row, *line), advice = unequal_advice(*found, *expected), path = path.display())]
     UnequalRow {
         /// Row of data, from 1.
         row: usize,

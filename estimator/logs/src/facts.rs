@@ -99,6 +99,11 @@ fn entry(key: &str, value: &Value) -> Option<String> {
             let wanted = format!("a list of some of {}", REPAIRS.join(", "));
             must(key, value, value.as_array().is_some_and(known), &wanted)
         }
+        "missing" => {
+            let is_text = |v: &Value| v.as_str().is_some_and(|text| !text.parse::<f64>().is_ok_and(f64::is_finite));
+            let all = value.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(is_text));
+            must(key, value, all, "a list of texts that are no numbers, like [\"NaN\", \"OVLD\"]")
+        }
         "select" => {
             let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
             let several = |v: &Value| v.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(simple));

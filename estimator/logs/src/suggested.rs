@@ -16,10 +16,7 @@ impl LogError {
             Self::WrongDimension { target, .. } => json!({ "scale": { target: null } }),
             Self::DuplicateColumn { column, choice: Some(choice), .. } => json!({ "columns": { column: choice } }),
             Self::MissingColumn { instead, .. } if !instead.is_empty() => json!({ "columns": instead }),
-            Self::BadCell { spare, .. } if !spare.is_empty() => {
-                let left_out = spare.iter().map(|name| (name.clone(), Value::Null));
-                json!({ "columns": left_out.collect::<Suggested>() })
-            }
+            Self::BadCell { mend, .. } => return mend.as_deref().cloned(),
             // Another order of the rows would go with them.
             Self::Time { goes_back: true, .. } => return None,
             Self::Time { rate_hz, .. } => json!({ "columns": { "t_s": null }, "rate_hz": rate_hz }),
@@ -28,6 +25,11 @@ impl LogError {
         };
         as_entries(entries)
     }
+}
+
+/// One entry of a sidecar, as an error carries it.
+pub fn entry(key: &str, value: Value) -> Suggested {
+    std::iter::once((key.to_owned(), value)).collect()
 }
 
 /// An object as entries of a sidecar.
@@ -84,6 +86,11 @@ mod tests {
         let (error, log) = mended("t_s,x_mm,fx_N\n0,1,2\n1,2,3\n", None);
         assert!(error.contains("\"f_N\": \"fx_N\", \"q_m\": \"x_mm\""), "{error}");
         assert!(log[0].channel("q_m").expect("one")[1] == 0.002 && log[0].channel("f_N").is_some());
+        let gappy = |i: u32| if i % 20 == 7 { "OVLD".to_owned() } else { f64::from(i).sin().to_string() };
+        let rows: Vec<String> = (0..60).map(|i| format!("{},{},1", 0.01 * f64::from(i), gappy(i))).collect();
+        let (error, log) = mended(&format!("t_s,q_m,f_N\n{}\n", rows.join("\n")), None);
+        assert!(error.contains("leave such rows out: \"missing\": [\"OVLD\"] in the sidecar"), "{error}");
+        assert_eq!(log[0].len(), 57);
         let coarse: Vec<String> = (0..40).map(|i| format!("{},{}", i / 10, f64::from(i).sin())).collect();
         let (_, log) = mended(&format!("t_s,q_m\n{}\n", coarse.join("\n")), None);
         assert!((log[0].rate_hz().expect("a rate") - 10.0).abs() < 1e-9);

@@ -24,7 +24,7 @@ pub fn take(raw: &mut Raw, plan: &mut Plan, meta: &Meta, path: &Path) -> Result<
         column: raw.headers[column].clone(),
         what: format!("`{}` is not a time like the others", raw.columns[column].text(row)).into(),
         advice: MAP_ANOTHER,
-        spare: Box::default(),
+        mend: None,
         path: path.to_path_buf(),
     })?;
     raw.columns[column] = Cells::Numbers(values);

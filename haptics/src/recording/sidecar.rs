@@ -100,6 +100,10 @@ pub struct Meta {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("x-absent" = "1"), example = json!({ "fx1_N": -1.0 }))]
     pub sign: BTreeMap<String, f64>,
+    /// Texts of cells without a measurement. Rows with one of them are left out as rows with an empty cell are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-absent" = "such a cell is refused"), example = json!(["NaN", "OVLD"]))]
+    pub missing: Vec<String>,
     /// Kinds of repairs that are not made: `sentinels`, `burst-stamps`, `held-samples`, `wrapped-angle`,
     /// `wrapped-counter`, `stuck-channel`, `spikes`, `tare-step`, `foreign-force`, `clock-offset`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

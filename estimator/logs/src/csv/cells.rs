@@ -54,6 +54,8 @@ fn respelled(cell: &[u8]) -> Option<Vec<u8>> {
     let in_brackets = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
     let negative = text.strip_suffix('-').or_else(|| text.strip_prefix(['-', '\u{2212}', '\u{2013}'])).or(in_brackets);
     let (minus, digits) = negative.map_or(("", text.strip_prefix('+').unwrap_or(text)), |digits| ("-", digits));
+    // Loggers put blanks between a sign and its number.
+    let digits = digits.trim_start();
     let is_digit = |c: char| c.is_ascii_digit();
     if digits == "\u{221e}" {
         return Some([minus, "inf"].concat().into_bytes());
@@ -249,6 +251,7 @@ mod tests {
         let [point, comma, either] = [of(b';', Decimal::Point), of(b';', Decimal::Comma), of(b';', Decimal::Either)];
         assert_eq!(number(b" 1,5 ", either), Some(1.5));
         assert_eq!((number(b"1,5", point), number(b"1.234,5", either)), (None, None));
+        assert_eq!((number(b"-   2.5", point), number(b"+  0.5", point)), (Some(-2.5), Some(0.5)));
         assert_eq!((number(b"+2e0", point), number(b"1,5e3", comma)), (Some(2.0), Some(1500.0)));
         assert_eq!((number(b"-1.372", comma), number(b"51.262,5", comma)), (Some(-1372.0), Some(51262.5)));
         assert_eq!((number(b"11,683", point), number(b"11,6835", point)), (Some(11683.0), None));

@@ -7,7 +7,9 @@ use crate::pages;
 use crate::plan::{Plan, Use};
 use crate::preview::Preview;
 use crate::raw::is_missing;
+use crate::suggested::entry;
 use crate::table::{Group, Table};
+use serde_json::json;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
@@ -173,14 +175,18 @@ impl<'a> Join<'a> {
                     LogError::NoNumbers { row, line, path }
                 }
             }
-            Fault::Cell(column, what) => {
+            Fault::Cell(column, what, word) => {
                 let advice = match () {
                     () if self.dialect.body.holds_values(column) => CORRECT_CELL,
                     () if Some(column) == self.plan.time => WRITE_TIMES,
                     () => MAP_ANOTHER,
                 };
-                let (column, spare) = (self.dialect.headers[column].clone(), Box::default());
-                LogError::BadCell { row, line, column, what: what.into(), advice, spare, path }
+                let is_time = Some(column) == self.plan.time;
+                let mend = word
+                    .filter(|_| advice == CORRECT_CELL && !is_time)
+                    .map(|word| Box::new(entry("missing", json!([word]))));
+                let column = self.dialect.headers[column].clone();
+                LogError::BadCell { row, line, column, what: what.into(), advice, mend, path }
             }
         }
     }
@@ -223,7 +229,7 @@ impl<'a> Join<'a> {
             }
         }
         if let Some((row, line, column)) = worst {
-            return Err(self.sentence(row, line, Fault::Cell(column, "the cell is empty".to_owned())));
+            return Err(self.sentence(row, line, Fault::Cell(column, "the cell is empty".to_owned(), None)));
         }
         self.table.gappy_columns = others;
         self.table.sparse_columns = needed;

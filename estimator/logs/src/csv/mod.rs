@@ -24,6 +24,7 @@ mod serial_log;
 mod simd;
 mod sniff;
 pub mod text_table;
+mod twincat;
 mod unit_cells;
 
 use super::errors::LogError;

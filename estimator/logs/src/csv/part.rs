@@ -39,8 +39,8 @@ pub struct Layout<'a> {
 pub enum Fault {
     /// Number of cells.
     Unequal(usize),
-    /// Column, and the text of the cell.
-    Cell(usize, String),
+    /// Column, a sentence about the cell, and its text if that may stand for no measurement.
+    Cell(usize, String, Option<String>),
     /// The record holds names of columns, other than those of the header.
     Names,
 }
@@ -289,26 +289,25 @@ impl<'a, 'p> Reader<'a, 'p> {
             self.part.text_columns.push(column);
             return Ok(());
         }
-        if cell.is_empty() || !required {
+        let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
+        let is_out = cell.is_empty() || self.layout.plan.is_missing(&shown);
+        if is_out || !required {
             // The whole column decides whether that is a fault.
-            let left_out = if cell.is_empty() || value.is_some() {
-                &mut self.part.gappy_columns
-            } else {
-                &mut self.part.text_columns
-            };
+            let left_out =
+                if is_out || value.is_some() { &mut self.part.gappy_columns } else { &mut self.part.text_columns };
             if !left_out.contains(&column) {
                 left_out.push(column);
             }
             self.row.push(MISSING);
             return Ok(());
         }
-        let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
         let what = match value {
             Some(_) => format!("`{shown}` is not a finite number"),
             None if has_unit(cell) => format!("`{shown}` holds a unit, which belongs into the name of the column"),
             None => format!("`{shown}` is not a number"),
         };
-        Err(Fault::Cell(column, what))
+        let is_word = !shown.contains(|c: char| c.is_ascii_digit()) || shown.contains('#');
+        Err(Fault::Cell(column, what, is_word.then_some(shown)))
     }
 
     fn stamp(
@@ -320,7 +319,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         let shown = String::from_utf8_lossy(&[date, b" ", time].concat()).trim_start().to_owned();
         let Some(ns) = form.read(&shown) else {
             let what = format!("`{}` is not a time like the others", shown.chars().take(40).collect::<String>());
-            return Err(Fault::Cell(column, what));
+            return Err(Fault::Cell(column, what, None));
         };
         self.part.days.look_at(form, &shown, calendar::is_another_day(ns, origin_ns));
         self.row.push(1e-9 * ns.saturating_sub(origin_ns) as f64);

@@ -5,7 +5,7 @@ use super::decimal::Decimal;
 use super::dialect::Dialect;
 use super::encoding::{self, Encoding};
 use super::layout::Layout;
-use super::{above, calendar, labview, layout, long_table, serial_log, unit_cells};
+use super::{above, calendar, labview, layout, long_table, serial_log, twincat, unit_cells};
 use crate::errors::LogError;
 use crate::raw::place_of;
 use crate::{format, stated_rate};
@@ -80,7 +80,7 @@ struct LaidOutAnew {
     note: Option<&'static str>,
 }
 
-/// Measurements of LabVIEW, logs of serial monitors, columns of even width, long tables, and cells with units as a table.
+/// Measurements of LabVIEW, exports of `TwinCAT`, logs of serial monitors, columns of even width, long tables, and cells with units as a table.
 /// `all`: the whole text.
 fn laid_out_anew(
     start: &[u8],
@@ -93,6 +93,9 @@ fn laid_out_anew(
     Ok(if labview::is_measurement(start) {
         let made = labview::table(&all()?, path)?;
         LaidOutAnew { text: Some(made.text), clocks: made.clocks, ..none }
+    } else if twincat::is_scope(start) {
+        let made = twincat::table(&all()?);
+        made.map_or(none, |made| LaidOutAnew { text: Some(made.text), clocks: made.clocks, ..LaidOutAnew::default() })
     } else if let Some(kind) = serial_log::kind(start, !is_short) {
         LaidOutAnew { text: Some(serial_log::tabbed(&all()?, kind)), ..none }
     } else if let Some(width) = encoding::blank_width(start, !is_short) {

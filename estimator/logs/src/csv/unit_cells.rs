@@ -1,5 +1,5 @@
 //! Cells with a unit behind their number (`3.7 mm`), as dashboards and spreadsheets write them, and numbers with their unit in the
-//! next cell (`3.7,mm`), as force gauges do. A column that has the same one in every row is one of numbers.
+//! next cell (`3.7,mm`), as force gauges do. A column whose units measure the same in every row is one of numbers.
 
 use super::cells::{Notation, number};
 use super::decimal::Decimal;
@@ -47,7 +47,7 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
     };
     let is_unit_column = |column: usize| {
         let name = records[0].cells.get(column).map_or("", String::as_str).to_lowercase();
-        let is_same = |record: &layout::Record| record.cells[column] == later[0].cells[column];
+        let is_same = |record: &layout::Record| ratio(&record.cells[column], &later[0].cells[column]).is_some();
         let is_named = ["unit", "einheit"].iter().any(|word| name.contains(word)) || is_mechanical(&name);
         is_named && is_mechanical(&later[0].cells[column]) && later.iter().all(is_same)
     };
@@ -61,7 +61,8 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
         let mut units = later.iter().map(|record| &record.cells[column]).filter(|cell| !cell.is_empty());
         let (_, unit) = parted(units.next()?)?;
         let is_known = matches!(parse(unit, &[]), Written::Known(..));
-        (is_known && units.all(|cell| parted(cell).is_some_and(|(_, other)| other == unit))).then(|| unit.to_owned())
+        let fits = |cell: &String| parted(cell).is_some_and(|(_, other)| other == unit || ratio(other, unit).is_some());
+        (is_known && units.all(fits)).then(|| unit.to_owned())
     };
     let units: Vec<String> = (0..width).map(|column| unit(column).unwrap_or_default()).collect();
     let found = UnitCells { delimiter, units, in_next };
@@ -78,7 +79,9 @@ impl UnitCells {
     fn has_other_units(&self, record: &layout::Record) -> bool {
         let unit_of = |column: usize| self.parted(record, column).map(|(_, unit)| unit);
         self.with_units().all(|(column, _)| unit_of(column).is_some())
-            && self.with_units().any(|(column, own)| unit_of(column) != Some(own))
+            && self
+                .with_units()
+                .any(|(column, own)| unit_of(column).is_none_or(|unit| unit != own && ratio(unit, own).is_none()))
     }
 
     /// A number of a record and its unit.
@@ -90,7 +93,8 @@ impl UnitCells {
         parted(cell)
     }
 
-    /// The text without these units. A cell with another one stays, and is refused later.
+    /// The text without these units, and with numbers in the unit of their column. A cell with a unit of something else stays, and is
+    /// refused later.
     pub fn taken_out(&self, text: &[u8]) -> Vec<u8> {
         let (mut plain, mut at) = (Vec::with_capacity(text.len()), 0);
         for record in layout::records(text, self.delimiter, usize::MAX) {
@@ -100,7 +104,9 @@ impl UnitCells {
                 let number = self.parted(&record, column).filter(|_| !own.is_empty());
                 let cell = match number {
                     Some((number, unit)) if unit == own => Cow::from(number),
-                    Some((number, unit)) => Cow::from(format!("{number} {unit}")),
+                    Some((number, unit)) => Cow::from(
+                        ratio(unit, own).map_or_else(|| format!("{number} {unit}"), |ratio| times(number, ratio)),
+                    ),
                     None => Cow::from(cell),
                 };
                 plain.extend((column > 0).then_some(self.delimiter));
@@ -120,8 +126,26 @@ fn parted(cell: &str) -> Option<(&str, &str)> {
     (!unit.is_empty() && is_number(digits)).then_some((digits, unit))
 }
 
+fn value(cell: &str) -> Option<f64> {
+    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() })
+}
+
 fn is_number(cell: &str) -> bool {
-    number(cell.as_bytes(), Notation { decimal: Decimal::Either, ..Notation::default() }).is_some()
+    value(cell).is_some()
+}
+
+/// A number times a factor, with the same decimal mark.
+fn times(number: &str, factor: f64) -> String {
+    let product = value(number).map_or_else(|| number.to_owned(), |value| (value * factor).to_string());
+    if number.contains(',') { product.replace('.', ",") } else { product }
+}
+
+/// Ratio of two units that measure the same mechanical quantity.
+fn ratio(unit: &str, own: &str) -> Option<f64> {
+    match (parse(unit, &[]), parse(own, &[])) {
+        (Written::Known(a, factor), Written::Known(b, own)) if a == b && a != Dimension::Other => Some(factor / own),
+        _ => None,
+    }
 }
 
 /// True for the unit of a length, an angle, a force, or another mechanical quantity.
@@ -143,11 +167,11 @@ mod tests {
 
     #[test]
     fn a_unit_in_the_next_cell_is_that_of_the_number() {
-        let text = b"t_s,force,force_unit,flag\n0,1.5,kN,N\n1,1.6,kN,N\n2,1.7,kN,N\n3,1.8,kN,N\n4,1900,N,N\n";
+        let text = b"t_s,force,force_unit,flag\n0,1.5,kN,N\n1,1.6,kN,N\n2,1.7,kN,N\n3,1.8,kN,N\n4,1900,N,N\n5,2,mm,N\n";
         let found = of(text, None).expect("units");
         assert_eq!(found.units, ["", "kN", "", ""]);
         let plain = String::from_utf8(found.taken_out(text)).expect("text");
-        assert!(plain.contains("3,1.8,kN,N\n") && plain.contains("4,1900 N,N,N\n"), "{plain}");
+        assert!(plain.contains("3,1.8,kN,N\n4,1.9,N,N\n5,2 mm,mm,N\n"), "{plain}");
         assert!(of(b"t_s,force,flag\n0,1,N\n1,2,N\n2,3,N\n3,4,N\n", None).is_none());
     }
 

@@ -1,5 +1,6 @@
 //! Parts of the sentences of errors: places, and entries of a sidecar.
 
+use haptics::recording::Suggested;
 use haptics::text_file::one_line as plain;
 use std::collections::BTreeMap;
 
@@ -37,13 +38,25 @@ pub(super) fn columns_advice(format: &str) -> &'static str {
     }
 }
 
-/// Advice about a cell, with the entry of a sidecar that leaves its column out, if the log can do without it.
-pub(super) fn cell_advice(advice: &str, spare: &[String]) -> String {
-    let entries: Vec<String> = spare.iter().map(|name| format!("\"{}\": null", plain(name))).collect();
-    if entries.is_empty() {
-        return advice.to_owned();
+/// Advice about a cell, with the entry of a sidecar that leaves out its column or such rows.
+pub(super) fn cell_advice(advice: &str, mend: Option<&Suggested>) -> String {
+    let Some((key, value)) = mend.and_then(|entries| entries.iter().next()) else { return advice.to_owned() };
+    let entries = value.as_object().map(|columns| {
+        let entries: Vec<String> = columns.keys().map(|name| format!("\"{name}\": null")).collect();
+        format!("{{{}}}", entries.join(", "))
+    });
+    let out = if value.is_array() { "such rows" } else { "the column" };
+    let value = entries.unwrap_or_else(|| value.to_string());
+    format!("{advice}, or leave {out} out: \"{key}\": {} in the sidecar", plain(&value))
+}
+
+/// Advice about a row of another length.
+pub(super) fn unequal_advice(found: usize, expected: usize) -> &'static str {
+    if found > expected {
+        "two lines may have run together: correct or remove them"
+    } else {
+        "the line may be cut off: complete or remove it"
     }
-    format!("{advice}, or leave the column out: \"columns\": {{{}}} in the sidecar", entries.join(", "))
 }
 
 /// Entry of a sidecar for a column whose name and stated unit disagree. `factor`: SI value of the stated unit over that of the

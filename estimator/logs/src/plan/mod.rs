@@ -91,11 +91,18 @@ pub struct Plan {
     pub trial_keys: Vec<usize>,
     /// Columns that the log can do without.
     pub spare: Vec<usize>,
+    /// Texts of cells without a measurement.
+    pub missing: Vec<String>,
     /// Sentences for the reader.
     pub notes: Vec<String>,
 }
 
 impl Plan {
+    /// True for a cell that holds no measurement, as the sidecar says.
+    pub fn is_missing(&self, cell: &str) -> bool {
+        self.missing.iter().any(|text| text.eq_ignore_ascii_case(cell))
+    }
+
     /// True if the table has a clock of some columns only, or a column that reads as one.
     pub fn has_pairs(&self) -> bool {
         !self.clocks.is_empty() || !self.suspects.is_empty()
@@ -115,7 +122,7 @@ struct Planner<'a> {
 
 /// Decides the use of each column. `stated`: the text of each column's unit outside its name, or nothing.
 pub fn plan(headers: &[String], stated: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
-    let empty = Plan { uses: vec![Use::Ignore; headers.len()], ..Plan::default() };
+    let empty = Plan { uses: vec![Use::Ignore; headers.len()], missing: meta.missing.clone(), ..Plan::default() };
     let mut planner = Planner { headers, units: stated, meta, path, plan: empty, taken: HashMap::new() };
     let mapped: HashSet<usize> = planner.take_mapping()?.into_iter().collect();
     let repeated = planner.repeated();
@@ -230,7 +237,7 @@ impl Planner<'_> {
     }
 
     fn take_mapped_number(&mut self, name: &str, column: usize) -> Result<(), LogError> {
-        let Some((quantity, target)) = units::split(name) else {
+        let Some((quantity, target)) = own_names::parted(name) else {
             if units::quantity_dimensions(name).is_some() {
                 return Err(self.unknown_unit(name, "", name));
             }
@@ -311,7 +318,7 @@ impl Planner<'_> {
     }
 
     fn mapped(&self, name: &str) -> bool {
-        self.taken.contains_key(name) && self.meta.columns.keys().any(|k| canonical(k) == name)
+        self.taken.contains_key(name) && self.meta.columns.keys().any(|k| own_names::canonical(k) == name)
             || name == "t_s" && self.plan.time.is_some()
     }
 
@@ -371,12 +378,6 @@ impl Planner<'_> {
             self.plan.trial_keys = keys;
         }
     }
-}
-
-/// The SI form of a program name: `q_mm` → `q_m`.
-fn canonical(name: &str) -> String {
-    units::split(name)
-        .map_or_else(|| name.to_owned(), |(quantity, unit): (&str, Unit)| format!("{quantity}_{}", unit.si))
 }
 
 /// The first names of a list, for a sentence.

@@ -1,10 +1,30 @@
 //! Columns that the sidecar does not mention, by their own names.
 
-use super::{Planner, canonical};
+use super::Planner;
 use crate::errors::LogError;
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, Unit};
 use crate::written_units::{self, Written};
 use foundation::signal::wrench::MATRIX;
+
+/// Quantity and unit of a name that the user gives: `q_mm`, and also `q_in`, `f_lbf`, `t_min`.
+pub fn parted(name: &str) -> Option<(&str, Unit)> {
+    units::split(name).or_else(|| {
+        let (quantity, text) = name.split_once('_')?;
+        let wanted = units::quantity_dimensions(quantity)?;
+        match written_units::parse(text, wanted) {
+            Written::Known(dimension, factor) if wanted.contains(&dimension) => {
+                let si = units::si(dimension);
+                Some((quantity, Unit { symbol: si, dimension, si, factor }))
+            }
+            _ => None,
+        }
+    })
+}
+
+/// The SI form of a name of the program: `q_mm` → `q_m`.
+pub fn canonical(name: &str) -> String {
+    parted(name).map_or_else(|| name.to_owned(), |(quantity, unit)| format!("{quantity}_{}", unit.si))
+}
 
 impl Planner<'_> {
     /// A column that the sidecar does not mention.

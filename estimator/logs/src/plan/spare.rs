@@ -1,10 +1,12 @@
 //! Columns that a log can do without: a fault in one of them need not refuse the file.
 
-use super::own_names::forms;
-use super::{Plan, Use, canonical};
+use super::own_names::{canonical, forms};
+use super::{Plan, Use};
 use crate::errors::LogError;
+use crate::suggested;
 use crate::units::{self, Dimension};
-use haptics::recording::{Meta, Task};
+use haptics::recording::{Meta, Suggested, Task};
+use serde_json::Value;
 
 /// Forces of a mechanism beside its coordinates.
 const MECHANISMS: [(&str, &str); 2] = [("q_m", "f_N"), ("q_rad", "tau_Nm")];
@@ -27,14 +29,15 @@ impl Plan {
     ) -> Result<T, LogError> {
         let mut outcome = first;
         while let Err(error) = &mut outcome {
-            let LogError::BadCell { row, column, what, spare, .. } = error else { break };
+            let LogError::BadCell { row, column, what, mend, .. } = error else { break };
             let faulty = self.targets.iter().find(|target| headers[target.column] == *column);
             let Some((columns, why)) = faulty.and_then(|one| self.left_out_with(&one.name, headers, meta)) else {
                 break;
             };
             if meta.columns.is_empty() {
                 let targets = self.targets.iter().filter(|target| columns.contains(&target.column));
-                *spare = targets.map(|target| target.name.clone()).collect();
+                let left_out: Suggested = targets.map(|target| (target.name.clone(), Value::Null)).collect();
+                *mend = Some(Box::new(suggested::entry("columns", Value::Object(left_out))));
                 break;
             }
             let fault = format!("row {row}, column `{column}`: {what}");

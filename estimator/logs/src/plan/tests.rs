@@ -26,6 +26,16 @@ fn a_mapped_column_brings_its_own_unit() {
 }
 
 #[test]
+fn names_that_the_user_gives_have_any_unit() {
+    let meta = meta(r#"{"columns":{"t_min":"t","q_in":"p","f_lbf":"l"}}"#);
+    let plan = plan(&headers("t,p,l"), &[], &meta, Path::new("a")).expect("plans");
+    assert_eq!((names(&plan), plan.time), (vec!["q_m", "f_N"], Some(0)));
+    let factor = |k: usize| if let Use::Number { factor, .. } = plan.uses[k] { factor } else { 0.0 };
+    let off = [60.0, 0.0254, 4.448_221_6].into_iter().enumerate().map(|(k, wanted)| (factor(k) / wanted - 1.0).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-7, "{:?}", plan.uses);
+}
+
+#[test]
 fn a_scale_turns_volts_into_newtons_and_without_it_they_are_refused() {
     let columns = headers("t_s,q_m,command_V");
     let scaled = meta(r#"{"columns":{"f_N":"command_V"},"scale":{"f_N":35.0}}"#);

@@ -6,6 +6,7 @@ use crate::diagnose::hypotheses::all::twins;
 use crate::diagnose::selection::comparison::ChannelFit;
 use crate::diagnose::selection::held_out_gain::{chi_square_tail, gain, rms, shows_beside, whiteness_p};
 use crate::diagnose::selection::profile_likelihood::parameters;
+use crate::diagnose::selection::rules::MUCH_UNSEEN;
 use crate::diagnose::selection::stepwise::SelectedTerm;
 use foundation::words::amount;
 use haptics::law::entries;
@@ -88,13 +89,15 @@ impl Part<'_> {
         )
     }
 
-    /// Sentence on the final residual if it is far above the noise and not white.
+    /// Sentence on the final residual if it is above the noise and not white, or far above it.
     pub fn much_left(&self) -> Option<String> {
         let (study, picks) = (self.study, self.study.picks());
         let (end, _) = rms(study, &picks, self.along);
         let times = end / self.noise;
-        let is_much = study.rules.much.is_some_and(|much| times > much);
-        (is_much && whiteness_p(study, &picks) < study.rules.surely_not_white).then(|| {
+        let much = study.rules.much.filter(|much| times > *much)?;
+        // Times that jitter leave a white residual, too.
+        let is_far = times > MUCH_UNSEEN * much;
+        (is_far || whiteness_p(study, &picks) < study.rules.surely_not_white).then(|| {
             let left = amount(end, self.unit);
             match self.role {
                 Role::Channel => format!(
